@@ -34,11 +34,12 @@ _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 class TooManyPrimes(Exception):
     """Raised when the guards of an automaton are too large.
 
-    ``subject`` has more than ``limit`` of the things that ``unit`` names. The limits are:
+    ``subject`` says what is too large: a guard, all guards, or the automaton. It has more than
+    ``limit`` of what ``unit`` names, such as prime implicants. The limits are:
 
     - :data:`PRIME_LIMIT`, for the prime implicants or conjunctions of one guard;
     - :data:`TOTAL_PRIME_LIMIT`, for the prime implicants of all guards;
-    - the rows "edges" and "partial products" of :data:`~tltlc.io.limits.WORK`.
+    - the entries "edges" and "partial products" of :data:`~tltlc.io.limits.WORK`.
     """
 
     def __init__(self, subject: str = "a guard", limit: int = PRIME_LIMIT, unit: str = "prime implicants") -> None:
@@ -46,16 +47,16 @@ class TooManyPrimes(Exception):
         self.subject, self.limit, self.unit = subject, limit, unit
 
     def title(self, name: str) -> str:
-        """Return the title of the diagnostic; ``name`` is the name of the automaton."""
+        """Return the title of the error message; ``name`` is the name of the automaton."""
         verb = "have" if self.subject == "all guards" else "has"
         return f"{self.subject} of `{name}` {verb} more than {self.limit} {self.unit}"
 
 
 class Guards:
-    """Computes prime implicants and formulas of guards in one table of diagrams.
+    """Computes the prime implicants and the short formulas of guards, which are nodes of one decision diagram table.
 
-    ``names`` are the names of the atoms. ``allowed`` is the guard of the letters that ``exclusive``
-    declarations allow.
+    ``names`` are the names of the atoms. ``allowed`` is a guard that is true on exactly the letters
+    that ``exclusive`` declarations allow.
     """
 
     __slots__ = (
@@ -167,9 +168,10 @@ class Guards:
     # --- Boolean functions --------------------------------------------------------------------
 
     def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
-        """Return cubes, none of them redundant.
+        """Return irredundant cubes whose disjunction lies between two functions.
 
-        ``lower`` implies their disjunction, and the disjunction implies ``upper``.
+        ``lower`` implies the disjunction, and the disjunction implies ``upper``. None of the cubes
+        can be left out.
         """
         if lower == upper:
             primes = self._all_primes(lower)
@@ -179,7 +181,7 @@ class Guards:
         return self._irredundant(lower, upper)[0]
 
     def _upper(self, guard: int) -> int:
-        """Return ``guard or not D``, where D are the allowed letters."""
+        """Return ``guard or not D``, where D is true on the letters that ``exclusive`` declarations allow."""
         if self._allowed == ACCEPT:
             return guard
         return self._diagrams.disjoin(guard, self._negation(self._allowed))
@@ -237,7 +239,7 @@ class Guards:
         return known
 
     def _irredundant(self, lower: int, upper: int) -> tuple[tuple[Cube, ...], int]:
-        """Return the cubes of :meth:`_cover`, and the function of their disjunction (Minato 1993)."""
+        """Return irredundant cubes as in :meth:`_cover`, and the function of their disjunction (Minato 1993)."""
         if lower == REJECT:
             return (), REJECT
         if upper == ACCEPT:
@@ -266,9 +268,9 @@ class Guards:
         return cover
 
     def _count(self, products: int) -> None:
-        """Add a number of cubes to the total of all cubes that were computed.
+        """Add a number of cubes to the count of all cubes that were computed so far.
 
-        Raises :class:`TooManyPrimes` if the number or the total is too large.
+        Raises :class:`TooManyPrimes` if this number or the count is too large.
         """
         self._products += products
         if products > PRIME_LIMIT:
@@ -278,7 +280,7 @@ class Guards:
 
 
 def _negate_leaf(leaf: tuple[int, int]) -> tuple[int, int]:
-    """Return the negated value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``, and the other way round."""
+    """Return the leaf for the opposite value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``, and the other way round."""
     return 1 - leaf[0], 1 - leaf[1]
 
 

@@ -37,9 +37,10 @@ class Work:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Allow at most ``steps`` steps inside the ``with`` block.
+        """Limit the work inside a ``with`` block to ``steps`` steps; this is a context manager.
 
-        The steps taken are subtracted from the budget.
+        Raises :class:`OutOfWork` in the block after these steps. The steps taken are also
+        subtracted from the whole budget.
         """
         aside = max(0, self.left - steps)
         self.left -= aside

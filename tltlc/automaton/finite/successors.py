@@ -16,13 +16,13 @@ from tltlc.logic.formula import Formula
 
 
 class Successors:
-    """Computes transitions of obligations, and of formulas in negation normal form, in one table of diagrams.
+    """Computes the transitions of obligations and of formulas, in one table of decision diagrams.
 
-    Obligations are Boolean functions of variables, and a variable is an int. ``formulas[v]`` is the
-    formula of variable ``v``: an atom, or a formula whose outermost operator is temporal. A
-    variable can also be a state of a smaller automaton that was built for a part of the formula
-    (:meth:`new_state`). Then ``formulas[v]`` is None, and ``stands_for[v]`` is the obligation that
-    remains in this state.
+    The formulas must be in negation normal form. Obligations are Boolean functions of variables,
+    and a variable is an int. ``formulas[v]`` is the formula of variable ``v``: an atom, or a
+    formula whose outermost operator is temporal. A variable can also be a state of a smaller
+    automaton that was built for a part of the formula (:meth:`new_state`). Then ``formulas[v]`` is
+    None, and ``stands_for[v]`` is the obligation that remains in this state.
     """
 
     __slots__ = (
@@ -49,11 +49,11 @@ class Successors:
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
 
     def number_variables(self, formula: Formula) -> None:
-        """Give the temporal subformulas of a formula the next variables, in the order of the formula.
+        """Give the temporal subformulas of a formula the next free variables, in the order of the formula.
 
-        Variables of the same part are then next to each other, which keeps the diagrams small. With
-        this order, a conjunction of six formulas ``G(a -> F b)`` takes a third of the steps that it
-        takes without.
+        The variables of a subformula are then next to each other, which keeps the decision diagrams
+        small. With this order, the diagrams of a conjunction of six formulas ``G(a -> F b)`` take a
+        third of the steps that they take without it.
         """
         for part in formula.walk():
             if part.is_temporal:
@@ -94,7 +94,7 @@ class Successors:
         return result
 
     def variable(self, formula: Formula) -> int:
-        """Return the variable of an atom or a temporal formula."""
+        """Return the variable that stands for an atom or a temporal formula; a new formula gets the next free one."""
         number = self._variables.get(formula)
         if number is None:
             number = self._variables[formula] = len(self.formulas)
@@ -102,10 +102,9 @@ class Successors:
         return number
 
     def new_state(self, stands_for: int) -> int:
-        """Return a new obligation for a state of a machine that was built for a part of the formula.
+        """Return a new obligation for a state of a smaller automaton that was built for a part of the formula.
 
-        ``stands_for`` is the obligation that remains in this state. Call :meth:`define_state`
-        next.
+        ``stands_for`` is the obligation that remains in this state. Call :meth:`define_state` next.
         """
         variable = len(self.formulas)
         self.formulas.append(None)
@@ -119,7 +118,7 @@ class Successors:
     def of_obligation(self, obligation: int) -> int:
         """Return the transition of an obligation.
 
-        It is a node of a diagram that says, for each letter, what remains to be done.
+        It is a node of a decision diagram that says, for each letter, what remains to be done.
         """
         known = self._of_obligation
         if obligation in known:
@@ -141,8 +140,8 @@ class Successors:
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
         """Return the transition of an obligation, given the transitions of its two cofactors.
 
-        ``absent`` is the transition of the obligation with its first variable false, ``present``
-        with it true.
+        ``absent`` is the transition of the obligation with its first variable set to false,
+        ``present`` with this variable set to true.
         """
         diagrams = self.diagrams
         variable = diagrams.obligations.variable[obligation]
@@ -215,7 +214,7 @@ class Successors:
 
 
 def _weaker_subformulas(formula: Formula) -> list[Formula]:
-    """Return some of the temporal subformulas that a temporal formula implies."""
+    """Return some temporal subformulas that a temporal formula implies, such as ``F b`` for ``F(a & X F b)``."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "and" and (shorter := count_down(formula)):
         return [shorter]
@@ -228,7 +227,7 @@ def _weaker_subformulas(formula: Formula) -> list[Formula]:
 
 
 def _stronger_subformulas(formula: Formula) -> list[Formula]:
-    """Return some of the temporal subformulas that imply a temporal formula."""
+    """Return some temporal subformulas that imply a temporal formula, such as ``G b`` for ``a U G b``."""
     op, args = formula.op, formula.args
     if op in ("X", "N") and args[0].op == "or" and (shorter := count_down(formula)):
         return [shorter]

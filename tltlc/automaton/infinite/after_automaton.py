@@ -30,13 +30,13 @@ _TEMPORAL: Final = ("U", "W", "X")
 
 
 class ObligationAutomaton:
-    """Computes obligations over ``atoms``, and functions from the letter to what remains after it.
+    """Computes obligations over ``atoms``, and functions from the letter to what remains of an obligation after it.
 
-    These functions are in the table ``letters``. ``formulas[v]`` is the formula of variable ``v``
-    of the obligations: an atom, a formula with the outermost operator ``X``, ``U`` or ``W``, or a
-    rigid formula. Methods that build obligations raise
-    :class:`~tltlc.automaton.diagrams.OutOfSteps` if one becomes too large. Methods that build
-    functions of letters raise :class:`~tltlc.automaton.work.OutOfWork`.
+    These functions are decision diagrams in the table ``letters``. ``formulas[v]`` is the formula
+    of variable ``v`` of the obligations: an atom, a formula with the outermost operator ``X``,
+    ``U`` or ``W``, or a rigid formula. Methods that build obligations raise
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large. Methods that
+    build functions of letters raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, atoms: Sequence[str], letters: Diagrams[Any]) -> None:
@@ -101,7 +101,7 @@ class ObligationAutomaton:
         return number
 
     def after(self, obligation: int) -> int:
-        """Return a function of the letter: what remains of an obligation after the letter."""
+        """Return a decision diagram that maps each letter to what remains of an obligation after the letter."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
@@ -143,9 +143,9 @@ class ObligationAutomaton:
         return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
     def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return ``combine`` as a function that counts its different results.
+        """Return a function that calls ``combine`` and counts its different results.
 
-        It raises OutOfWork if there are more than the work budget can pay for.
+        The function raises OutOfWork if there are more results than the work budget can pay for.
         """
         reached: set[int] = set()
         most = self._most_reached
@@ -160,9 +160,7 @@ class ObligationAutomaton:
         return counted
 
     def of_formula(self, formula: Formula) -> int:
-        """Return a function of the letter: what remains of a formula after the letter, as an
-        obligation.
-        """
+        """Return a decision diagram that maps each letter to the obligation that remains of a formula after it."""
         step = self._of_formula.get(formula)
         if step is None:
             step = self._of_formula[formula] = self._expand(formula)
@@ -194,10 +192,11 @@ class ObligationAutomaton:
     # --- obligations as formulas ------------------------------------------------------------------
 
     def formula(self, obligation: int) -> Formula:
-        """Return a formula for an obligation.
+        """Return a formula that is equivalent to an obligation.
 
-        It is the smallest formula that :meth:`obligation` converted to this obligation so far. If
-        there is none, the formula is made from the diagram.
+        :meth:`obligation` may have converted several formulas to this obligation: the smallest of
+        them is returned. If there is none, the formula is made from the decision diagram of the
+        obligation.
         """
         known = self._sources.get(obligation)
         if known is None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
-    """Return the analysis of a Rabin automaton."""
+    """Return the goals, traps and verdicts of a Rabin automaton."""
     edges = [
         (state, target, pair_marks(marks))
         for state in range(len(automaton.steps))
@@ -26,7 +26,7 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 
 
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
-    """Return the analysis of an FSPA.
+    """Return the goals, traps and verdicts of an FSPA.
 
     Uses only the number of its states, its edges, and its Rabin pairs. The indices in the pairs
     must be valid.

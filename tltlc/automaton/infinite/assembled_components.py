@@ -1,4 +1,4 @@
-"""Join the automata of all components into one automaton, and merge equal states.
+"""Join the automata of all components of the after-automaton into one automaton, and merge equal states.
 
 States are equal if, on each letter, they have the same marks and lead to equal states.
 """
@@ -25,12 +25,12 @@ def join_components(
     initial: Place,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[Place, int]]:
-    """Return the automaton of all reachable states, and the number of each reachable state in it.
+    """Return the automaton that joins ``components``, and the number of each reachable state in it.
 
-    ``initial`` becomes state 0. An exit is an edge of a component to a label of another component;
-    ``entry`` maps this label to the state that the edge leads to. States keep the labels of the
-    components. A state whose label is in ``apart`` is not merged with a state whose label is not in
-    it.
+    The automaton has only the states that can be reached from ``initial``, which becomes state 0.
+    An exit is an edge of a component to a label of another component; ``entry`` maps this label to
+    the state that the edge leads to. States keep the labels of the components. A state whose label
+    is in ``apart`` is not merged with a state whose label is not in it.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)
@@ -48,10 +48,11 @@ def join_components(
 def _steps(
     letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
 ) -> dict[Place, int]:
-    """Return the steps of all components, with each exit replaced by the state in ``entry``.
+    """Return the step of each state of the components.
 
-    A step is a function from the letter to the next state and the marks of the edge, or to None if
-    ``exclusive`` rules the letter out.
+    The step is a function from the letter to the next state and the marks of the edge, or to None
+    if ``exclusive`` rules the letter out. An edge to a label of another component leads to the
+    state that ``entry`` has for this label.
     """
     steps: dict[Place, int] = {}
     for number, component in enumerate(components):
@@ -125,5 +126,5 @@ def _number_states(
 
 
 def _number_targets(letters: Diagrams[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
-    """Return a step with each target replaced by its number."""
+    """Return a step (see :func:`_steps`) with each target state replaced by its number."""
     return letters.map_leaves(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)

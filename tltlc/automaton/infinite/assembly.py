@@ -1,4 +1,4 @@
-"""Convert the steps of a Rabin automaton to the states, edges and pairs of an :class:`~tltlc.automaton.fspa.Fspa`."""
+"""Convert a Rabin automaton to the states, edges and pairs of an :class:`~tltlc.automaton.fspa.Fspa`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.logic.formula import Formula
 
 
 class TargetsAndGoals(Protocol):
-    """The part of :class:`~tltlc.automaton.infinite.analysis.Analysis` that the conversion needs."""
+    """The part of :class:`~tltlc.automaton.infinite.analysis.Analysis` that :func:`assemble` needs."""
 
     targets: dict[int, list[int]]
     goals: set[int]
@@ -76,7 +76,7 @@ def _edges(
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
 ) -> tuple[tuple[Edge, ...], tuple[Pair, ...]]:
-    """Return the edges, sorted by source, target and marks, and the Rabin pairs.
+    """Return the edges and the Rabin pairs of the Fspa; the edges are sorted by source, target and marks.
 
     Two edges may have the same source and target if they have different marks.
     """
@@ -103,10 +103,10 @@ def _edges(
 
 
 class _Leaves:
-    """Converts steps of a Rabin automaton to transitions of another table of diagrams.
+    """Converts the steps of a Rabin automaton to transitions in another table of decision diagrams.
 
-    A leaf of such a transition stores an index into ``values``. An entry of ``values`` is a target
-    and its marks.
+    A step is a function from the letter to a target and marks. A leaf of its transition stores an
+    index into ``values``, where each entry is a target and its marks.
     """
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class _Leaves:
         self._known: dict[int, int] = {}
 
     def transition(self, letters: Diagrams[Any], step: int, diagrams: TransitionDiagrams) -> int:
-        """Return the transition of a step, in the table ``diagrams``."""
+        """Return the transition in the table ``diagrams`` for a step, which is a node of the table ``letters``."""
         node = self._known.get(step)
         if node is None:
             if letters.variable[step] != LEAF:

@@ -1,7 +1,8 @@
 """Convert a strongly connected component of the after-automaton to an automaton with an acceptance condition.
 
-The states of the after-automaton are labels (obligations). A state of the new automaton has a label
-and, for each part of the formula, a memory: the state of a small automaton that observes the part.
+The states of the after-automaton are labels (obligations). The formula has parts, and a small
+automaton observes each part. A state of the new automaton has a label and, for each part, a memory:
+the state of the part's automaton.
 """
 
 from __future__ import annotations
@@ -105,10 +106,11 @@ def bottom_component(
 ) -> ComponentAutomaton:
     """Return an automaton with an acceptance condition for the component of the labels ``inside``.
 
-    It is a part of the product of the labels with the automata ``parts``. The product starts at the
-    label ``first`` with the initial memories. The part is its smallest strongly connected component
-    that no edge leaves, except to labels outside ``inside``. ``step_of`` returns, for a label, a
-    function from the letter to the next label.
+    The automata ``parts`` observe the parts of a formula, whose Boolean structure over its parts is
+    ``skeleton``. Take the product of the labels and these automata, beginning at the label
+    ``first`` and the initial memories. The result is the smallest strongly connected component of
+    this product that no edge leaves, except to labels outside ``inside``. ``step_of`` returns, for
+    a label, a function from the letter to the next label.
     """
     initial: State = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
@@ -125,10 +127,11 @@ def bottom_component(
 def explore(
     letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
 ) -> tuple[dict[State, int], list[State]]:
-    """Return the steps of all reachable states, breadth-first, and the states of a component.
+    """Return the steps of all reachable states, and the states of a bottom component.
 
-    The component is the smallest strongly connected one that no edge leaves, except to targets
-    ``("exit", label)``.
+    ``step_of`` returns the step of a state: a function from the letter to the next state and marks.
+    The states of the steps are in breadth-first order. The bottom component is the smallest
+    strongly connected component that no edge leaves, except to targets ``("exit", label)``.
     """
     steps: dict[State, int] = {}
     targets: dict[State, list[State]] = {}
@@ -187,7 +190,7 @@ def _step(
     state: State,
     parts: Sequence[LeafAutomaton],
 ) -> int:
-    """Return a function of the letter: the :data:`Leaf` after ``state``, a state of the product."""
+    """Return, for a state of the product, a function from the letter to the next state and marks (:data:`Leaf`)."""
 
     def start(label: int) -> Leaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)

@@ -66,13 +66,13 @@ def rabin(
     exclusive: Sequence[Sequence[int]] = (),
     work: int = DEFAULT_WORK,
 ) -> Rabin:
-    """Return the automaton of a formula over infinite traces.
+    """Return the deterministic Rabin automaton of a formula over infinite traces.
 
-    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the
-    formula. ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a
-    letter. Raises :class:`OutOfWork` after ``work`` steps,
-    :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large, and
-    :class:`~tltlc.automaton.guards.TooManyPrimes` if there are too many edges.
+    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the formula.
+    ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a letter.
+    Raises :class:`OutOfWork` after ``work`` steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` if
+    an obligation becomes too large, and :class:`~tltlc.automaton.guards.TooManyPrimes` if there are
+    too many edges.
     """
     normal = infinite_form(formula)
     return _Construction(normal, formula.atoms() if atoms is None else atoms, exclusive, work).automaton()
@@ -91,7 +91,7 @@ class _Construction:
         self._constrained: dict[tuple[int, int], int] = {}
 
     def automaton(self) -> Rabin:
-        """Return the automaton, with states of equal language merged if that makes it smaller."""
+        """Return the Rabin automaton, with states of equal language merged if that makes the automaton smaller."""
         first, state_of, depth = self._construct({})
         try:
             with self.work.at_most(_FOR_LANGUAGES):
@@ -105,10 +105,10 @@ class _Construction:
         return first
 
     def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
-        """Map each label to the label that represents its language.
+        """Map each label to one label that represents all labels with the same language.
 
-        Of the labels with the same language, it is one with the lowest ``depth`` (the position of
-        its component), and of these the shortest. ``state_of`` maps labels to states of
+        The representative has the lowest ``depth`` (the position of its component) of these labels,
+        and is the shortest of those with this depth. ``state_of`` maps labels to states of
         ``automaton``.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
@@ -163,7 +163,7 @@ class _Construction:
     # --- letters ----------------------------------------------------------------------------------
 
     def _step(self, label: int) -> int:
-        """Return a function from the letter to the next label.
+        """Return a decision diagram that maps each letter to the next label.
 
         Its value is ``IMPOSSIBLE`` for letters that ``exclusive`` rules out.
         """
@@ -233,7 +233,5 @@ class _Construction:
 
 
 def _key_function(chosen: Sequence[int]) -> Callable[[State], State]:
-    """Return the function that maps a state to its label and its entries at the indices
-    ``chosen``.
-    """
+    """Return a function that reduces a state to its label and its memories at the indices ``chosen``."""
     return lambda state: (state[0], *(state[index] for index in chosen))

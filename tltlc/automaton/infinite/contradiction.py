@@ -1,4 +1,4 @@
-"""Find the clauses of an unsatisfiable spec over infinite traces that contradict each other."""
+"""Decide whether clauses of a spec over infinite traces contradict each other."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _WORK: Final = 100_000
 
 
 def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether no infinite trace satisfies all of these clauses.
+    """Whether no infinite trace satisfies all of ``parts``, which are clauses of ``spec``.
 
-    Returns False as well if a proof takes more than ``_WORK`` steps.
+    Returns False as well if the decision takes too much work.
     """
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

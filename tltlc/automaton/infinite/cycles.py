@@ -28,7 +28,7 @@ LOOKS_PER_STEP: Final = 16
 
 @record
 class Node:
-    """A node of the tree.
+    """A node of an alternating cycle decomposition: a strongly connected set of edges, accepted or rejected.
 
     ``index`` numbers the nodes of a tree from 0. ``states`` are the sources and targets of
     ``edges``.
@@ -42,7 +42,7 @@ class Node:
 
 
 def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
-    """Return the tree of a strongly connected set of edges.
+    """Return the root of the alternating cycle decomposition of a strongly connected set of edges.
 
     A set is accepted if one of ``clauses`` accepts its marks. Children have the order of their
     first edges in ``edges``. Like all functions of this module, this one takes steps of ``work``

@@ -44,12 +44,15 @@ def is_pi_2(formula: Formula) -> bool:
 
 
 def delta_2(formula: Formula) -> Formula:
-    """Return the normalised formula; raises OutOfWork if it becomes too large."""
+    """Return an equivalent Boolean combination of the four kinds of formulas that this module describes.
+
+    Raises OutOfWork if the formula becomes too large.
+    """
     return _Normaliser().normal(formula)
 
 
 def delta_2_dually(formula: Formula) -> Formula:
-    """Return another normalised formula: the negation of the normalised negation.
+    """Return another normalised formula: normalise the negation of the formula, and negate the result.
 
     Raises OutOfWork if the formula becomes too large.
     """
@@ -67,7 +70,7 @@ class _Normaliser:
         self._flat: dict[Formula, Formula] = {}
 
     def normal(self, formula: Formula) -> Formula:
-        """Return the normalised formula."""
+        """Return an equivalent normalised formula; results are cached."""
         result = self._normal.get(formula)
         if result is None:
             self._spend()

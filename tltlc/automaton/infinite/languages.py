@@ -48,7 +48,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:
-    """Return, for each state, which of the random cycles it accepts. Raises OutOfWork."""
+    """Draw random cycles of letters, and return for each state which of them it accepts. Raises OutOfWork."""
     # A fixed seed, so that the same formula gives the same automaton.
     rng = Random(1)
 

@@ -35,10 +35,10 @@ class LeafAutomaton(Protocol):
     initial: Memory
 
     def step(self, memory: Memory) -> int:
-        """Return a function of the letter: the next memory, and whether the letter is marked."""
+        """Return a decision diagram that maps each letter to the next memory and to whether the letter is marked."""
 
     def final_value(self, memory: Memory) -> bool | None:
-        """Return True if the part holds whatever letters follow, False if it fails, None otherwise."""
+        """Return True if the part of the formula holds whatever letters follow, False if it fails, None otherwise."""
 
 
 class Breakpoint:
@@ -74,7 +74,7 @@ class Breakpoint:
         return self._after.obligation(_replace_outermost(formula, "W" if self.kind == "inf" else "U"))
 
     def step(self, memory: Memory) -> int:
-        """Return a function of the letter: the next memory, and whether the letter is marked."""
+        """Return a decision diagram that maps each letter to the next memory and to whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -128,7 +128,7 @@ class Recurrence:
         self._last: dict[int, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return a function of the letter: the next memory, and whether the letter is marked."""
+        """Return a decision diagram that maps each letter to the next memory and to whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters = self._after.letters
@@ -156,7 +156,7 @@ class Recurrence:
         return tuple(sorted(needed)), marked
 
     def final_value(self, memory: Memory) -> None:
-        """Return None: later letters always decide."""
+        """Return None, because later letters always decide whether the formula holds."""
 
 
 class RoundRobin:
@@ -176,7 +176,7 @@ class RoundRobin:
         self._steps: dict[Memory, int] = {}
 
     def step(self, memory: Memory) -> int:
-        """Return a function of the letter: the next memory, and whether the letter is marked."""
+        """Return a decision diagram that maps each letter to the next memory and to whether the letter is marked."""
         step = self._steps.get(memory)
         if step is None:
             letters, count = self._letters, len(self._parts)
@@ -200,4 +200,4 @@ class RoundRobin:
         return step
 
     def final_value(self, memory: Memory) -> None:
-        """Return None: later letters always decide."""
+        """Return None, because later letters always decide whether the formula holds."""

@@ -58,11 +58,12 @@ def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
 def clauses(
     skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
 ) -> list[MarkClause] | bool:
-    """Return the clauses of a skeleton: its formula holds on a run if the run meets one of them.
+    """Return conditions on marks: a run satisfies the formula of a skeleton if it meets one of them.
 
-    The mark of each part is its index in ``kinds``. ``values`` has True or False for a part whose
-    value is known, None for the others. Returns True or False if the formula is constant. Raises
-    OutOfWork if there are too many clauses.
+    A skeleton is the Boolean structure of a formula over its parts. The mark of each part is its
+    index in ``kinds``. ``values`` has True or False for a part whose value is known, None for the
+    others. Returns True or False if the formula is constant. Raises OutOfWork if there are too many
+    conditions.
     """
     result = _clauses(skeleton, kinds, values, work)
     if not result:

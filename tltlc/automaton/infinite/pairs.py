@@ -49,7 +49,7 @@ class RabinComponent:
 
 
 def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
-    """Return the component with Rabin pairs instead of clauses.
+    """Return the component with an acceptance condition of Rabin pairs instead of clauses.
 
     Of the automata that this module can build, it is the one with the fewest states, and then the
     fewest pairs. Raises OutOfWork.
@@ -94,8 +94,8 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with a Rabin pair for each clause.
 
-    A new state also stores, for each clause, which of its ``infs`` the run must take next. The
-    edge on which the run has taken all of them gets the ``inf`` mark of the pair.
+    A state of the result also stores, for each clause, which of its marks ``infs`` the run must
+    take next. The edge on which the run has taken all of them gets the ``inf`` mark of the pair.
     """
     orders = [sorted(clause.infs) for clause in component.accepts]
     first = next(iter(component.steps))
@@ -140,9 +140,10 @@ def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Edge]:
 
 
 class _Walks:
-    """Computes the positions of runs in the tree of a decomposition.
+    """Computes the positions of runs in the tree of an alternating cycle decomposition.
 
-    If ``one_at_a_time``, the position is in only one child of a rejected node too.
+    At an accepted node, the position is in one child. At a rejected node, it is in all children
+    that contain the state of the run, or in only one of them if ``one_at_a_time``.
     """
 
     def __init__(self, tree: Node, *, one_at_a_time: bool) -> None:
@@ -153,7 +154,7 @@ class _Walks:
         self.pairs = len(set(self.pair.values()))
 
     def _assign_pairs(self, tree: Node) -> None:
-        """Choose a Rabin pair for each accepted node; ``pair`` then maps the node's index to the number of the pair."""
+        """Choose a Rabin pair for each accepted node, and store its number in ``pair`` under the node's index."""
         taken: list[list[Node]] = []
         stack = [tree]
         while stack:
@@ -174,7 +175,7 @@ class _Walks:
                 self.pair[node.index] = free
 
     def begin(self, node: Node, state: State) -> Walk:
-        """Return the initial position below a node for a run in ``state``."""
+        """Return the initial position below a node of the tree for a run that is in ``state``."""
         places = [place for place, child in enumerate(node.children) if state in child.states]
         if not places:
             return ()
@@ -183,11 +184,11 @@ class _Walks:
         return tuple(self.begin(node.children[place], state) for place in places)
 
     def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
-        """Return the position below a node after an edge of the node.
+        """Return the position of a run below a node after the run takes an edge that the node contains.
 
-        ``walk`` is the position before. This method adds the indices of accepted nodes at the
-        position to two sets: to ``active`` if the node contains the edge, to ``marked`` if the
-        position moves on to the node's next child.
+        ``walk`` is the position before the edge. This method also adds indices of accepted nodes at
+        the position to two sets: to ``active`` if the node contains the edge, and to ``marked`` if,
+        in addition, no child at the position contains the edge.
         """
         source, target, _ = edge
         if node.accepted:

@@ -29,7 +29,7 @@ list does.
 
 
 def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClause]]:
-    """Return the clauses of two automata with ``pairs`` and ``others`` Rabin pairs.
+    """Return the acceptance conditions of two automata with ``pairs`` and ``others`` Rabin pairs, as clauses.
 
     The marks of the second automaton are numbered after the marks of the first.
     """
@@ -39,11 +39,12 @@ def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClau
 def product_leaves(
     letters: Diagrams[Any], pairs: int, is_over: Callable[[Any], bool]
 ) -> Callable[[int, int], list[Leaf]]:
-    """Return a function that maps the steps of two states to the successors of the two states in the product.
+    """Return a function that lists the successors of a pair of states in the product of two automata.
 
-    A step is a function from the letter to a target and marks. Each automaton has ``pairs`` Rabin
-    pairs. ``is_over`` returns True for the values of a step that have no target. On letters with
-    such a value, the product has no successor. These letters must be the same in both automata.
+    The function takes the steps of the two states. A step is a function from the letter to a target
+    and marks. Each automaton has ``pairs`` Rabin pairs. ``is_over`` returns True for the values of
+    a step that have no target. On letters with such a value, the product has no successor. These
+    letters must be the same in both automata.
     """
     memo: dict[tuple[int, int], int] = {}
 
@@ -62,10 +63,12 @@ def product_leaves(
 def separating_component(
     starts: Iterable[StatePair], leaves: Callable[[StatePair], Sequence[Leaf]], alternatives: Alternatives, work: Work
 ) -> Edges | None:
-    """Return a strongly connected set of edges of the product that meets one of ``alternatives``; None if no set does.
+    """Return a strongly connected set of edges that meets one of ``alternatives``; None if no set does.
 
-    The set can be reached from ``starts``. ``leaves`` returns the successors of a pair of states
-    and is called once for each pair. Raises OutOfWork.
+    The edges belong to a product of two automata, and can be reached from ``starts``. The set meets
+    an alternative if a clause of its first list accepts the marks of the set, and no clause of its
+    second list does. ``leaves`` returns the successors of a pair of states and is called once for
+    each pair. Raises OutOfWork.
     """
     known: dict[StatePair, Sequence[Leaf]] = {}
 
@@ -85,9 +88,9 @@ def separating_component(
 def _separating_part(
     edges: Sequence[Edge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
 ) -> Edges | None:
-    """Return a strongly connected subset of ``edges`` that separates the two automata; None if no subset does.
+    """Return a strongly connected subset of ``edges`` that separates two automata; None if no subset does.
 
-    A clause of ``accepting`` accepts its marks, and no clause of ``rejecting`` does.
+    A clause of ``accepting`` accepts the marks of the subset, and no clause of ``rejecting`` does.
     """
     for clause in accepting:
         # Removing edges is cheap; `parts` counts its own work.

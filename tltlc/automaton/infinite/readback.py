@@ -64,7 +64,7 @@ class NormalFormWriter:
         return self._done[plain]
 
     def _place_of(self, formula: Formula) -> int:
-        """Return the position of a formula in the source, or else the first position of its parts."""
+        """Return the position of a formula in the source formula, or else the first position of its parts."""
         place = self._place.get(formula)
         if place is None:
             place = self._place[formula] = min(map(self._place_of, formula.args), default=self._last)

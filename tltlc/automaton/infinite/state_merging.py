@@ -20,7 +20,7 @@ from tltlc.automaton.work import OutOfWork, Work
 def shrink(letters: Diagrams[Any], component: RabinComponent, work: Work, steps: int) -> RabinComponent:
     """Return the component without states that another state can replace.
 
-    After ``steps`` steps of work, the states that are left stay.
+    The search stops after ``steps`` steps of work, and keeps all states that are left then.
     """
     original = component
     try:
