@@ -25,11 +25,11 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 
 @record
 class Target:
-    """The description of a target.
+    """Describes a target, that is, a format or language that the compiler can write.
 
-    ``name`` is the name of its module, ``title`` its description in lists. ``endings`` are the
-    endings of its files' names. ``known_as`` are names, in lower case, that people may try instead
-    of ``name``: the error for them suggests this target.
+    ``name`` is the name of the module of the target, and ``title`` its description in lists.
+    ``endings`` are the endings of the names of its files. ``known_as`` are names, in lower case,
+    that people may try instead of ``name``: the error for them suggests this target.
     """
 
     name: str
@@ -39,7 +39,7 @@ class Target:
 
 
 def _ignore(_: Diagnostic) -> None:
-    """Drop a diagnostic."""
+    """Do nothing with a diagnostic; this is the default of ``Options.report``."""
 
 
 @record
@@ -57,7 +57,7 @@ class Options:
 
 
 def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:
-    """Return the files of one target.
+    """Return the files that the target called ``name`` writes for an automaton, without writing them to disk.
 
     Raises:
         TltlError: TLT0710 there is no such target; or an error of the target itself.

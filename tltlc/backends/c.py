@@ -118,7 +118,7 @@ step function.
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.h``."""
+    """Return the C header ``NAME_monitor.h``, where NAME is the name of the automaton."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
@@ -137,17 +137,17 @@ class _C(Printer):
         return super().comment(re.sub(r"[^\x00-\x7f]", _escape, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
+        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index].name) if index >= 0 else 'NULL'};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a function.
+        """Return the text of a call of a numeric function.
 
-        A function that has no value for some arguments also gets the monitor, and sets its
-        ``problem`` for these arguments.
+        Some functions, such as the division, have no value for some arguments. They also get the
+        monitor as an argument, and set its field ``problem`` for these arguments.
         """
         if function in ("abs", "tanh"):
             return super().call({"abs": "fabs"}.get(function, function), arguments)
@@ -164,7 +164,7 @@ class _Source:
         self._printer = _C(fspa.name, fspa.atoms)
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of the header file."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -252,11 +252,11 @@ class _Source:
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
 
     def _refusal(self, problem: str, index: int) -> list[str]:
-        """Return the lines that refuse the sample: they record the problem and return false.
+        """Return the C lines that refuse a sample or params: they record the problem and return false.
 
         ``problem`` is the name of the problem in C, and ``index`` the index of the param, atom or
-        group that has it. The ``return`` is not inside the function that is called, so that
-        compilers see that the step ends here.
+        group that has it. The ``return`` is among these lines, and not inside the function that
+        records the problem, so that compilers see that the step ends here.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
@@ -273,7 +273,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return the body of a function that sets the signal with a given index, case by case."""
+        """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
         if not self._fspa.signals:
             return ["(void)sample, (void)signal, (void)value;"]
         lines = ["switch (signal) {"]
@@ -304,7 +304,7 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
+        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
 
         If ``state`` is None, it converts the bool signals that every step reads.
         """
@@ -356,7 +356,7 @@ class _Source:
         return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         program_ = self._program
         places = program_.computed_in(None)
         lines = [line for index in places for line in self._value(index)]
@@ -378,7 +378,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
@@ -388,7 +388,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition, with a case for each state."""
+        """Return the code that finds the next state of the automaton, with a case for each current state."""
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
@@ -444,7 +444,7 @@ def _octal(character: str) -> str:
 
 
 def _wrapped(line: str) -> list[str]:
-    """Return the line of a long test, broken into several lines."""
+    """Break the first line of a long ``if`` into lines of about 100 characters."""
     return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
 
 

@@ -62,7 +62,10 @@ _TEMPLATE = """
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs`` for Unity."""
+    """Return the monitor ``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs``, a component for Unity.
+
+    NAME is the name of the automaton.
+    """
     monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
     return {monitor: _Source(fspa, monitor).text(), behaviour: fill_template("behaviour.cs.txt", {"p": fspa.name})}
 
@@ -89,7 +92,7 @@ class _CSharp(Printer):
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a method of the monitor or of the library."""
+        """Return the text of a call of a numeric function: of the monitor, or of C#'s ``Math``."""
         return super().call(_FUNCTIONS[function], arguments)
 
 
@@ -102,7 +105,7 @@ class _Source:
         self._printer = _CSharp()
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of ``NAME_monitor.cs``."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -151,7 +154,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return the body of a function that sets the signal with a given index, case by case."""
+        """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
@@ -191,14 +194,14 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
+        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
 
         If ``state`` is None, it converts the bool signals that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         lines: list[str] = []
         range_checks: list[str] = []
         for index in self._program.computed_in(None):
@@ -217,7 +220,7 @@ class _Source:
         return (CommentLine(program_.remarks[index]), *with_declaration(program_.atoms[index], program_.values[index]))
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -227,7 +230,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition, with a case for each state."""
+        """Return the code that finds the next state of the automaton, with a case for each current state."""
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
@@ -242,7 +245,7 @@ class _Source:
         return [*lines, "}"]
 
     def _values_only_in(self, state: int) -> list[Statement]:
-        """Return the statements for the atoms that only this state reads."""
+        """Return the statements that compute the atoms that only the given state reads."""
         return [statement for index in self._program.computed_in(state) for statement in self._value(index)]
 
     def _judge(self) -> list[str]:

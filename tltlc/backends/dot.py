@@ -79,7 +79,7 @@ EDGE = {"color": "#64748b", "arrowsize": "0.75", "fontname": FONT, "fontsize": "
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.dot``."""
+    """Return the file ``NAME.dot`` with the whole automaton, where NAME is the name of the automaton."""
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
@@ -113,7 +113,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
-    """Return the title: the name of the spec, its documentation, and a legend of the marks in the drawing."""
+    """Return the title of the graph: the name of the spec, its documentation, and a legend of the marks."""
     legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrap_text(note, TITLE_WIDTH)]
     lines = [f"<B>{escape_html(fspa.name)}</B>"]
     if fspa.doc.strip():
@@ -129,9 +129,9 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Draw a state with its ``text``, or only with its number unless ``full``.
+    """Add a state to the graph ``drawn``, with its ``text``, or only with its number unless ``full``.
 
-    If ``run`` has several states, they are folded: draw them as one state with a dashed outline.
+    If ``run`` has several states, they are folded: they become one state with a dashed outline.
     """
     state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
@@ -165,10 +165,10 @@ def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[s
 
 
 def _edge_style(source: State, target: State) -> dict[str, str]:
-    """Return the style of an edge.
+    """Return the Graphviz attributes of an edge that determine its style.
 
-    Edges to a state with a smaller distance are bold and straight. Edges into a trap are pale red
-    and may bend.
+    Edges to a state with a smaller distance are bold and straight. Edges that lead from a state
+    that is no trap into a trap are pale red and may bend.
     """
     if source.id == target.id:
         # The only edge that leaves a satisfied or violated state is its loop: draw it on the right, where no edge

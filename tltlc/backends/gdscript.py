@@ -20,5 +20,8 @@ DIALECT = Dialect(
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    """Return the monitor ``NAME_monitor.gd``, and ``NAME_monitor_main.gd``, which runs it as a program.
+
+    NAME is the name of the automaton.
+    """
     return files(fspa, DIALECT)

@@ -33,7 +33,7 @@ ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @all
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.hoa``.
+    """Return the HOA file ``NAME.hoa``, where NAME is the name of the automaton.
 
     Formulas are in ASCII notation, and atoms are numbered as in the artefact.
 
@@ -49,7 +49,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
-    """Yield the lines before the body.
+    """Yield the header lines of a HOA file, which come before its body.
 
     ``clashes`` are the pairs of atoms, by index, that never hold at once.
     """
@@ -102,7 +102,7 @@ def _body(fspa: Fspa) -> Iterator[str]:
 
 
 class _EdgeLabels:
-    """Converts guards to labels of the format: expressions over the numbers of atoms.
+    """Converts guards to edge labels of a HOA file, which are expressions over the numbers of atoms.
 
     A label is built from the prime implicants of the guard, since they define the guard; the
     guard's text is only for readers. With exclusive atoms, a label is false on letters that cannot

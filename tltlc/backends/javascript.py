@@ -54,7 +54,10 @@ _RESERVED = """
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.mjs`` and ``NAME_monitor.d.mts``."""
+    """Return the module ``NAME_monitor.mjs`` and its TypeScript types ``NAME_monitor.d.mts``.
+
+    NAME is the name of the automaton.
+    """
     module, declarations = (f"{fspa.name}{ending}" for ending in TARGET.endings)
     source = _Source(fspa, module, declarations)
     return {module: source.module(), declarations: source.declarations()}
@@ -64,8 +67,8 @@ class _JavaScript(Printer):
     """Prints a program in JavaScript.
 
     ``atoms`` are the names of the atoms in the spec. Functions in ``built_in`` are functions of
-    ``Math``. All others are in the template: as methods of the monitor if they have no value for
-    some arguments, and as functions otherwise.
+    ``Math``. All others are in the template of the monitor: as methods of the monitor if they have
+    no value for some arguments, and as functions otherwise.
     """
 
     INDENT = "  "
@@ -80,22 +83,26 @@ class _JavaScript(Printer):
         return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value)};"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
+        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'null'};"
         return super().assignment(statement)
 
     def name(self, name: str) -> str:
-        """Return the name of a variable; the number ``steps`` also serves as the real ``steps_real``."""
+        """Return the name of a variable in JavaScript.
+
+        For ``steps_real``, the number of steps as a real number, this is ``steps``: JavaScript has
+        one type for all numbers.
+        """
         return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def real(self, value: float) -> str:
-        """Return a number; whole numbers have no decimal point."""
+        """Return the literal of a number; whole numbers have no decimal point."""
         return _number(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a numeric function."""
+        """Return the text of a call of a numeric function: of ``Math``, of the monitor, or of the template."""
         if function in self._built_in:
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
@@ -121,7 +128,7 @@ class _Source:
         self._moves = _JavaScript(names, ("min", "max"))
 
     def module(self) -> str:
-        """Return the text of the module."""
+        """Return the text of ``NAME_monitor.mjs``, the module with the monitor."""
         fspa = self._fspa
         program_ = self._program
         with recursion_room():
@@ -153,7 +160,7 @@ class _Source:
         return fill_template("monitor.mjs.txt", places, present)
 
     def declarations(self) -> str:
-        """Return the text of the file with the types."""
+        """Return the text of ``NAME_monitor.d.mts``, the TypeScript types of the module."""
         fspa = self._fspa
         signals = [
             (
@@ -202,7 +209,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         lines = self._values(None)
         for index, (name, in_range) in enumerate(zip(self._program.atoms, self._program.always_in_range, strict=True)):
             if not in_range:
@@ -210,7 +217,7 @@ class _Source:
         return lines
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code that computes the atoms that only this state needs.
+        """Return the code that computes the values of the atoms that only the given state needs.
 
         If ``state`` is None, it computes the atoms that every step needs.
         """
@@ -230,7 +237,7 @@ class _Source:
         ]
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -245,7 +252,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition, with a case for each state."""
+        """Return the code that finds the next state of the automaton, with a case for each current state."""
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
@@ -318,7 +325,7 @@ def _in_range(name: str, low: float | None, high: float | None) -> str:
 
 
 def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
-    """Return the lines of ``if (A && B) body``, with ``word`` as the operator between the tests."""
+    """Return the lines of an ``if`` that runs ``body``; ``word`` is the operator between its ``tests``."""
     head = f"if ({f' {word} '.join(tests)})"
     if len(head) + len(body) < _LONGEST:
         return [f"{head} {body}"]

@@ -15,7 +15,7 @@ TARGET = Target("json", "the automaton as JSON, for every tool that loads one", 
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.fspa.json``.
+    """Return the artefact ``NAME.fspa.json``, where NAME is the name of the automaton.
 
     Raises:
         TltlError: TLT0004 the file would be too large to be read again; TLT0006 it would have too

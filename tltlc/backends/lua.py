@@ -65,7 +65,7 @@ _OWN = """
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.lua``."""
+    """Return the module ``NAME_monitor.lua``, where NAME is the name of the automaton."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
@@ -73,9 +73,9 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _Lua(Printer):
     """Prints a program in Lua.
 
-    ``fields`` maps the variables that are fields of tables to the text of the field; all other
-    variables are local. ``parts`` collects the lines of functions that replace blocks nested too
-    deep; these functions use only fields.
+    ``fields`` maps the variables that are fields of tables to the text that accesses the field; all
+    other variables are local. ``parts`` collects the lines of functions that replace blocks nested
+    too deep; these functions use only fields.
     """
 
     INDENT = "  "
@@ -93,7 +93,11 @@ class _Lua(Printer):
         self.parts: list[str] = []
 
     def name(self, name: str) -> str:
-        """Return the name of a variable; the number ``steps`` also serves as the real ``steps_real``."""
+        """Return the name of a variable in Lua.
+
+        For ``steps_real``, the number of steps as a real number, this is ``steps``: Lua converts
+        whole numbers itself.
+        """
         return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
@@ -112,7 +116,7 @@ class _Lua(Printer):
         return f"{local}{self.name(statement.name)}{value}"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; ``limiting`` gets the name of an atom instead of its index."""
+        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'nil'}"
@@ -177,7 +181,7 @@ class _Source:
         self._printer = _Lua(fields if self._variables_are_fields else {}, self._names)
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of ``NAME_monitor.lua``."""
         fspa, program_ = self._fspa, self._program
         functions = functions_called(statement for part in (*program_.values, *program_.states) for statement in part)
         with recursion_room():
@@ -238,7 +242,7 @@ class _Source:
     # --- the functions of states ------------------------------------------------------------------
 
     def _result_names(self) -> str:
-        """Return the names of the values that the functions of states return, separated by commas.
+        """Return the names of the values that the function of each state returns, separated by commas.
 
         Progress is one of them only if the spec is judged at its goal; otherwise it does not depend
         on the edge taken.
@@ -247,10 +251,10 @@ class _Source:
         return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
 
     def _parameters(self) -> str:
-        """Return the parameters of the functions of states, separated by commas.
+        """Return the parameters that the function of each state has, separated by commas.
 
-        They are the signals, the params and the atoms computed at every step, as far as the
-        functions read them.
+        They are the signals, the params and the atoms computed at every step, as far as any of
+        these functions reads them. If variables are fields of tables, they are the tables instead.
         """
         if self._variables_are_fields:
             return "signal, param, value"
@@ -261,7 +265,7 @@ class _Source:
         return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
 
     def _moves(self) -> list[str]:
-        """Return the source of a function for each state; nothing if there are few states."""
+        """Return the source of a function for each state; nothing if the automaton has few states."""
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
             lines += ["", *self._printer.comment(str(state.label))]
@@ -270,7 +274,7 @@ class _Source:
         return lines
 
     def _branch(self, state: int) -> list[str]:
-        """Return the code of a state: it computes the atoms that only this state needs, and the transition."""
+        """Return the code of a state: it computes the atoms that only this state needs, and finds the next state."""
         lines: list[str] = []
         for index in self._program.computed_in(state):
             # An empty line separates the comments.
@@ -285,14 +289,14 @@ class _Source:
         return snippets.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
-        """Return the declarations of the variable ``problem``, and of the tables that have variables as fields."""
+        """Return the Lua code that declares ``problem`` and, if variables are fields of tables, the tables."""
         lines = ["local problem"] if self._fspa.signals or not all(self._program.always_in_range) else []
         if self._variables_are_fields:
             lines.append("local signal, param, value = self._signal, self.params, self._value")
         return lines
 
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads signals, clamped to their ranges, and params into variables."""
         lines: list[str] = []
         if any(signal.type != "bool" for signal in self._fspa.signals):
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
@@ -313,7 +317,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         lines: list[str] = []
         range_checks: list[str] = []
         failing = False
@@ -342,7 +346,7 @@ class _Source:
         return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))]
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
@@ -352,7 +356,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition: a case for each state, or a call of the state's function."""
+        """Return the code that finds the next state: a case for each state, or a call of the state's function."""
         if not self._few_states:
             return [f"local {self._result_names()} = MOVES[self.state]({self._parameters()})"]
         lines = ["local state = self.state", f"local {self._result_names()}"]
@@ -384,7 +388,7 @@ class _Source:
 
 
 def _declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
-    """Yield every declaration, including those in branches."""
+    """Yield every declaration among the statements, including those in branches."""
     for statement in statements:
         if isinstance(statement, Declare):
             yield statement
@@ -394,7 +398,7 @@ def _declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
 
 
 def _depth(statements: Iterable[Statement]) -> int:
-    """Return how deep ``if`` statements are nested."""
+    """Return how deep ``if`` statements are nested; 0 if there are none."""
     bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
     return 1 + max(map(_depth, bodies)) if bodies else 0
 
@@ -407,7 +411,7 @@ def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
 
 
 def _field(name: str, type_: str, doc: str) -> str:
-    """Return a field annotation of a class, as language servers read it."""
+    """Return a comment ``---@field``, from which language servers read the type of a field of a class."""
     description = f" {printable_line(doc)}" if doc else ""
     return f"---@field {printable_line(_key(name))} {type_}{description}"
 
@@ -444,7 +448,7 @@ def _escape(character: str) -> str:
 
 
 def _key(name: str) -> str:
-    """Return a key as it is written in a table."""
+    """Return a key as the constructor of a Lua table writes it: ``health`` or ``["near(s1)"]``."""
     plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _KEYWORDS
     return name if plain else f"[{_string(name)}]"
 
@@ -456,5 +460,5 @@ def _index(name: str) -> str:
 
 
 def _list(items: Sequence[str]) -> str:
-    """Return the text of a list, with a line for each item."""
+    """Return the text of a list in Lua, with a line for each item."""
     return "{\n" + "".join(f"{_Lua.INDENT}{item},\n" for item in items) + "}" if items else "{}"

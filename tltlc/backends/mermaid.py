@@ -36,7 +36,7 @@ _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.mmd``.
+    """Return the file ``NAME.mmd``, where NAME is the name of the automaton.
 
     A state shows its label and distance, and the colours of its verdict. An arrow shows guards;
     over infinite traces, each guard is followed by the sets of Rabin pairs that contain its edge.
@@ -58,7 +58,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
-    """Return the line of a drawn state.
+    """Return the line that declares a drawn state in Mermaid.
 
     ``run`` has this state, or all states that are folded into it.
     """

@@ -59,7 +59,7 @@ INDENT: Final = Printer.INDENT
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.py``."""
+    """Return the module ``NAME_monitor.py``, where NAME is the name of the automaton."""
     name = f"{fspa.name}_monitor.py"
     return {name: _Source(fspa, name).text()}
 
@@ -88,11 +88,15 @@ class _Python(Printer):
         return f"{statement.name} = {self.text(statement.value)}"
 
     def name(self, name: str) -> str:
-        """Return the name of a variable; the int ``steps`` also serves as the real ``steps_real``."""
+        """Return the name of a variable in Python.
+
+        For ``steps_real``, the number of steps as a real number, this is the int ``steps``: Python
+        converts it itself.
+        """
         return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment; ``limiting`` gets the name of an atom or None instead of an index."""
+        """Return the text of an assignment; ``limiting`` gets the name of an atom or None instead of an index."""
         return f"{statement.name} = {self.result(statement)}"
 
     def result(self, statement: Assign) -> str:
@@ -128,7 +132,7 @@ class _Python(Printer):
         return super()._text_and_binding(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a function of Python."""
+        """Return the text of a call of a numeric function in Python."""
         return super().call("pow" if function == "power" else function, arguments)
 
 
@@ -154,7 +158,7 @@ class _Source:
         self._printer = _Python([atom.name for atom in fspa.atoms])
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of ``NAME_monitor.py``."""
         fspa, at_goal = self._fspa, self._fspa.judge == "goal"
         with recursion_room():
             step = _Python.block(self._step(), depth=2)
@@ -192,11 +196,11 @@ class _Source:
 
     @property
     def _result(self) -> str:
-        """Return the return type of the functions of states."""
+        """The return type of the functions of states, as text."""
         return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
 
     def _function(self, state: int) -> str:
-        """Return the source of a state's function, which finds the edge to take and its results."""
+        """Return the source of the function of a state, which finds the edge to take and its results."""
         lines = call_lines(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
         lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
         body = split_deep_values(self._program.states[state], self._names)
@@ -275,7 +279,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._program.atoms[atom] for atom in group]
@@ -283,7 +287,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition, a call of the state's function."""
+        """Return the code that finds the next state: a call of the current state's function."""
         return call_lines(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
 
     def _judge(self) -> list[str]:

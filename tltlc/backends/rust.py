@@ -48,7 +48,7 @@ It needs `core`, and {names} of `std`.  Without `std`, build with `--cfg tltl_no
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME_monitor.rs``."""
+    """Return the module ``NAME_monitor.rs``, where NAME is the name of the automaton."""
     name = f"{fspa.name}{TARGET.endings[0]}"
     return {name: _Source(fspa, name).text()}
 
@@ -56,8 +56,8 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _Rust(Printer):
     """Prints a program in Rust.
 
-    ``atom`` is the index of the atom whose value is being printed. Calls of functions that have no
-    value for some arguments pass it on, for the error.
+    ``atom`` is the index of the atom whose value is being printed. Functions that have no value for
+    some arguments get it as an argument, to name the atom in the error.
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
@@ -84,7 +84,7 @@ class _Rust(Printer):
         return f"if {test} {{" if first else f"}} else if {test} {{"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a function.
+        """Return the text of a call of a numeric function.
 
         If the function has no value for its arguments, the ``?`` after the call ends the step.
         """
@@ -102,7 +102,7 @@ class _Source:
         self._printer = _Rust()
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of ``NAME_monitor.rs``."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
@@ -173,7 +173,7 @@ class _Source:
         return lines
 
     def _give(self) -> list[str]:
-        """Return the body of a function that sets the signal with a given index, case by case."""
+        """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
         if not self._fspa.signals:
             return []
         lines = ["match signal {"]
@@ -206,7 +206,7 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
+        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
 
         If ``state`` is None, it converts the bool signals that every step reads.
         """
@@ -214,7 +214,7 @@ class _Source:
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         program_ = self._program
         used = variables_read(statement for state in program_.states for statement in state)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
@@ -234,12 +234,12 @@ class _Source:
         return self._printer.lines((CommentLine(program_.remarks[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
-        """Return the code for the atoms that only this state needs, and for the bool signals that they read."""
+        """Return the code for the atoms that only the given state needs, and for the bool signals that they read."""
         lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
         return [*lines, *(line for index in self._program.computed_in(state) for line in self._value(index, depth=2))]
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
@@ -248,7 +248,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code of the transition, with a case for each state."""
+        """Return the code that finds the next state of the automaton, with a case for each current state."""
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []

@@ -10,7 +10,9 @@ TARGET = Target("svg", "a picture that scales", (".svg",))
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return ``NAME.svg``, or ``NAME.dot`` if the picture cannot be drawn in time.
+    """Return the picture ``NAME.svg``, or ``NAME.dot`` if the picture cannot be drawn in time.
+
+    NAME is the name of the automaton.
 
     Raises:
         TltlError: TLT0730 pygraphviz is not installed, TLT0712 the layout itself failed.

@@ -45,11 +45,12 @@ def fold_ladders(fspa: Fspa) -> Drawing:
 
 
 def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
-    """Return the edge with a target that is drawn.
+    """Return an edge with its target replaced by a state that is drawn.
 
-    An edge to an inner rung leads to the first inner rung, and an edge along a run to the last
-    rung. ``first`` maps each inner state of a run to the first inner state of the run, and ``last``
-    maps the first inner state to the last state.
+    A target in an inner rung is replaced by the state of its run in the first inner rung. If the
+    edge then leads from this state to itself, it is redirected to the last state of the run.
+    ``first`` maps each inner state of a run to the first inner state of the run, and ``last`` maps
+    the first inner state to the last state.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
@@ -101,7 +102,8 @@ def _ladders_from(
 def _next_rung(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) -> dict[int, int] | None:
     """Map each state of the rung ``following`` to the next state of its run.
 
-    Returns None if the two rungs do not belong to a ladder.
+    The map also has the first states of runs that begin at ``following``. Returns None if the two
+    rungs do not belong to a ladder.
     """
     successors: dict[int, int] = {}
     for state, after in zip(rung, following, strict=True):

@@ -28,7 +28,7 @@ class EdgeLabel(NamedTuple):
 
 @record
 class DrawnEdge:
-    """An edge of a drawing, between the numbers of two states."""
+    """An edge of a drawing; ``source`` and ``target`` are the numbers of its states."""
 
     source: int
     target: int
@@ -39,7 +39,8 @@ class DrawnEdge:
 class Drawing:
     """The states and edges that are drawn, in the automaton's order.
 
-    Of the inner states of a folded run, only the first is in ``states``, and its edge leads to the
+    A folded run is a path of states that differ only in a count; its inner states are all except
+    the first and the last. Only the first inner state is in ``states``, and its edge leads to the
     last state of the run. ``folded`` maps the number of this inner state to all inner states of the
     run.
     """

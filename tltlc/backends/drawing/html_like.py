@@ -17,7 +17,7 @@ LONGEST_TEXT = 2000
 
 
 def table(rows: Iterable[str], cell: str = CENTRED, spacing: int = 0) -> str:
-    """Return a table with one column, and a row for each text.
+    """Return an HTML-like table for Graphviz with one column, and a row for each text.
 
     Lines in a single cell would be too close to each other if their fonts differ. ``cell`` is the
     tag that begins each cell.

@@ -41,7 +41,7 @@ words with which a message says what is left out.
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
-    """Return ``NAME.FORMAT``, with the most detail that can be drawn in time.
+    """Return the picture ``NAME.FORMAT`` of the automaton NAME, with the most detail that can be drawn in time.
 
     Long runs of states that differ only in a count are folded. There are three attempts:
 

@@ -64,9 +64,9 @@ def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """Join words that must be on one line to pieces of up to ``longest`` characters.
+    """Join words that must stay on one line into pieces of up to ``longest`` characters.
 
-    A word that must follow an operator on its line is joined to it even beyond ``longest``.
+    The word after an infix operator is joined to the operator even if the piece becomes longer.
     """
     pieces = [words[0]]
     for before, word in pairwise(words):

@@ -15,11 +15,11 @@ _LARGEST_DIVISOR: Final = 10_000
 
 
 def number(value: float) -> str:
-    """Return an expression whose value in the engine is exactly the given nonnegative number.
+    """Return an expression whose value in Godot is exactly the given nonnegative number.
 
-    The engine computes a literal from an integer and a power of ten. The result is exact only if
-    doubles represent both exactly, which is usual up to 15 digits. For other numbers, the
-    expression is a quotient, or an integer times a power of two.
+    Godot computes a literal from an integer and a power of ten. The result is exact only if doubles
+    represent both exactly, which is usual up to 15 digits. For other numbers, the expression is a
+    quotient, or an integer times a power of two.
     """
     literal = repr(value)
     _, digits, exponent = Decimal(literal).as_tuple()

@@ -18,8 +18,8 @@ class Gd(Printer):
     """Prints a program in GDScript.
 
     ``names`` maps variables of the program to their names in the script. ``functions`` maps
-    functions of the program to functions of the engine; all other functions are in the script.
-    Functions in ``swapped`` get their arguments in reverse order.
+    functions of the program to functions of Godot; all other functions are in the script. Functions
+    in ``swapped`` get their arguments in reverse order.
     """
 
     INDENT: ClassVar[str] = "\t"
@@ -33,7 +33,7 @@ class Gd(Printer):
         self._names, self._functions, self._swapped = names, functions, swapped
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration.
+        """Return the text of the declaration of a variable.
 
         A variable without a value gets 0 or false, because GDScript needs one.
         """
@@ -41,7 +41,7 @@ class Gd(Printer):
         return f"var {self.name(statement.name)}: {self.TYPES[statement.type]} = {value}"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment."""
+        """Return the text of an assignment in GDScript."""
         return f"{self.name(statement.name)} = {self.text(statement.value, _CHOICE)}"
 
     def head(self, test: str, *, first: bool) -> str:
@@ -57,7 +57,7 @@ class Gd(Printer):
         return []
 
     def nothing(self, depth: int) -> list[str]:
-        """Return ``pass``, because the body of a branch cannot be empty."""
+        """Return the body of a branch without statements: ``pass``, because GDScript allows no empty body."""
         return [f"{self.INDENT * depth}pass"]
 
     def name(self, name: str) -> str:
@@ -65,7 +65,7 @@ class Gd(Printer):
         return self._names.get(name, name)
 
     def real(self, value: float) -> str:
-        """Return an expression whose value in the engine is exactly this number."""
+        """Return an expression whose value in Godot is exactly this number."""
         return number(value)
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:
@@ -82,11 +82,11 @@ class Gd(Printer):
         return super()._text_and_binding(node)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a function of the engine or of the script."""
+        """Return the text of a call of a numeric function of Godot or of the script."""
         ordered = list(reversed(arguments)) if function in self._swapped else arguments
         return super().call(self._functions.get(function, f"_{function}"), ordered)
 
 
 def _is_simple(node: Expression) -> bool:
-    """Whether an expression is a variable, a number or the negative of one, which may be computed twice."""
+    """Whether an expression is a variable, a number or the negative of one, and so may be computed twice."""
     return isinstance(node.operand if isinstance(node, Negate) else node, (Variable, Real))

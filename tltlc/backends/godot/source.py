@@ -51,14 +51,14 @@ unchanged.
 
 @record
 class Dialect:
-    """How a version of the engine differs from other versions.
+    """How a version of Godot differs from other versions.
 
     ``version`` is the name of the version in templates, and ``title`` its name for readers.
-    ``base`` is the engine's class of reference-counted objects. ``functions`` maps functions of a
-    program to functions of the engine with exactly the same results. Those in ``swapped`` get their
+    ``base`` is Godot's class of reference-counted objects. ``functions`` maps functions of a
+    program to functions of Godot with exactly the same results. Those in ``swapped`` get their
     arguments in reverse order, so that of equal values (0 and -0) they return the first. ``typed``
-    says whether the language has types for arrays with elements of a type and for enums, and
-    ``wide`` whether strings have escapes for characters above U+FFFF.
+    says whether GDScript has typed arrays and enum types, and ``wide`` whether its strings have
+    escapes for characters above U+FFFF.
     """
 
     version: str
@@ -70,7 +70,7 @@ class Dialect:
     wide: bool
 
     def types(self) -> dict[str, str]:
-        """Return, for each type that templates name, the type in this version."""
+        """Map each name of a type in the templates to the type in this version of Godot."""
         arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
         arrays["verdict_array"] = "Verdict"
         types = {name: f"Array[{element}]" if self.typed else "Array" for name, element in arrays.items()}
@@ -79,7 +79,10 @@ class Dialect:
 
 
 def files(fspa: Fspa, dialect: Dialect) -> Files:
-    """Return ``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    """Return the monitor ``NAME_monitor.gd``, and ``NAME_monitor_main.gd``, which runs it as a program.
+
+    NAME is the name of the automaton.
+    """
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
     places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
     return {
@@ -102,7 +105,7 @@ class _Source:
         self._atoms = [self._printer.name(name) for name in program_.atoms]
 
     def text(self) -> str:
-        """Return the text of the file."""
+        """Return the text of ``NAME_monitor.gd``."""
         fspa, program_ = self._fspa, self._program
         failing = program_.functions & FAILING
         present = [*failing, *(["note"] if failing else [])]
@@ -207,7 +210,7 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts to numbers (0 or 1) the bool signals that only this state reads.
+        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
 
         If ``state`` is None, it converts the bool signals that every step reads.
         """
@@ -218,7 +221,7 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms needed at every step."""
+        """Return the code that computes the values of the atoms that every step needs."""
         lines = self._values(None)
         unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.always_in_range[index]]
         for index, name in unsure:
@@ -226,7 +229,7 @@ class _Source:
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code that computes the atoms that only this state needs.
+        """Return the code that computes the values of the atoms that only the given state needs.
 
         If ``state`` is None, it computes the atoms that every step needs.
         """
@@ -242,7 +245,7 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return the code that refuses a sample at which exclusive atoms hold together."""
+        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
@@ -252,7 +255,7 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return code for the transition: a chain of tests, which is faster than ``match``."""
+        """Return the code that finds the next state: a chain of tests, which is faster than ``match``."""
         lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
