@@ -27,7 +27,7 @@ class OldNames:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the import spec of the module; None if ``fullname`` is not an old name."""
+        """Return the import spec of the module ``fullname``; None if this is not an old name."""
         if fullname not in self._new_names:
             return None
         from importlib.machinery import ModuleSpec
@@ -42,7 +42,7 @@ class _Loader:
         self._new_name = new_name
 
     def create_module(self, spec: ModuleSpec) -> None:
-        """Let Python create the module."""
+        """Return None, so that Python creates the module in the usual way."""
 
     def exec_module(self, module: ModuleType) -> None:
         from importlib import import_module

@@ -125,7 +125,11 @@ def _cached_hash(cls: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Calla
 def _field_values(
     owner: str, names: tuple[str, ...], defaults: tuple[Any, ...], positional: tuple[Any, ...], keywords: dict[str, Any]
 ) -> tuple[Any, ...]:
-    """Return the values of the fields, in order, from positional arguments, keyword arguments and defaults."""
+    """Return the values of the fields of a new record, in order.
+
+    They are taken from positional arguments, keyword arguments and defaults. Raises TypeError if
+    the arguments do not fit the fields.
+    """
     if len(positional) > len(names):
         raise TypeError(f"{owner} takes {len(names)} values, {len(positional)} were given")
     values = dict(zip(names[len(names) - len(defaults) :], defaults, strict=True))

@@ -25,7 +25,7 @@ def codes() -> tuple[str, ...]:
 
 
 def codes_with_prefix(prefix: str) -> tuple[str, ...]:
-    """Return the codes with this prefix, in order."""
+    """Return the codes of diagnostics that begin with ``prefix``, in order."""
     return tuple(code for code in codes() if code.startswith(prefix))
 
 

@@ -32,7 +32,7 @@ class Edit:
 
 @record
 class Fix:
-    """One way to fix the text: a short title, and edits that do not overlap."""
+    """One way to fix a source text: a short title, and edits that do not overlap."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -58,7 +58,7 @@ class Diagnostic:
 def replacement_fix(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
     """Return the fix that replaces a span by a text.
 
-    Where the text would join the word before or after the span, a space separates them.
+    If the text would touch a word before or after the span, a space separates them.
     """
     before, after = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""

@@ -14,7 +14,7 @@ FORMATS: Final = ("text", "json", "sarif", "github")
 
 
 class RenderFunction(Protocol):
-    """The type of the function ``render`` of a format."""
+    """The type of the function ``render`` that the module of each format has."""
 
     def __call__(self, diagnostics: Sequence[Diagnostic], *, color: bool) -> str:
         """Return the diagnostics as one text, which is empty or ends with a newline.

@@ -16,9 +16,10 @@ LONGEST_TEXT: Final = 4000
 
 
 def shorten(diagnostic: Diagnostic) -> Diagnostic:
-    """Return the diagnostic without the middle of each text or quote that is too long.
+    """Return the diagnostic, with an ellipsis for the middle of each text or quote that is too long.
 
-    The limits are :data:`LONGEST_TEXT` and :data:`LONGEST_QUOTE`.
+    A quote is a part of a text in backticks. The limits are :data:`LONGEST_TEXT` and
+    :data:`LONGEST_QUOTE`.
     """
     labels = tuple(
         label if len(label.message) <= LONGEST_QUOTE else replace(label, message=short_text(label.message))
@@ -30,9 +31,9 @@ def shorten(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def short_text(text: str) -> str:
-    """Return a message without the middle of each quote that is too long.
+    """Return a message, with an ellipsis for the middle of each quote in backticks that is too long.
 
-    If the message is still too long, its own middle is left out, too.
+    If the message is still too long, an ellipsis replaces its own middle, too.
     """
     if len(text) <= LONGEST_QUOTE:
         return text

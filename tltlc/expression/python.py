@@ -48,7 +48,7 @@ def compile_expressions(
 def _function(
     index: int, expression: Expression, positions: Mapping[str, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
-    """Yield the lines of the function ``atomINDEX`` and of the functions that it calls."""
+    """Yield the source lines of the function ``atomINDEX``, after those of the functions that it calls."""
     signals = {node.name: f"s{positions[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
     params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, ParamValue)}
     writer = PythonWriter(signals, params, f"_{index}_")
@@ -64,8 +64,9 @@ class PythonWriter:
     """Writes expressions as Python.
 
     ``signals`` and ``params`` map names of signals and params to Python variables. ``helpers``
-    collects the source of functions ``PREFIXpart0``, … for parts that are nested too deep. The
-    bases of powers are stored in variables ``PREFIXbase``, ``PREFIXbase2``, ….
+    collects the source of functions ``PREFIXpart0``, … for parts that are nested too deep, where
+    PREFIX is the text ``prefix``. The bases of powers are stored in variables ``PREFIXbase``,
+    ``PREFIXbase2``, ….
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -160,7 +161,7 @@ class PythonWriter:
         return _with_brackets(text, _COMPARISON, min_binding)
 
     def _helper_call(self, node: Expression | Condition) -> str:
-        """Return a call of a new function that computes the node, and add the function to ``helpers``."""
+        """Return a call of a new function that computes an expression or condition, and add it to ``helpers``."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)

@@ -26,7 +26,7 @@ If the margin itself is smaller than this, the margin is the least robustness
 
 @record
 class Const:
-    """A finite number."""
+    """A constant, which is a finite number."""
 
     value: float
 
@@ -40,14 +40,17 @@ class SignalValue:
 
 @record
 class ParamValue:
-    """The value of a param."""
+    """The value of a param, that is, of a named number that a source text declares."""
 
     name: str
 
 
 @record
 class Op:
-    """An operator or function; ``clamp`` takes (x, low, high), ``min`` and ``max`` take two or more arguments."""
+    """An operator or function and its arguments.
+
+    ``clamp`` takes (x, low, high), ``min`` and ``max`` take two or more arguments.
+    """
 
     hashed_once = True
     op: ArithmeticOp
@@ -105,12 +108,12 @@ def depth(expression: Expression | Condition) -> int:
 
 
 def most_parts(expression: Expression | Condition) -> int:
-    """Return the most cases of any ``when``, or arguments of any operator, in an expression, whichever is more."""
+    """Return the greatest number of cases of a ``when``, or of arguments of an operator, in an expression."""
     return max(len(node.cases) if isinstance(node, When) else len(parts(node)) for node in nodes(expression))
 
 
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
-    """Return the operands of a node, or the conditions and values of a ``when``; nothing for other nodes."""
+    """Return the operands of a node, or the conditions and values of a ``when``; an empty tuple for other nodes."""
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)
     return node.args if isinstance(node, (Op, Condition)) else ()

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return ``{"diagnostics": […]}``.
+    """Return the diagnostics as the text of a JSON document, ``{"diagnostics": […]}``.
 
     Lines and columns count from 1, offsets from 0; columns and offsets are in characters.
     """

@@ -17,9 +17,9 @@ _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sari
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return a SARIF log with one run.
+    """Return the text of a SARIF log, with all diagnostics in one run.
 
-    The paths of files in the current folder are relative to it.
+    The paths of files in the current folder are relative to this folder.
     """
     rules = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {

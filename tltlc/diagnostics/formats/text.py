@@ -93,7 +93,7 @@ def _replace_except_tabs(text: str) -> str:
 
 
 def _expand_tabs(text: str, column: int) -> str:
-    """Return a part of a line with spaces instead of tabs; ``column`` is where the part begins."""
+    """Return a part of a line with spaces instead of tabs; ``column`` is the column at which the part begins."""
     first, *rest = text.split("\t")
     expanded = first
     for piece in rest:
