@@ -97,7 +97,7 @@ class _FileAllowances:
 
 
 class _StatementSpans:
-    """Spans of statements, to be looked up by offset.
+    """Spans of statements, which can be looked up by an offset that they contain.
 
     Of two spans that overlap, one contains the other.
     """

@@ -259,7 +259,7 @@ class Builder:
 
 
 def _convert_inf(limit: Expr) -> Expr:
-    """Return the end of a range, with the name ``inf`` converted to a number."""
+    """Return an end of a range, with the name ``inf`` (or ``-inf``) converted to a number."""
     if isinstance(limit, tree.NameExpr) and limit.name == "inf":
         return tree.NumberExpr(inf, None, limit.span)
     if isinstance(limit, tree.Unary) and limit.op == "-":

@@ -35,7 +35,7 @@ def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[D
 
 
 def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
-    """Yield the errors inside clauses and expressions, without those about a spec as a whole."""
+    """Yield the errors inside clauses and expressions, without errors about a spec as a whole."""
     for declaration in declarations:
         match declaration:
             case tree.SpecDecl():

@@ -116,7 +116,7 @@ _OTHER_WORDS: Final = frozenset(
 
 @lru_cache(maxsize=1000)
 def closest_word(word: str, known: tuple[str, ...]) -> str | None:
-    """Return the known word that ``word`` equals or misspells, whatever its capital letters.
+    """Return the word of ``known`` that ``word`` equals or misspells; the case of ``word`` does not matter.
 
     None if ``word`` resembles no known word, or if it is one of the English words that only look
     like a misspelling (``_OTHER_WORDS``).

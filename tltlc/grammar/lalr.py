@@ -71,7 +71,7 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
 
 
 def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
-    """Return the parser's stack of states after ``tokens``.
+    """Return the stack of states that the parser has after it read ``tokens``.
 
     The tokens are the beginning of a text of the nonterminal ``start``. The parser may still reduce
     the stack when it sees the next token.
@@ -104,7 +104,7 @@ def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
 
 
 def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """Return the terminal of a token in this state of the parser.
+    """Return the terminal of a token that the parser reads in ``state``.
 
     An unreserved word, such as ``within``, is a name where the grammar allows no such keyword, and
     a keyword where it allows no name. Where it allows both, the word is a keyword if a number

@@ -73,7 +73,7 @@ _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
 
 
 def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
-    """Report a declaration, clause or line of a test that begins with no keyword of its kind."""
+    """Return an error if a declaration, clause or line of a test begins with no keyword of its kind, else None."""
     keywords, token = KEYWORDS.get(failure.start), failure.token
     if failure.stop.index or not keywords or failure.is_at_end or token.type in OPENING.values():
         return None
@@ -94,7 +94,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
-    """Whether a clause with ``keyword`` in place of its first word can have only one meaning."""
+    """Whether a clause can have only one meaning if ``keyword`` replaces its first word."""
     stop = len(failure.tokens) - 1
     if keyword == "require":
         return not is_of_one_step(failure, 1, stop)
@@ -105,13 +105,16 @@ def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
 
 
 def clause_outside_spec(failure: ParseFailure) -> Diagnostic | None:
-    """Report a clause that stands outside a spec, after a complete declaration."""
+    """Return an error if a clause stands outside a spec, after a complete declaration, else None."""
     whole = failure.start == "declaration" and END in failure.allowed_terminals
     return _outside_error(failure) if whole and failure.token.text in CLAUSES and not failure.open_brackets else None
 
 
 def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
-    """Report a clause inside a formula: ``keep p implies reach q``, ``spec s = keep p``."""
+    """Return an error if a clause stands inside a formula, else None.
+
+    Examples are ``keep p implies reach q`` and ``spec s = keep p``.
+    """
     word, before, at = failure.token.text, failure.previous_token, failure.stop.index
     if word not in OPERATORS or before is None or not failure.wants_operand or failure.token.type == "NAME":
         return None
@@ -140,7 +143,10 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
-    """Report another word for a keyword inside a formula: ``keep a implies never b``."""
+    """Return an error if another word for a keyword stands inside a formula, else None.
+
+    An example is ``keep a implies never b``.
+    """
     before, at = failure.previous_token, failure.stop.index - 1
     keyword = (
         SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and failure.wants_operator else None
@@ -161,17 +167,17 @@ def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _clause_keyword(failure: ParseFailure) -> str:
-    """Return the keyword of the broken clause, or "" if the broken piece is no clause."""
+    """Return the keyword of the clause in which parsing failed, or "" if it failed outside a clause."""
     return failure.tokens[0].text if failure.start == "clause" else ""
 
 
 def _is_next_goal(failure: ParseFailure, word: str) -> bool:
-    """Whether a keyword after `then` only repeats that a goal follows, as in ``a then reach b``."""
+    """Whether the keyword ``word`` after `then` only repeats that a goal follows, as in ``a then reach b``."""
     return word == "reach" and _clause_keyword(failure) not in ("keep", "avoid")
 
 
 def _is_clear_operator(failure: ParseFailure, start: int, at: int, word: str) -> bool:
-    """Whether a keyword inside a formula can only mean the operator of the same meaning.
+    """Whether a clause keyword inside a formula can only mean an operator, such as `always` for `keep`.
 
     ``word`` is the keyword, ``at`` its index, and ``start`` the index where the formula begins.
     """
@@ -192,7 +198,7 @@ def _operator_help(word: str, keyword: str) -> str:
 
 
 def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
-    """Report clauses that are joined by an operator: ``keep a and keep b``."""
+    """Return an error if an operator joins clauses, as in ``keep a and keep b``, else None."""
     word, before = failure.token.text, failure.previous_token
     if (
         failure.start != "clause"
@@ -211,14 +217,14 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
 
 
 def limit_in_other_words(failure: ParseFailure) -> Diagnostic | None:
-    """Report a limit in another form: ``limit of 400 steps``, ``limit: 20 seconds``."""
+    """Return an error if a limit has another form, else None: ``limit of 400 steps``, ``limit: 20 seconds``."""
     return (
         _limit_error(failure, "a limit is a number of steps or a time") if failure.tokens[0].type == "LIMIT" else None
     )
 
 
 def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``judge goal``, where `at` is missing."""
+    """Return an error if `at` is missing, as in ``judge goal``, else None."""
     if failure.previous_token is None or failure.previous_token.type != "JUDGE" or failure.token.text not in JUDGE:
         return None
     text = f"at {failure.token.text}"
@@ -226,7 +232,10 @@ def judge_without_at(failure: ParseFailure) -> Diagnostic | None:
 
 
 def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
-    """Report braces that are missing or wrong: ``spec s: keep a``, ``spec s = { keep a }``."""
+    """Return an error if the braces of a spec are missing or wrong, else None.
+
+    Examples are ``spec s: keep a`` and ``spec s = { keep a }``.
+    """
     before, token = failure.previous_token, failure.token
     if before is None or failure.tokens[0].type != "SPEC":
         return None
@@ -240,7 +249,7 @@ def clauses_without_braces(failure: ParseFailure) -> Diagnostic | None:
 
 
 def sign_behind_keyword(failure: ParseFailure) -> Diagnostic | None:
-    """Report a sign after the keyword of a clause: ``reach: a``."""
+    """Return an error if a sign follows the keyword of a clause, as in ``reach: a``, else None."""
     if failure.start != "clause" or failure.stop.index != 1 or failure.token.text not in (":", "="):
         return None
     word = failure.tokens[0].text
@@ -259,7 +268,10 @@ def _outside_error(failure: ParseFailure) -> Diagnostic:
 
 
 def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | None:
-    """Report a line of a spec that begins with no keyword, with a guess at its meaning."""
+    """Return an error if a line of a spec begins with no keyword; its help guesses what the line means.
+
+    Returns None if this function cannot explain the line.
+    """
     tokens, token = failure.tokens, failure.token
     diagnostic = _limit_error(failure, title)
     if diagnostic:
@@ -308,9 +320,9 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
 
 
 def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
-    """Report a line that is only a number, its unit and a few words, such as ``20 s limit``.
+    """Return an error if a line is only a number, its unit and a few words, such as ``20 s limit``, else None.
 
-    Offer a fix if the line can only be a limit.
+    The error has a fix if the line can only be a limit.
     """
     tokens = [token for token in failure.tokens[:-1] if token.text not in (":", "=", ",")]
     if len(tokens) > _LONGEST_LIMIT:
@@ -345,7 +357,7 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
 
 
 def _is_own_line(failure: ParseFailure) -> bool:
-    """Whether the piece stands alone on its lines, apart from braces and comments."""
+    """Whether the broken piece of text stands alone on its lines, apart from braces and comments."""
     text, tokens = failure.source.text, failure.tokens
     before = text[: tokens[0].start].rpartition("\n")[2].rpartition("{")[2]
     after = text[tokens[-1].end :].partition("\n")[0].partition("//")[0].partition("}")[0]

@@ -1,4 +1,4 @@
-"""Report plain English where the language has another form: `if`, `while`, `before`, a bound after its formula."""
+"""Explain plain English where the language has another form: `if`, `while`, `before`, a bound after its formula."""
 
 from __future__ import annotations
 
@@ -134,7 +134,10 @@ _ONCE: Final = "; to require it at every step, write a clause `keep {b} implies 
 
 
 def plain_english(failure: ParseFailure) -> Diagnostic | None:
-    """Report an English word in a formula: ``keep a while b``, ``reach a within 20 steps``."""
+    """Return an error if a formula has an English word that is no operator, else None.
+
+    Examples are ``keep a while b`` and ``reach a within 20 steps``.
+    """
     if not failure.wants_operator or failure.previous_token is None:
         return None
     for at, untimed_forms in ((failure.stop.index - 1, _PREFIXES), (failure.stop.index, _FORMS)):
@@ -157,7 +160,7 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
 
 
 def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
-    """Report a comparison in words: ``coins is more than 3``, ``health above 50%``."""
+    """Return an error if a comparison is in words, else None: ``coins is more than 3``, ``health above 50%``."""
     at = failure.stop.index
     if not failure.wants_operator or failure.token.type != "NAME":
         return None
@@ -175,7 +178,7 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
 
 
 def filler_word(failure: ParseFailure) -> Diagnostic | None:
-    """Report a word without a meaning: ``reach the exit``, ``avoid being seen``."""
+    """Return an error if a filler word stands in a formula, else None: ``reach the exit``, ``avoid being seen``."""
     at = failure.stop.index
     for index in (at - 1, at):
         word = failure.tokens[index]
@@ -194,9 +197,9 @@ def filler_word(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
-    """Whether a filler word can be left out.
+    """Whether the filler word at index ``at`` can be left out.
 
-    A filler can be left out if it has no other meaning, or if it begins the formula and fits all
+    It can be left out if it has no other meaning, or if it begins the formula and fits all
     operators of the formula.
     """
     word, kind = failure.tokens[at].text, _clause_keyword(failure)
@@ -209,13 +212,13 @@ def _is_clear_filler(failure: ParseFailure, at: int) -> bool:
 
 
 def condition_line(failure: ParseFailure) -> Diagnostic | None:
-    """Report a line of a spec that begins with ``if``, ``when``, ``whenever`` or ``while``."""
+    """Return an error if a line of a spec begins with ``if``, ``when``, ``whenever`` or ``while``, else None."""
     forms = {"": "keep {b} implies {a}"}
     return _prefix_word_error(failure, 0, forms, timed=False) if failure.tokens[0].text in _PREFIXES else None
 
 
 def _without_error(failure: ParseFailure) -> Diagnostic:
-    """Report ``reach a without b``.
+    """Return the error for `without` between two formulas, as in ``reach a without b``.
 
     If the clause can have only one meaning, a fix writes `avoid` in place of `without`.
     """
@@ -231,7 +234,7 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
 
 
 def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Report an English word between two formulas, such as ``keep a while b``."""
+    """Return the error for an English word between two formulas, such as ``keep a while b``."""
     at, kind = failure.stop.index, _clause_keyword(failure)
     begin, stop = _goal_starts(failure, at)[-1], formula_stop(failure)
     second = at + 1 + (failure.tokens[at + 1].text == "by")
@@ -252,7 +255,7 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def _time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Report a time after its formula, such as ``reach a within 20 steps``."""
+    """Return the error for a time after its formula, such as ``reach a within 20 steps``."""
     at, kind = failure.stop.index, _clause_keyword(failure)
     goals, stop = _goal_starts(failure, at), formula_stop(failure)
     begin = goals[-1]
@@ -278,7 +281,7 @@ def _time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
-    """Report an English word or a time before its formula: ``reach if b then a``."""
+    """Return the error for an English word or a time before its formula: ``reach if b then a``."""
     if timed:
         return _prefix_time_error(failure, at, forms)
     stop, form = formula_stop(failure), forms.get(_clause_keyword(failure), forms[""])
@@ -352,7 +355,7 @@ class _Time:
 
     @property
     def steps(self) -> int | None:
-        """The number of steps, or None if the time has another unit."""
+        """The number of steps, or None if the time has another unit or is no whole number."""
         return int(self.number) if self.unit in ("step", "steps") and self.number.isdecimal() else None
 
 
@@ -370,7 +373,10 @@ class _Parts:
     time: _Time | None = None
 
     def fill(self, form: str) -> str:
-        """Return the form with the parts filled in, or "" if it needs a time in steps and has none."""
+        """Return the text ``form`` with the parts in place of ``{a}``, ``{b}``, ``{c}``, ``{end}`` and ``{less}``.
+
+        Returns "" if the form has ``{less}``, but the time is not in steps.
+        """
         if self.time is None or self.time.steps is None:
             return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
         less = f"{self.time.steps - 1} steps"
@@ -380,10 +386,11 @@ class _Parts:
 def _rewrite_error(
     failure: ParseFailure, at: int, part: tuple[int, int], form: str, parts: _Parts | None
 ) -> Diagnostic:
-    """Return the error for the word at index ``at``, with ``form`` as its replacement.
+    """Return the error for the English word at index ``at``; it suggests to write ``form`` instead.
 
-    ``part`` is the range of token indices to be replaced, and ``parts`` fills the form. If
-    ``parts`` is None, the text has several meanings; then the help describes the form with letters.
+    ``part`` is the range of token indices to be replaced, and ``parts`` are the parts that ``form``
+    needs. If ``parts`` is None, the text has several meanings; then the help describes the form
+    with letters.
     """
     word, kind = failure.tokens[at], _clause_keyword(failure)
     title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
@@ -408,7 +415,7 @@ def _rewrite_error(
 
 
 def _general_help(failure: ParseFailure, at: int, form: str) -> str:
-    """Return a help text that shows a form with letters for its parts, not those of the text."""
+    """Return a help text that shows ``form`` with the letters a, b and c in place of the parts of the text."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in _TIMED, at == 0 or at < failure.stop.index
     time = _Time("20", "steps") if is_timed else None
     parts = _Parts("a", time.text if time else "b", "c", time)
@@ -468,13 +475,13 @@ def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
 
 
 def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether a time can apply to all tokens from index ``start`` up to ``stop``."""
+    """Whether a time can apply to all tokens from index ``start`` up to ``stop`` together."""
     is_one = is_of_one_step(failure, start, stop) and not has_token(failure, start, stop, UNCLEAR)
     return is_one and failure.tokens[start].text not in OPERATORS
 
 
 def _goal_starts(failure: ParseFailure, at: int) -> list[int]:
-    """Return the index at which each goal of a `reach` clause begins, for the goals before ``at``.
+    """Return the indices at which the goals of a `reach` clause begin, as far as they are before index ``at``.
 
     In other clauses, return only the index at which the formula begins.
     """
@@ -502,7 +509,7 @@ def _is_zero(time: _Time) -> bool:
 def _clause_keyword(failure: ParseFailure) -> str:
     """Return the keyword of the clause whose formula is broken, or "".
 
-    It is "" inside brackets, and if the broken piece is no clause.
+    It is "" if parsing failed inside brackets, or outside a clause.
     """
     return failure.tokens[0].text if failure.start == "clause" and not failure.open_brackets else ""
 

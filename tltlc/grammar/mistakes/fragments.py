@@ -36,7 +36,7 @@ _OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
 def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[Token]]:
-    """Split the tokens into declarations: at their keywords, and after the brace that closes a block."""
+    """Yield the tokens of each declaration, split at keywords and after the brace that closes a block."""
     piece: list[Token] = []
     depth = 0
     for index, token in enumerate(tokens):
@@ -56,7 +56,7 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
 
 
 def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str]) -> Iterator[list[Token]]:
-    """Split the body of a block into clauses or lines of a test."""
+    """Yield the tokens of each clause of a spec, or of each line of a test, given the tokens of its body."""
     piece: list[Token] = []
     for index, token in enumerate(tokens):
         if piece and _begins_piece(source, tokens, index, keywords, True):
@@ -125,7 +125,7 @@ def _is_like_keyword(word: str, keywords: dict[str, str]) -> bool:
 
 
 def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
-    """Whether `limit` comes after its number, as in ``400 steps limit``."""
+    """Whether the keyword `limit` comes after its number, as in ``400 steps limit``."""
     number = index - 1 - (tokens[index - 1].type == "UNIT")
     has_number_after = index + 1 < len(tokens) and tokens[index + 1].type == "NUMBER"
     return tokens[number].type == "NUMBER" and is_first_on_line(source, tokens, number) and not has_number_after

@@ -1,4 +1,4 @@
-"""Report forms that people know from other languages or a word processor."""
+"""Explain forms that people know from other languages or a word processor."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ _EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>":
 
 
 def equality(failure: ParseFailure) -> Diagnostic | None:
-    """Report comparisons of other languages: ``a == b``, ``a != true``, ``a <> 3``, ``a = b``."""
+    """Return an error if parsing failed at a comparison of another language, else None.
+
+    Examples are ``a == b``, ``a != true``, ``a <> 3`` and ``a = b``.
+    """
     sign, at = failure.token.text, failure.stop.index
     is_expectation = failure.tokens[0].text == "expect"
     if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
@@ -81,7 +84,7 @@ def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
 
 
 def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
-    """Report a chain of comparisons: ``a < b < c``."""
+    """Return an error if comparisons are chained, as in ``a < b < c``, else None."""
     at = failure.stop.index
     if failure.token.type not in COMPARISONS or not failure.wants_operator:
         return None
@@ -99,7 +102,7 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 
 def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Report arrows that are no operators: ``a => b`` and ``a =< b``."""
+    """Return an error for an arrow that is no operator, as in ``a => b`` and ``a =< b``, else None."""
     at = failure.stop.index
     after = failure.tokens[at + 1 :][:2]
     if (
@@ -123,7 +126,10 @@ def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def dash_comment(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``-- a comment``, even if the parser has read its first words as part of a formula."""
+    """Return an error for a comment that begins with ``--``, else None.
+
+    It is found even if the parser has read the first words of the comment as part of a formula.
+    """
     tokens, at = failure.tokens, failure.stop.index
     for index in range(min(at, len(tokens) - 2), -1, -1):
         first, second, after = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
@@ -141,7 +147,7 @@ def dash_comment(failure: ParseFailure) -> Diagnostic | None:
 
 
 def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
-    """Report units that the language does not know: ``20 seconds``, ``3 feet``."""
+    """Return an error if the language does not know a unit, else None: ``20 seconds``, ``3 feet``."""
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
@@ -169,7 +175,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
 
 
 def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Report two operators side by side: ``a and then b``, ``a then then b``."""
+    """Return an error if two operators stand side by side, else None: ``a and then b``, ``a then then b``."""
     before, token = failure.previous_token, failure.token
     if before is None or before.type not in INFIX or token.type not in INFIX or not failure.wants_operand:
         return None
@@ -184,7 +190,7 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
-    """Report an operator for one formula that stands between two: ``reach a next b``."""
+    """Return an error if an operator for one formula stands between two, as in ``reach a next b``, else None."""
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):

@@ -59,14 +59,14 @@ def unexpected_token(
 
 
 def unclosed_bracket(source: SourceFile, opening: Token) -> Diagnostic:
-    """Return the error for a bracket that is never closed."""
+    """Return the error for the bracket ``opening``, which is never closed."""
     closing = {"(": ")", "[": "]", "{": "}"}[opening.text]
     title = f"this `{opening.text}` is never closed"
     return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
 
 
 def _unmatched_bracket(failure: ParseFailure) -> Diagnostic | None:
-    """Report a bracket without its partner."""
+    """Return an error if a bracket has no partner, else None."""
     token = failure.token
     if token.type in OPENING.values():
         opening = failure.open_brackets[-1] if failure.open_brackets else None
@@ -86,7 +86,10 @@ def _unmatched_bracket(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
-    """Report a bound without a unit, with a name for a number, or after an operator that takes none."""
+    """Return an error if the bound of an operator is wrong, else None.
+
+    The bound may lack a unit, have a name for a number, or follow an operator that takes none.
+    """
     before = failure.previous_token
     if failure.token.type == "NAME" and before and _is_bound(failure):
         example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
@@ -111,7 +114,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _bound_without_number(failure: ParseFailure) -> Diagnostic:
-    """Report a bound in brackets without a number: ``F[-1,2] p``, ``X[!] p``."""
+    """Return the error for a bound in brackets without a number: ``F[-1,2] p``, ``X[!] p``."""
     operator = failure.tokens[_opening_index(failure) - 1]
     if operator.type in _NEXTS:
         return failure.error(
@@ -125,7 +128,7 @@ def _bound_without_number(failure: ParseFailure) -> Diagnostic:
 
 
 def _bound_with_one_end(failure: ParseFailure) -> Diagnostic:
-    """Report a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
+    """Return the error for a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
     opening = _opening_index(failure)
     operator, number = failure.tokens[opening - 1], text_of(failure, opening + 1, failure.stop.index)
     if operator.type in _NEXTS:
@@ -142,7 +145,7 @@ def _bound_with_one_end(failure: ParseFailure) -> Diagnostic:
 
 
 def _opening_index(failure: ParseFailure) -> int:
-    """Return the index of the innermost open bracket among the tokens."""
+    """Return the index of the innermost bracket that is open where parsing failed."""
     opening = failure.open_brackets[-1]
     return next(index for index, token in enumerate(failure.tokens) if token is opening)
 
@@ -158,7 +161,7 @@ def _is_bound(failure: ParseFailure) -> bool:
 
 
 def _reserved_word(failure: ParseFailure) -> Diagnostic | None:
-    """Report a reserved word where a name is expected."""
+    """Return an error if a reserved word stands where a name is expected, else None."""
     token = failure.token
     if "NAME" not in failure.allowed_terminals or token.text not in load().words:
         return None
@@ -174,7 +177,7 @@ def _reserved_word(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _missing_type(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``signal a: in [0, 1]``, where `in` was read as the type."""
+    """Return an error for ``signal a: in [0, 1]``, where `in` was read as the type, else None."""
     before = failure.previous_token
     if failure.token.type != "LSQB" or before is None or before.text != "in" or "LSQB" in failure.allowed_terminals:
         return None
@@ -182,7 +185,7 @@ def _missing_type(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
-    """Report ``all x in a: p`` and ``all(p, q)``: an error in the head of a quantifier."""
+    """Return an error if the head of a quantifier is wrong, else None: ``all x in a: p``, ``all(p, q)``."""
     heads = [token for token in failure.tokens[: failure.stop.index] if token.type in ("ALL", "ANY", "COLON")]
     if not heads or heads[-1].type == "COLON":
         return None
@@ -192,7 +195,7 @@ def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Report a name where an operator is expected, such as a misspelt operator."""
+    """Return an error if a name, such as a misspelt operator, stands where an operator is expected, else None."""
     before, token = failure.previous_token, failure.token
     if before is None or not failure.wants_operator:
         return None
@@ -232,7 +235,7 @@ def _is_before_operand(failure: ParseFailure) -> bool:
 
 
 def _verb_is(failure: ParseFailure) -> Diagnostic | None:
-    """Report the verb `is`: ``seen is true``, ``seen is not true``."""
+    """Return an error for the verb `is`, else None: ``seen is true``, ``seen is not true``."""
     at, after = failure.stop.index, [token.text for token in failure.tokens[failure.stop.index + 1 :]]
     if (
         failure.token.text not in ("is", "are")
@@ -262,7 +265,7 @@ def _verb_is(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
-    """Report `else` in place of `otherwise`: ``when a: 1 else: 0``."""
+    """Return an error if `else` stands in place of `otherwise`, as in ``when a: 1 else: 0``, else None."""
     if failure.token.text not in ("else", "default") or "OTHERWISE" not in failure.allowed_terminals:
         return None
     return failure.error(
@@ -271,14 +274,17 @@ def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _case_form(failure: ParseFailure) -> Diagnostic | None:
-    """Report a broken case distinction: ``when a then 1``, ``when a: 1`` without `otherwise`."""
+    """Return an error if a case distinction is broken, else None.
+
+    Examples are ``when a then 1``, and ``when a: 1`` without `otherwise`.
+    """
     if not any(token.type == "WHEN" for token in failure.tokens[: failure.stop.index]):
         return None
     return failure.error("TLT0101", failure.expectation(), CASES)
 
 
 def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
-    """Report two names without an operator between them: ``near s1``."""
+    """Return an error if two names have no operator between them, as in ``near s1``, else None."""
     before, token = failure.previous_token, failure.token
     if before is None or token.type != "NAME" or not failure.wants_operator or before.type not in ("NAME", "RPAR"):
         return None
@@ -298,7 +304,7 @@ def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report an operator where a formula is expected: ``keep next``."""
+    """Return an error if an operator stands where a formula is expected, as in ``keep next``, else None."""
     if not failure.wants_operand:
         return None
     for word, kinds, where in (

@@ -81,7 +81,7 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
 
 
 def is_clear_here(failure: ParseFailure, word: str) -> bool:
-    """Whether a word has only one meaning here, judged by what stands around it.
+    """Whether an English word has only one meaning where parsing failed, judged by what stands around it.
 
     The keyword of the clause and the tokens around the open brackets decide this.
     """
@@ -143,9 +143,10 @@ def _has_variable_of(failure: ParseFailure, left: tuple[int, int], right: tuple[
 
 
 def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
-    """Whether only certain operators stand around the open brackets.
+    """Whether only certain operators stand around the brackets that are open where parsing failed.
 
-    Those before a bracket must be of ``kinds``. Those after the brackets must be `and` or `or`.
+    The operators before a bracket must be of ``kinds``. The operators after the brackets must be
+    `and` or `or`.
     """
     operators = INFIX | BEFORE_ONE | QUANTIFIERS
     start, stop = _piece_formula_start(failure), formula_stop(failure)
@@ -162,7 +163,7 @@ def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
 
 
 def _is_in_call(failure: ParseFailure) -> bool:
-    """Whether an open bracket belongs to anything but a formula, such as a call."""
+    """Whether parsing failed inside brackets that do not enclose a formula, such as those of a call."""
     brackets = any(token.type != "LPAR" for token in failure.open_brackets)
     return brackets or any(before is not None and before.type == "NAME" for before in _tokens_before_brackets(failure))
 

@@ -59,7 +59,7 @@ class ParseFailure:
 
     @property
     def is_at_end(self) -> bool:
-        """Whether the piece ends too early."""
+        """Whether parsing failed because the piece of text ends too early."""
         return self.token.type == END
 
     @cached_property
@@ -90,7 +90,7 @@ class ParseFailure:
         return stack
 
     def form(self) -> str | None:
-        """Return a help text with the syntax of the piece; None if no keyword for such a piece begins it."""
+        """Return a help text with the syntax of the piece; None if its first word is no keyword for such a piece."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -124,7 +124,7 @@ class ParseFailure:
         return any("//" in text[left.end : right.start] for left, right in pairwise(inside))
 
     def expectation(self) -> str:
-        """Return the title ``expected … after …, found …``."""
+        """Return a title for the error, ``expected … after …, found …``."""
         before = f" after {quote_token(self.previous_token)}" if self.previous_token else ""
         actual = "" if self.is_at_end else f", found {quote_token(self.token)}"
         return f"expected {self.alternatives()}{before}{actual}"
@@ -178,7 +178,7 @@ def quote_token(token: Token | None) -> str:
 
 
 def _spellings(terminals: dict[str, str]) -> dict[str, str]:
-    """Return one spelling of each terminal, in ASCII if there is one."""
+    """Map each terminal to one of its spellings, in ASCII if there is one."""
     return {terminal: text for text, terminal in sorted(terminals.items(), key=lambda item: item[0].isascii())}
 
 

@@ -1,4 +1,4 @@
-"""Report commas, brackets, quotes and names in a form that other languages use."""
+"""Explain commas, brackets, quotes and names in a form that other languages use."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 
 
 def comma(failure: ParseFailure) -> Diagnostic | None:
-    """Report a comma where none can stand: ``reach a, b``, ``keep a,``, ``3,5 m``."""
+    """Return an error if a comma stands where none can, else None: ``reach a, b``, ``keep a,``, ``3,5 m``."""
     before, at = failure.previous_token, failure.stop.index
     if failure.token.type != "COMMA" or before is None or not failure.wants_operator or failure.open_brackets:
         return None
@@ -60,7 +60,7 @@ def comma(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
-    """Report ``avoid a, reach b``, which are two clauses."""
+    """Return the error for a comma between two clauses: ``avoid a, reach b``."""
     at, first = failure.stop.index, failure.tokens[0].text
     word, title, span = failure.tokens[at + 1].text, "`,` cannot join clauses", span_of(failure.tokens[at : at + 2])
     # After a goal, `keep` or `avoid` may apply from there on; and what follows `or` may be an alternative.
@@ -72,9 +72,10 @@ def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
 
 
 def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> bool:
-    """Whether all commas can mean the operator ``word``, judged by the operators beside them.
+    """Whether all commas of a formula can mean the operator ``word``, judged by the operators beside them.
 
-    In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b or c`.
+    In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b
+    or c`.
     """
     tokens, operator = failure.tokens, word.upper()
     kinds = [(index, tokens[index].type) for index in outer_indices(tokens, start, stop)]
@@ -99,7 +100,7 @@ def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> b
 
 
 def _comma_in_number(failure: ParseFailure) -> Diagnostic:
-    """Report a comma in a number: ``2,5``, and ``1,000``, which is 1 in some countries."""
+    """Return the error for a comma in a number: ``2,5``, and ``1,000``, which is 1 in some countries."""
     at = failure.stop.index
     stop = at + 2
     while (
@@ -128,9 +129,9 @@ def _touches_both(failure: ParseFailure, at: int) -> bool:
 
 
 def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str:
-    """Return the text of tokens, with ``word`` in place of each comma outside brackets.
+    """Return the text of the tokens from ``start`` up to ``stop``, with ``word`` in place of commas.
 
-    A comma before an operator is left out.
+    A comma inside brackets stays. A comma before an operator is left out.
     """
     text = ""
     for end in [
@@ -149,9 +150,10 @@ def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str
 
 
 def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return the text of tokens as a goal in a `then` sequence, with brackets around a quantifier.
+    """Return the text of the tokens from ``start`` up to ``stop``, as a goal of a `then` sequence.
 
-    Without brackets, the quantifier would extend over the next `then`.
+    It has brackets around a quantifier. Without them, the quantifier would extend over the next
+    `then`.
     """
     quantifiers = (
         index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type in QUANTIFIERS
@@ -163,7 +165,10 @@ def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
 
 
 def missing_comma(failure: ParseFailure) -> Diagnostic | None:
-    """Report a missing comma: ``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
+    """Return an error if a comma is missing, else None.
+
+    Examples are ``entity a b``, ``in [0 50]`` and ``near(s1 close = 3 m)``.
+    """
     before, token = failure.previous_token, failure.token
     if before is None or "COMMA" not in failure.allowed_terminals or token.type not in ("NAME", "NUMBER"):
         return None
@@ -181,7 +186,7 @@ def missing_comma(failure: ParseFailure) -> Diagnostic | None:
 
 
 def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report a named argument without `=`: ``near(s1, close: 3 m)``."""
+    """Return an error if a named argument has no `=`, as in ``near(s1, close: 3 m)``, else None."""
     before = failure.previous_token
     if before is None or before.type != "NAME" or "EQUAL" not in failure.allowed_terminals or not failure.open_brackets:
         return None
@@ -196,7 +201,7 @@ def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
-    """Report a call without arguments: ``alive()``."""
+    """Return an error if a call has no arguments, as in ``alive()``, else None."""
     at = failure.stop.index
     kinds = [token.type for token in failure.tokens[max(0, at - 2) : at + 1]]
     if kinds != ["NAME", "LPAR", "RPAR"]:
@@ -208,7 +213,10 @@ def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
 
 
 def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
-    """Report brackets of the wrong kind: ``near[s1]``, ``keep {seen}`` and ``in (0, 50)``."""
+    """Return an error if brackets are of the wrong kind, else None.
+
+    Examples are ``near[s1]``, ``keep {seen}`` and ``in (0, 50)``.
+    """
     at, token = failure.stop.index, failure.token
     is_call = (
         failure.wants_operator and failure.previous_token is not None and are_adjacent(failure.previous_token, token)
@@ -224,7 +232,7 @@ def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
 
 
 def quoted_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report a name or formula in quotes: ``near("door")``, ``reach "near(door)"``."""
+    """Return an error if a name or formula is in quotes, else None: ``near("door")``, ``reach "near(door)"``."""
     text, at = failure.token.text.strip('"'), failure.stop.index
     if failure.token.type != "STRING" or not ("NAME" in failure.allowed_terminals or failure.wants_operand):
         return None
@@ -242,7 +250,7 @@ def quoted_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str) -> str:
-    """Return the text from between quotes, in brackets if it is only a part of the formula.
+    """Return ``text``, which stood between quotes, in brackets if it is only a part of the formula.
 
     A single operand needs no brackets.
     """
@@ -252,7 +260,7 @@ def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str)
 
 
 def invalid_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report a name in a form that no name has: ``my-door``, ``2nd_door``."""
+    """Return an error if a name has a form that no name may have, else None: ``my-door``, ``2nd_door``."""
     before, token, after = failure.previous_token, failure.token, failure.tokens[failure.stop.index + 1 :][:1]
     if before is None or not after:
         return None
@@ -270,7 +278,7 @@ def invalid_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
-    """Report a signal with a value: ``signal seen: bool = false``."""
+    """Return an error if a signal is given a value, as in ``signal seen: bool = false``, else None."""
     if (
         failure.tokens[0].type != "SIGNAL"
         or failure.token.type != "EQUAL"
@@ -284,14 +292,14 @@ def value_of_signal(failure: ParseFailure) -> Diagnostic | None:
 
 
 def type_without_name(failure: ParseFailure) -> Diagnostic | None:
-    """Report a parameter without a name: ``signal at(entity): bool``."""
+    """Return an error if a parameter has no name, as in ``signal at(entity): bool``, else None."""
     if failure.token.type != "ENTITY" or "NAME" not in failure.allowed_terminals or not failure.open_brackets:
         return None
     return failure.error("TLT0101", "a parameter needs a name", "write `x: entity`", write="x: entity")
 
 
 def several_names(failure: ParseFailure) -> Diagnostic | None:
-    """Report a declaration of several names: ``signal a, b: bool``."""
+    """Return an error if a declaration has several names, as in ``signal a, b: bool``, else None."""
     word = failure.tokens[0].text
     if failure.token.type != "COMMA" or failure.start != "declaration" or failure.stop.index != 2:
         return None
@@ -299,7 +307,7 @@ def several_names(failure: ParseFailure) -> Diagnostic | None:
 
 
 def missing_in(failure: ParseFailure) -> Diagnostic | None:
-    """Report a range without `in`: ``signal coins [0, 50]``."""
+    """Return an error if a range lacks `in`, as in ``signal coins [0, 50]``, else None."""
     if (
         failure.token.type != "LSQB"
         or "IN" not in failure.allowed_terminals
@@ -311,7 +319,7 @@ def missing_in(failure: ParseFailure) -> Diagnostic | None:
 
 
 def leave_out_help(failure: ParseFailure) -> str:
-    """Return the help for a character that ends statements in other languages."""
+    """Return a help text that says to leave out a character, such as one that ends statements in other languages."""
     between = {"clause": "clauses", "declaration": "declarations"}.get(failure.start)
     return "leave it out" + (f": nothing is needed between {between}" if between else "")
 

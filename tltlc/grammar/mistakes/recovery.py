@@ -30,7 +30,7 @@ def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, 
 
 
 class _Reader:
-    """Reads pieces one after the other and collects their declarations and diagnostics."""
+    """Parses the pieces of a text one by one, and collects their declarations and diagnostics."""
 
     def __init__(self, source: SourceFile, lexed: Tokens) -> None:
         self.declarations: list[tree.Declaration] = []
@@ -39,7 +39,7 @@ class _Reader:
         self._docs = lexed.docs
 
     def read_declaration(self, piece: list[Token]) -> None:
-        """Read the tokens of one declaration; keep the good clauses of a broken block."""
+        """Parse the tokens of one declaration; keep the good clauses of a broken block."""
         before = len(self.diagnostics)
         kind = block_kind(piece)
         if kind:
@@ -57,7 +57,10 @@ class _Reader:
             self.diagnostics += checks.check_clauses(self._source, kept)
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
-        """Read a spec or a test in braces: its head, then each line of its body separately."""
+        """Parse a spec or a test in braces: its head, then each line of its body separately.
+
+        Return None if the head is broken.
+        """
         brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
         closed = piece[-1].type == "RBRACE"
         closing = Token("RBRACE", "}", piece[-1].end, piece[-1].end)
@@ -98,7 +101,10 @@ class _Reader:
         return []
 
     def _read(self, start: str, piece: list[Token]) -> Any:
-        """Return what the builder makes of a piece. After an error, report it and return None."""
+        """Parse a piece as the nonterminal ``start``, and return its syntax tree.
+
+        If the piece is broken, report the error and return None.
+        """
         result = self._attempt(start, piece)
         if isinstance(result, lalr.UnexpectedTokenError):
             self._refuse(piece, start, result)
@@ -106,7 +112,7 @@ class _Reader:
         return result
 
     def _attempt(self, start: str, piece: list[Token]) -> Any:
-        """Return what the builder makes of a piece, or the UnexpectedTokenError that stopped it."""
+        """Parse a piece as the nonterminal ``start``; return its syntax tree, or the error that stopped the parser."""
         builder = Builder(self._source, self._docs)
         try:
             node = lalr.run(load(), start, _with_end(piece), builder)
@@ -116,11 +122,11 @@ class _Reader:
         return node
 
     def _refuse(self, piece: list[Token], start: str, error: lalr.UnexpectedTokenError) -> None:
-        """Report a broken piece."""
+        """Add the error for a piece that cannot be parsed to ``diagnostics``."""
         self.diagnostics.append(messages.unexpected_token(self._source, _with_end(piece), error, start))
 
     def _refuse_deep(self, piece: list[Token]) -> bool:
-        """Report a piece whose brackets nest too deep; return whether they do."""
+        """Return whether the brackets of a piece nest too deep; if so, add an error to ``diagnostics``."""
         deep = nesting.bracket_depth_error(self._source, piece)
         if deep:
             self.diagnostics.append(deep)

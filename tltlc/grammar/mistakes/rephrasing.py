@@ -27,7 +27,7 @@ _LONGEST: Final = 90
 def suggest_rewrite(
     failure: ParseFailure, start: int, stop: int, text: str, title: str, reason: str = "", code: str = "TLT0101"
 ) -> Diagnostic | None:
-    """Return an error at the tokens from ``start`` up to ``stop`` that suggests ``text`` for them.
+    """Return an error at the tokens from ``start`` up to ``stop`` that suggests to write ``text`` instead.
 
     Return None if the text is too long, or if the piece cannot be parsed with it.
     """
@@ -66,7 +66,10 @@ def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
 
 
 def formula_start(failure: ParseFailure) -> int:
-    """Return the index where the broken formula begins: after a bracket, a clause's keyword, or `=`."""
+    """Return the index of the first token of the formula in which parsing failed.
+
+    The formula begins after an open bracket, the keyword of a clause, or `=`.
+    """
     if failure.open_brackets:
         return next(index for index, token in enumerate(failure.tokens) if token is failure.open_brackets[-1]) + 1
     if failure.start == "declaration":
@@ -75,7 +78,7 @@ def formula_start(failure: ParseFailure) -> int:
 
 
 def formula_stop(failure: ParseFailure) -> int:
-    """Return the index after the last token of the broken formula."""
+    """Return the index after the last token of the formula in which parsing failed."""
     depth = 0
     for index in range(failure.stop.index, len(failure.tokens)):
         depth += (failure.tokens[index].type in OPENING) - (failure.tokens[index].type in CLOSING)
@@ -98,7 +101,7 @@ def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> 
 
 
 def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
-    """Whether the piece has no error with ``text`` for the tokens from ``start`` up to ``stop``."""
+    """Whether the piece has no error if ``text`` replaces the tokens from ``start`` up to ``stop``."""
     tokens = failure.tokens
     source_text = failure.source.text
     before, after = (

@@ -1,4 +1,4 @@
-"""Report characters and words that the language does not know, often from word processors."""
+"""Explain characters and words that the language does not know, often from word processors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HELPS: Final = {
 
 
 def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Report a character or word that the language does not know."""
+    """Return an error if the language does not know the character or word where parsing failed, else None."""
     token = failure.token
     if token.type != BAD:
         return None
@@ -67,7 +67,7 @@ def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _invalid_word(failure: ParseFailure) -> Diagnostic:
-    """Report a word with characters that no name has: ``café``, ``coins²``."""
+    """Return the error for a word with characters that no name has: ``café``, ``coins²``."""
     from unicodedata import normalize
 
     text = failure.token.text
@@ -83,7 +83,7 @@ def _invalid_word(failure: ParseFailure) -> Diagnostic:
 
 
 def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
-    """Report quotes other than ``"``: ``near('door')``, typographic quotes."""
+    """Return the error for quotes other than ``"``: ``near('door')``, typographic quotes."""
     at, tokens = failure.stop.index, failure.tokens
     last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
     title = f"{_quote_sign(failure.token.text)} means nothing here"
