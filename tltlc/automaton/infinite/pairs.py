@@ -1,12 +1,12 @@
 """Convert the acceptance condition of a component from clauses to Rabin pairs.
 
 The conversion uses the alternating cycle decomposition (:mod:`tltlc.automaton.infinite.cycles`). A
-new state also stores a position in the tree of the decomposition. At an accepted node, the position
-is in one child at a time. It stays there while the run takes only edges of that child. When the run
-takes another edge, the position moves on to the next child, and this edge gets an ``inf`` mark. A
-run with infinitely many of these marks stays in no rejected child, so it is accepted. At a rejected
-node, the position is in all accepted children at once, each with its own pair. Nodes that have no
-state in common may share a pair.
+state of the new automaton also stores a position in the tree of the decomposition. At an accepted
+node, the position is in one child at a time. It stays there while the run takes only edges of that
+child. When the run takes another edge, the position moves on to the next child, and this edge gets
+an ``inf`` mark. A run with infinitely many of these marks stays in no rejected child, so it is
+accepted. At a rejected node, the position is in all accepted children at once, each with its own
+pair. Nodes that have no state in common may share a pair.
 """
 
 from __future__ import annotations
