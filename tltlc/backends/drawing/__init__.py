@@ -1,4 +1,4 @@
 """Code that the targets for pictures share: texts, folded states and the layout.
 
-Begin with `layout.draw`.
+The targets call `layout.draw`, so begin to read there.
 """

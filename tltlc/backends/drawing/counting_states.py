@@ -57,7 +57,11 @@ def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]
 
 
 def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[Rung]]:
-    """Return, for each ladder that is folded, the inner rungs and the rung after them."""
+    """Return, for each ladder that is folded, the inner rungs and the rung after them.
+
+    A ladder is several runs of states that count at the same time. A rung has one state of each
+    run. The inner rungs are all except the first and the last one.
+    """
     steps: dict[int, dict[EdgeLabel, int]] = {state.id: {} for state in states}
     entering: list[set[int]] = [set() for _ in states]
     for edge in edges:
@@ -77,9 +81,10 @@ def _ladders(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[R
 def _ladders_from(
     rung: Rung, following: Rung, states: Sequence[State], steps: Steps, entering: Sequence[set[int]]
 ) -> list[list[Rung]]:
-    """Return the ladders on the path that begins with ``rung`` and ``following``, in order.
+    """Return the ladders on the path of rungs that begins with ``rung`` and ``following``, in order.
 
-    The path ends at a rung whose states do not continue the runs. Where the number of runs
+    A ladder is several runs of states that count at the same time. A rung has one state of each
+    run. The path ends at a rung whose states do not continue the runs. Where the number of runs
     changes, a new ladder begins.
     """
     ladders: list[list[Rung]] = []
@@ -102,8 +107,9 @@ def _ladders_from(
 def _next_rung(rung: Rung, following: Rung, states: Sequence[State], steps: Steps) -> dict[int, int] | None:
     """Map each state of the rung ``following`` to the next state of its run.
 
-    The map also has the first states of runs that begin at ``following``. Returns None if the two
-    rungs do not belong to a ladder.
+    A rung has one state of each of several runs that count at the same time. The map also has the
+    first states of runs that begin at ``following``. Returns None if the two rungs do not belong to
+    a ladder.
     """
     successors: dict[int, int] = {}
     for state, after in zip(rung, following, strict=True):

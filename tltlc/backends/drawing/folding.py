@@ -84,7 +84,11 @@ def fold_runs(fspa: Fspa) -> Drawing:
 
 
 def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
-    """Return, for each run that is folded, its inner states, each with its edge to the next state of the run."""
+    """Return, for each run that is folded, its inner states, each with its edge to the next state of the run.
+
+    :func:`fold_runs` says what a run is. Its inner states are all except the first and the last
+    one.
+    """
     outgoing: list[list[DrawnEdge]] = [[] for _ in states]
     entering: list[list[DrawnEdge]] = [[] for _ in states]
     for edge in edges:
@@ -108,7 +112,7 @@ def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[lis
 
 
 def _next_edge(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
-    """Return the edge that follows ``edge`` in a run.
+    """Return the edge that follows ``edge`` in a run, which is a path that :func:`fold_runs` may fold.
 
     Returns None if the two states of ``edge`` do not belong to a run. ``outgoing`` has the edges
     that leave each state.
