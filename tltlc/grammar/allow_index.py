@@ -56,7 +56,7 @@ class AllowIndex:
 
 
 class _FileAllowances:
-    """The comments of one file that allow codes."""
+    """The diagnostic codes that the comments of one file allow, indexed by statement."""
 
     def __init__(self, allowances: tuple[Allowance, ...]) -> None:
         self.allowances = allowances

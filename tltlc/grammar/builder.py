@@ -50,7 +50,8 @@ class Builder:
     """Builds the syntax tree of one file, and collects errors in ``diagnostics``.
 
     The parser calls ``make_NAME`` for the rule NAME of the grammar. Each method takes the span of
-    the text that the rule matched, then the values of the rule's parts, None for an absent one.
+    the text that the rule matched, then the values of the rule's parts. The value of an absent part
+    is None.
     """
 
     def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:

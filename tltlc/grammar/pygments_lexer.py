@@ -64,7 +64,7 @@ class TltlLexer(Lexer):  # type: ignore[misc]
     mimetypes: ClassVar = ["text/x-tltl"]
 
     def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, Class, str]]:
-        """Yield the offset, type and text of each piece, without gaps."""
+        """Yield the offset, type and text of each piece of the source text, without gaps."""
         lexed = tokenize(text)
         pieces = [*_classify(lexed.tokens)]
         for comment in lexed.comments:

@@ -84,10 +84,10 @@ def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) ->
 def _begins_piece(
     source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str], within_lines: bool
 ) -> bool:
-    """Whether a piece begins at the token with this index, which is not 0.
+    """Whether a declaration, clause or line of a test begins at the token with this index, which is not 0.
 
-    ``keywords`` are the words that begin a piece. Unless ``within_lines``, they do so only at the
-    start of a line.
+    ``keywords`` are the words that begin such a piece of text. Unless ``within_lines``, they do so
+    only at the start of a line.
     """
     token, before = tokens[index], tokens[index - 1]
     first = is_first_on_line(source, tokens, index)

@@ -179,7 +179,7 @@ def _tokens_before_brackets(failure: ParseFailure) -> list[Token | None]:
 
 
 def _piece_formula_start(failure: ParseFailure) -> int:
-    """Return the index where the formula of the declaration or clause begins."""
+    """Return the index where the formula begins in the declaration or clause in which parsing failed."""
     if failure.start == "declaration":
         return next((index + 1 for index, token in enumerate(failure.tokens) if token.type == "EQUAL"), 0)
     return 1 if failure.start == "clause" else 0

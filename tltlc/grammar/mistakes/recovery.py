@@ -20,7 +20,7 @@ MAX_ERRORS: Final = 200
 
 
 def recover(source: SourceFile, lexed: Tokens) -> tuple[tuple[tree.Declaration, ...], tuple[Diagnostic, ...]]:
-    """Return the declarations that can be read, and an error for each piece that cannot."""
+    """Return the declarations that can be read, and an error for each piece of the text that cannot be read."""
     reader = _Reader(source, lexed)
     for piece in declarations(source, lexed.tokens[:-1]):
         reader.read_declaration(piece)
