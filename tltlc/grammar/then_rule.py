@@ -99,8 +99,9 @@ def _is_plain(operand: Expr) -> bool:
 def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
     """Return a help text that shows where brackets can be put.
 
-    They go around the operand, or around ``then`` and the two formulas beside it. ``neighbour`` is
-    the operand on the other side of ``then``. ``last`` says whether ``operand`` comes after ``then``.
+    Brackets can go around ``operand``, or around ``then`` and the two formulas beside it.
+    ``neighbour`` is the operand on the other side of ``then``. ``last`` says whether ``operand``
+    comes after ``then``.
     """
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
@@ -124,13 +125,15 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
 
 
 def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
-    """Return fixes: brackets around the operand, or around ``then`` and the two formulas beside it.
+    """Return fixes for the operand at ``position``, which lacks brackets.
 
-    For ``F a then b``, these are ``(F a) then b`` and ``F (a then b)``. If other operands of the
+    Brackets go around the operand, or around ``then`` and the two formulas beside it: for
+    ``F a then b``, the fixes give ``(F a) then b`` and ``F (a then b)``. If other operands of the
     sequence lack brackets, the first fix puts brackets around them, too.
 
-    Return no fix in two cases: an operand after ``then`` says by itself at which step it holds, or
-    brackets around the operand are the only fix and would lose the order of the operands.
+    There is no fix if an operand without brackets after ``then`` says by itself at which step it
+    holds, such as ``next a``. There is also no fix if brackets around the operand are the only fix
+    and would lose the order of the operands.
     """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]
@@ -182,11 +185,11 @@ def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
 
 
 def _conjunct_text(source: SourceFile, part: Expr) -> str:
-    """Return the source text of a part, in brackets if it binds more loosely than ``and``."""
+    """Return the source text of an expression, in brackets if it binds more loosely than ``and``."""
     is_loose = isinstance(part, tree.BinaryExpr) and part.op in ("or", "implies", "iff")
     return f"({_text(source, part)})" if is_loose else _text(source, part)
 
 
 def _text(source: SourceFile, part: Expr) -> str:
-    """Return the source text of a part, on one line."""
+    """Return the source text of an expression, on one line."""
     return " ".join(source.slice(Span(part.span.start, part.span.end)).split())

@@ -69,10 +69,11 @@ def _plain(name: str) -> str:
 
 
 def _count_typos_in_parts(name: str, known: str) -> int | None:
-    """Return how many typos turn ``known`` into ``name``; ``nearDoor`` is compared as two words.
+    """Return how many typos turn ``known`` into ``name``, compared word by word.
 
-    None if a word of the one name is a different word in the other, or if the two names differ in
-    their digits, their number of words or their number of dots.
+    ``nearDoor`` has two words. Return None if a word is no misspelling of the word at its place in
+    the other name. Also return None if the two names differ in their digits, their number of words
+    or their number of dots.
     """
     if name.count(".") != known.count("."):
         return None
@@ -115,9 +116,9 @@ def _is_doubled(word: str, known: str) -> bool:
 
 
 def _is_negated(word: str, known: str) -> bool:
-    """Whether one word is the other one with a negating ending.
+    """Whether one word is the other one with a negating ending, as in ``hasnt`` for ``has``.
 
-    Negating prefixes need no check: a word with another beginning is never a typo.
+    Negating prefixes need no check, because a word with another beginning is never a typo.
     """
     longer, shorter = (word, known) if len(word) > len(known) else (known, word)
     return longer.startswith(shorter) and longer[len(shorter) :] in _NEGATING

@@ -34,7 +34,10 @@ def expressions(declaration: Declaration) -> Iterator[Expr]:
 
 
 def parts(expression: Expr) -> Iterator[Expr]:
-    """Yield the expression and all its parts, outer before inner and left before right; does not recurse."""
+    """Yield the expression and all its subexpressions, outer before inner and left before right.
+
+    Works without recursion, so that deep expressions are no problem.
+    """
     pending = [expression]
     while pending:
         part = pending.pop()
