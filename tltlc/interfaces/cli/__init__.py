@@ -1,4 +1,4 @@
-"""The command line. Only this package, and the commands of other distributions, print.
+"""The command line. Only this package, and commands from other installed packages, print.
 
 Begin with `command_line`; the commands are in `commands`.
 """

@@ -76,7 +76,7 @@ COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
 
 
 class CommandLine(click.Group):
-    """The click group that contains all commands."""
+    """The click group that contains all commands of ``tltlc``."""
 
     def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
         """Run the command and exit.
@@ -115,9 +115,10 @@ class CommandLine(click.Group):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command, and record the files it reads so that none of them is overwritten.
+        """Run the command, and record the files that it reads, so that it cannot overwrite them.
 
-        A closed pipe and Ctrl-C get our exit statuses instead of click's.
+        After a closed pipe or Ctrl-C, the exit status is that of :mod:`tltlc.interfaces.cli.exits`,
+        not that of click.
         """
         from tltlc.io.files import access_log
 
@@ -137,7 +138,7 @@ class CommandLine(click.Group):
             raise exits.StopQuietlyError(exits.interrupted_status()) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of all commands; commands of other distributions come last."""
+        """Return the names of all commands; commands from other installed packages come last."""
         return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -169,9 +170,9 @@ class CommandLine(click.Group):
         )
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of commands from :data:`BUILT_IN` and the entry points.
+        """Write the names and summaries of all commands into the help text, without loading a command.
 
-        This loads no command.
+        The commands are those in :data:`BUILT_IN`, and the entry points of installed packages.
         """
         rows = list(BUILT_IN.items())
         for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
@@ -195,10 +196,10 @@ class CommandLine(click.Group):
 
 
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
-    """Return the error, or a usage error if the cause is a wrong :data:`COMPLETE_VARIABLE`.
+    """Return ``error``, or a usage error if the user has set the environment variable of completion.
 
-    It is wrong if a user set it by mistake. The scripts of ``tltlc completion`` set it together with
-    the other variables that click needs.
+    Only the scripts of ``tltlc completion`` should set :data:`COMPLETE_VARIABLE`. They also set the
+    other variables that click needs; without them, click raises a KeyError or ValueError.
     """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")

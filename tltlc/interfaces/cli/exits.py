@@ -93,10 +93,11 @@ def interrupted_status() -> int:
 
 
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
-    """Return error TLT0730 for a component that is not installed.
+    """Return error TLT0730 for a Python module that is not installed.
 
-    ``wanted_by`` names what needs the component. ``requirement`` is what pip must install; if it is
-    an extra of tltlc, the help says how to install it from a clone.
+    ``wanted_by`` names the command or feature that needs the module. ``requirement`` is the
+    argument for ``pip install``. If it is an extra of tltlc, the help says how to install it from a
+    clone.
     """
     title = f"{wanted_by} needs `{module}`, which is not installed"
     is_extra = requirement.startswith("tltlc[")
@@ -105,7 +106,7 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
 
 
 def report(error: Exception | OutOfTimeError) -> int:
-    """Report an error on standard error and return the exit status."""
+    """Print an error message for the exception that ended a command, and return the exit status."""
     if limit_error := exhaustion_error(error):
         # The traceback would keep the memory of the interrupted work alive.
         error.__traceback__ = error.__context__ = error.__cause__ = None
@@ -152,9 +153,9 @@ def is_interrupted(error: BaseException | None) -> bool:
 
 
 def _missing_resource(error: BaseException | None) -> str | None:
-    """Return the message for the resource that is used up.
+    """Return a message if an exception or one of its causes says that a resource is used up.
 
-    Return None if neither the exception nor any of its causes reports a used-up resource.
+    The resources are memory, open files and processes. Return None for all other exceptions.
     """
     while error is not None:
         if isinstance(error, MemoryError):
@@ -166,7 +167,7 @@ def _missing_resource(error: BaseException | None) -> str | None:
 
 
 def _usage_diagnostic(error: click.ClickException) -> Diagnostic:
-    """Return a click usage error as a diagnostic."""
+    """Convert a usage error of click to a diagnostic."""
     # click prints one choice per line.
     message = " ".join(error.format_message().rstrip(".").split())
     context = error.ctx if isinstance(error, click.UsageError) else None
@@ -185,9 +186,9 @@ def _number_message(text: str, kind: str) -> str:
 
 
 def flush() -> None:
-    """Flush standard output and drop what cannot be written.
+    """Flush standard output, and drop the text that cannot be written.
 
-    Otherwise Python flushes at exit, and an error there changes the exit status.
+    Without this call, Python flushes at exit, and an error there changes the exit status.
     """
     try:
         sys.stdout.flush()
@@ -223,10 +224,10 @@ def _discard_output() -> None:
 
 
 def _bug(error: BaseException) -> int:
-    """Report an unforeseen exception with a short reference, and return the exit status.
+    """Report an unforeseen exception as a bug of tltlc, and return the exit status.
 
-    The reference is a hash of the exception's type and its place in the code. The traceback appears
-    only if TLTLC_DEBUG is 1.
+    The message contains a short reference, a hash of the exception's type and its place in the
+    code. The traceback appears only if TLTLC_DEBUG is 1.
     """
     import traceback
     import zlib

@@ -1,4 +1,4 @@
-"""Find the source files for the arguments of a command: the files and folders that it names."""
+"""Find the source files for the arguments of a command, which are paths of files and folders."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def every_source(arguments: Iterable[str], report: Report) -> list[str]:
-    """Return the files that the arguments name, each once, in order.
+    """Return the source files for all arguments, each once, in order (see :func:`sources`).
 
     Folders without source files are reported and skipped.
     """
@@ -29,7 +29,7 @@ def every_source(arguments: Iterable[str], report: Report) -> list[str]:
 
 
 def files_in_folders(arguments: Iterable[str]) -> list[str]:
-    """Return the source files that are now in and below the folders among the arguments."""
+    """Return the source files in and below the folders among the arguments; skip other arguments."""
     return [file for argument in arguments if _is_folder(argument) for file in _files_inside(argument)]
 
 
@@ -51,7 +51,7 @@ def sources(argument: str) -> list[str]:
 
 
 def is_free(folder: Path) -> bool:
-    """Whether nothing is at this path, or only an empty folder."""
+    """Whether a command may create this folder: the path does not exist, or is an empty folder."""
     try:
         return not os.path.lexists(folder) or not os.listdir(folder)  # noqa: PTH208
     except OSError:

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 @record
 class Input:
-    """A compiled argument: its automata, in the order of its specs, and where they come from.
+    """A compiled argument of a command: one automaton per spec, in the order of the specs.
 
     ``name`` is the name of the file in messages. ``session`` is the compiler's session for the
-    source text; None for an artefact. ``diagnostics`` has no errors.
+    source text; None for an artefact. ``diagnostics`` are warnings and notes, no errors.
     """
 
     name: str
@@ -58,11 +58,11 @@ class Input:
 
 
 def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = ()) -> Input:
-    """Read and compile an argument.
+    """Read and compile an argument, such as ``SPEC.tltl`` or ``SPEC.tltl:NAME``.
 
-    ``specs`` are names of specs to compile. A name in the argument is added to them. Without any
-    name, all specs are compiled. Raises TltlError with all diagnostics of reading and compiling,
-    with the severities that the project file sets; click.UsageError if the argument is a TOML file.
+    ``specs`` are names of specs to compile; NAME is added to them. Without any name, all specs are
+    compiled. If there are errors, raises TltlError with all diagnostics, with the severities that
+    the project file sets. Raises click.UsageError if the argument is a TOML file.
     """
     path, name = split(argument)
     if path.endswith(".toml"):

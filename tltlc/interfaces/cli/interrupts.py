@@ -107,7 +107,7 @@ def _is_importing(frame: FrameType | None) -> bool:
 
 
 def _is_at_temporary_files(frame: FrameType | None) -> bool:
-    """Whether the interrupted code manages temporary files, or enters or leaves a ``with``."""
+    """Whether the interrupted code creates or removes temporary files, or starts or ends a ``with``."""
     is_at_with = frame is not None and frame.f_globals.get("__name__") == "contextlib"
     return is_at_with or any(caller.f_globals.get("__name__") == _TEMPORARY for caller in _stack(frame))
 

@@ -31,7 +31,11 @@ _MOST_NAMED: Final = 3
 
 @record
 class JudgeOptions:
-    """The options of ``tltlc monitor`` for many traces. ``workers`` is None for the default number of processes."""
+    """The options of ``tltlc monitor`` for many traces.
+
+    ``workers`` is the number of processes; None for the default. ``episodes`` and ``as_json`` say
+    whether the options ``--episodes`` and ``--json`` are set.
+    """
 
     workers: int | None
     episodes: bool
@@ -102,7 +106,10 @@ def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:
 
 
 def _with_progress(judged: Iterable[JudgedTrace], total: int) -> Iterator[JudgedTrace]:
-    """Yield the traces unchanged, and show a bar on standard error if it is a terminal and standard output is not."""
+    """Yield the traces unchanged, and show a progress bar meanwhile.
+
+    The bar appears only if standard error is a terminal and standard output is not.
+    """
     if sys.stdout.isatty() or not sys.stderr.isatty():
         yield from judged
         return

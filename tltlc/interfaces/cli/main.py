@@ -1,4 +1,4 @@
-"""The entry point. Loading it imports nothing, so Ctrl-C is handled before anything slow starts.
+"""The entry point. This module imports nothing at the top, so it can handle Ctrl-C from the start.
 
 Python's own handler would raise an exception, even in the middle of an import, and Python would
 print its traceback.
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def main(arguments: "Sequence[str] | None" = None) -> "NoReturn":
     """Run the command line and exit with its status.
 
-    Without ``arguments``, use the arguments of the process, and manage its signals and standard
-    streams.
+    Without ``arguments``, use the arguments of the process, handle its signals, and open standard
+    streams that are closed.
     """
     if arguments is None:
         _run_process()

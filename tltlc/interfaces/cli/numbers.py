@@ -13,7 +13,7 @@ _MOST_DIGITS: Final = 20
 
 
 class WholeRange(click.IntRange):
-    """A whole number in a range, at most :data:`LARGEST`."""
+    """The type of options that take a whole number in a range, at most :data:`LARGEST`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the number; fail with a usage error if it is no whole number in the range."""
@@ -36,7 +36,7 @@ class WholeRange(click.IntRange):
 
 
 class FiniteRange(click.FloatRange):
-    """A finite number in a range; click's own range check accepts `nan`."""
+    """The type of options that take a finite number in a range; click's own type accepts `nan`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the number; fail with a usage error if it is no finite number in the range."""

@@ -32,7 +32,7 @@ target_option = click.option(
 
 
 def targets_of(lists: Iterable[str]) -> list[str]:
-    """Return the names in comma-separated lists of targets.
+    """Return the targets (output formats) named in comma-separated lists.
 
     Raise TltlError, TLT0710, for an unknown name.
     """
@@ -45,7 +45,7 @@ def targets_of(lists: Iterable[str]) -> list[str]:
 
 
 def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Project, report: Report) -> Files:
-    """Generate the files of each automaton for the requested targets.
+    """Return the files of each automaton, in the output formats (targets) ``requested``.
 
     If no targets are requested, use those of the project file, or else the default targets. Raises
     click.UsageError if two targets write the same file.

@@ -1,4 +1,4 @@
-"""Paths that commands write to."""
+"""The type of arguments and options that name a file or folder to write to."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STDOUT: Final = "-"
 
 
 class OutputPath(click.Path):
-    """A file or folder to write to.
+    """The type of arguments and options that name a file or folder to write to.
 
     ``-`` means standard output if ``stdout`` is set; otherwise ``-`` is refused. ``kind`` is what
     an existing path must be: a file, a folder, or either ("place"). If ``checked``, an existing

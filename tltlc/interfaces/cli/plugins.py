@@ -1,6 +1,6 @@
-"""Find and load the entry points that extend the command line.
+"""Find and load plugins: the entry points that extend the command line.
 
-These plugins belong to other distributions, or to parts of tltlc that need an extra.
+They belong to other installed packages, or to parts of tltlc that need optional dependencies.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ _ENTRY: Final = re.compile(r"([^=\s]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[(.*)
 
 @record
 class Plugin:
-    """An entry point: ``attribute`` of ``module``, which needs the ``extras`` of its distribution."""
+    """An entry point: ``attribute`` of ``module``, which an installed ``distribution`` provides.
+
+    ``extras`` are the extras (optional dependencies) that it needs.
+    """
 
     name: str
     module: str
@@ -45,8 +48,8 @@ def find(group: str) -> tuple[Plugin, ...]:
 def load(plugin: Plugin, wanted_by: str) -> Any:
     """Import the object that an entry point names.
 
-    Raise TLT0730, with installation help, if a component is missing. In the message, ``wanted_by``
-    says what needs the object.
+    If a Python module is not installed, raise TLT0730 with help for its installation. ``wanted_by``
+    is the name, in the message, of the command or feature that needs the object.
     """
     from functools import reduce
     from importlib import import_module
@@ -60,9 +63,9 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
 
 
 def load_levels_plugin(name: str, wanted_by: str) -> Any:
-    """Load the entry point of group ``tltlc.levels`` with this name.
+    """Load the object of the entry point ``name`` in the group ``tltlc.levels``.
 
-    Raise TLT0730 if it is not installed.
+    Raise TLT0730 if no installed package provides it. ``wanted_by`` is as in :func:`load`.
     """
     for plugin in find("tltlc.levels"):
         if plugin.name == name:
@@ -71,9 +74,9 @@ def load_levels_plugin(name: str, wanted_by: str) -> Any:
 
 
 def _plugins_in_folder(group: str, folder: str) -> Iterator[Plugin]:
-    """Yield the entry points of the distributions in a folder.
+    """Yield the entry points of a group, from the packages that are installed in a folder.
 
-    This reads the files itself, because importing importlib.metadata takes 16 ms.
+    Does not use importlib.metadata, whose import takes 16 ms.
     """
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
@@ -103,7 +106,7 @@ def _plugins_in_text(group: str, text: str, distribution: str) -> Iterator[Plugi
 
 
 def _plugins_in_archive(group: str, path: str) -> Iterator[Plugin]:
-    """Yield the entry points in an archive, which only importlib.metadata can read."""
+    """Yield the entry points of a group, from an archive, which only importlib.metadata can read."""
     from importlib.metadata import distributions
 
     for distribution in distributions(path=[path]):

@@ -38,9 +38,9 @@ def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Ite
 
 
 def _run_bounded(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
-    """Run ``work`` within the limits of time and memory.
+    """Run ``work`` within the limits of processor time and memory.
 
-    If ``work`` exceeds a limit, only report this, because the next change may fix it.
+    If ``work`` exceeds a limit, report this and return, because the next change may fix it.
     """
     try:
         with resource_limits():
@@ -54,9 +54,9 @@ def _changes(
 ) -> tuple[str, ...]:
     """Wait until files change, and then until they stop changing; return their paths.
 
-    Do not wait any longer after more than ``_MOST_LOOKS`` checks that find changes. ``before`` has
-    the earlier stamps of files by path: their times and sizes. ``known`` has the files that
-    ``list_files`` returned before the last run.
+    Some programs never stop writing, so the wait also ends after ``_MOST_LOOKS`` checks that find
+    changes. ``before`` maps the paths that the last run read or looked up to their stamps, such as
+    time and size. ``known`` contains the files that ``list_files`` returned before the last run.
     """
     changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()
@@ -82,7 +82,7 @@ def _changes(
 
 
 def _real_path(path: str) -> str:
-    """Return the real path; raise TLT0001 if the current folder was deleted."""
+    """Return the path with all links resolved; raise TLT0001 if the current folder was deleted."""
     try:
         return os.path.realpath(path)
     except FileNotFoundError:

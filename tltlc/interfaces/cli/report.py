@@ -21,10 +21,11 @@ class Report:
     """Collects the diagnostics of a command, and shows them.
 
     As a context manager, it also reports a TltlError that ends the block, and suppresses it. Each
-    diagnostic is reported once, even if two files import the file with the error. The text
-    format is shown at once, on standard error. Machine formats form one document per run, which is
-    shown at the end: on standard output, or on standard error for commands that print results.
-    ``diagnostics`` has the diagnostics in order, and ``status`` is the exit status.
+    diagnostic is reported once, even if two files import the file with the error. In the format
+    ``text``, diagnostics appear at once, on standard error. In the machine formats, such as JSON,
+    they form one document, which appears at the end: on standard output, or on standard error for
+    commands that print results. ``diagnostics`` has the diagnostics in order, and ``status`` is the
+    exit status.
     """
 
     def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
@@ -83,7 +84,8 @@ def tally(diagnostics: Iterable[Diagnostic]) -> str:
 def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002
     """Write diagnostics to a stream; use colour only for text at a terminal.
 
-    Text shows the first 20 of each code in a file and counts the rest. Machine formats show all.
+    The format ``text`` shows the first 20 diagnostics with the same severity and code in a file, and
+    counts the rest. The other formats show all.
     """
     all_diagnostics = tuple(diagnostics)
     if not all_diagnostics and format == "text":

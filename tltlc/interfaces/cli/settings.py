@@ -26,7 +26,8 @@ class CompileSettings:
     """The options of the command line for compiling.
 
     ``libraries`` are folders that are searched before the libraries of the project file. ``params``
-    maps names of params to new values, as texts. If ``state_budget`` is None, the default applies.
+    maps names of params to new values, as texts. ``state_budget`` is the most states that an
+    automaton may have; None for the default.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -43,7 +44,7 @@ def source_options(command: Function) -> Function:
 
 
 def compile_options(command: Function) -> Function:
-    """Add ``--library --param --state-budget``; the command receives them as ``settings``."""
+    """Add ``--library --param --state-budget`` to a command, which receives them as ``settings``."""
     from functools import wraps
 
     @wraps(command)
@@ -105,7 +106,7 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 
 
 def search_steps(settings: CompileSettings) -> int:
-    """Return the most steps that a search in automata may take.
+    """Return the most steps that a search in automata may take, such as that for a shortest trace.
 
     Building an automaton over infinite traces may take as many steps.
     """
@@ -126,8 +127,9 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
 def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:
     """Parse ``NAME=VALUE`` texts, and return the values by name.
 
-    Raise click.BadParameter for a wrong form or a name that is set twice. Its message shows
-    ``form``, the required form, and ``option``, the name of the option.
+    Raise click.BadParameter for a text of another form, or for a name that is set twice. The
+    message shows ``form``, the form that the texts must have, and ``option``, the name of the
+    option.
     """
     values: dict[str, str] = {}
     for text in texts:

@@ -1,4 +1,4 @@
-"""Suggest the file of a spec, if a command gets the name of the spec instead of its file."""
+"""If a command gets the name of a spec instead of a file, suggest the file of this spec."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ _MOST_SUGGESTIONS: Final = 3
 
 
 def with_suggestion(error: TltlError, argument: str) -> TltlError:
-    """Return the error for an argument that is not a file, with a suggestion if there is one.
+    """Return the error about ``argument``, with the suggestion of a file that the user may mean.
 
-    The suggestion, ``NAME.tltl`` or ``FILE:NAME``, becomes the help of the error.
+    The suggestion, ``NAME.tltl`` or ``FILE:NAME``, becomes the help of the error. Return the error
+    unchanged if the path ``argument`` exists, or if no file fits.
     """
     if exists(argument):
         return error
@@ -58,7 +59,10 @@ def _files_declaring(name: str) -> Iterator[Path]:
 
 
 def _visible_sources() -> Iterator[Path]:
-    """Yield visible source files, first the files of the current folder; skip pipes and devices."""
+    """Yield the source files in and below the current folder, the files in the folder itself first.
+
+    Skips hidden files and folders, pipes and devices.
+    """
     for place, folders, files in islice(walk("."), _MOST_FOLDERS):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         paths = (Path(place, name) for name in sorted(files) if name.endswith(".tltl") and not name.startswith("."))

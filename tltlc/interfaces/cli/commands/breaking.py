@@ -92,9 +92,10 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
 
 
 def _files(argument: str, old: EarlierTree) -> list[str]:
-    """Return the argument itself; for a folder, the spec files in its new and old versions.
+    """Return the paths of the files to compare: the argument itself, or the spec files in a folder.
 
-    Raise TLT0722 if both versions of a folder have none.
+    A file counts if it is in the new or in the old version of the folder. Raise TLT0722 if neither
+    version contains a spec file.
     """
     from tltlc.io.files import files_below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
@@ -124,7 +125,7 @@ def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChang
 
 
 def _version(path: str, settings: CompileSettings) -> Version:
-    """Compile a file, and return what ``tltlc breaking`` compares of it."""
+    """Compile a file, and return the record of it that ``tltlc breaking`` compares."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 

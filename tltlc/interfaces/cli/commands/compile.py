@@ -101,7 +101,7 @@ def command(
 def _valid_inputs(
     specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report
 ) -> Iterator[Input]:
-    """Compile each argument and report its diagnostics. Yield those that have no errors."""
+    """Compile each argument and report its diagnostics; yield the compiled arguments without errors."""
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input
 
@@ -116,10 +116,11 @@ def _valid_inputs(
 
 
 def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
-    """Record ``source`` in ``sources``, under the name of each of the ``files`` made from it.
+    """Raise TLT0700 if another source file makes an output file of the same name.
 
-    Raise TLT0700 if another source makes a file of the same name. ``is_waiting`` says whether the
-    command runs again after each change of a file; then an edit can fix the error.
+    ``files`` are the output files made from ``source``. ``sources`` maps the name of each output
+    file so far to its source; this function adds the names of ``files``. ``is_waiting`` says
+    whether the command watches the source files; then the help of the error only suggests an edit.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

@@ -1,4 +1,4 @@
-"""``tltlc conformance``: write specs, traces and expected rows to check any monitor."""
+"""``tltlc conformance``: write specs, traces and expected results, to check any monitor with them."""
 
 from __future__ import annotations
 

@@ -72,10 +72,10 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
 
 
 def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
-    """Open both sides, and select the specs to compare.
+    """Compile the two arguments of ``tltlc diff``, and select the specs to compare.
 
-    Also return whether an argument names a spec. Each side then has a single spec, and the two are
-    compared even if their names differ.
+    Return both inputs, and whether an argument names a spec. If it does, each input has a single
+    spec, and the two are compared even if their names differ.
     """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
@@ -89,7 +89,7 @@ def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input
 
 
 def _open_side(argument: str, settings: CompileSettings) -> Input:
-    """Open one side: a FILE, or ``REV:FILE``, which is FILE at the Git revision REV.
+    """Compile one argument: ``FILE``, or ``REV:FILE``, which is FILE at the Git revision REV.
 
     Raises the errors of :func:`~tltlc.interfaces.cli.inputs.open_input`. For ``REV:FILE``, also
     raises those of :func:`~tltlc.tools.diff.revisions.earlier_files`, and TLT0751 if the revision
@@ -128,23 +128,20 @@ def _split_revision(path: str) -> tuple[str, str]:
 
 
 def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
-    """Return the ``exclusive`` declarations of both sides.
-
-    For an artefact, return None in their place, because artefacts do not store them.
-    """
+    """Return the ``exclusive`` declarations of both inputs; None for an artefact, which stores none."""
     return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
 def _matching_spec(name: str | None, side: Input) -> Input:
-    """Return the side with only the spec that the argument for the other side names.
+    """Return the input with only its spec called ``name``, the spec that the other argument names.
 
-    Return the side unchanged if ``name`` is None or if it has no spec of that name.
+    Return ``side`` unchanged if ``name`` is None or if it has no spec of that name.
     """
     matches = tuple(fspa for fspa in side.automata if fspa.name == name)
     return replace(side, automata=matches or side.automata)
 
 
 def _side_name(argument: str, side: Input) -> str:
-    """Return the name of a side as the report shows it: ``FILE`` or ``FILE:SPEC``."""
+    """Return the name of an input as the report shows it: ``FILE`` or ``FILE:SPEC``."""
     name = split(argument)[1]
     return side.name if name is None else f"{side.name}:{name}"

@@ -91,9 +91,9 @@ def _print_explanations(explanations: list[Explanation], format: str) -> None:  
 
 
 def _print_code_page(code: str) -> int:
-    """Print the page of a code.
+    """Print the documentation page of an error code.
 
-    For a prefix, list the codes that start with it, with their titles.
+    If ``code`` is only the beginning of error codes, list these codes with their titles.
     """
     from tltlc.diagnostics import code_pages
 

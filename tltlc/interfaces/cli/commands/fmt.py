@@ -68,7 +68,10 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
 
 
 def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -> bool:
-    """Format one file, or print what would change; return whether its layout is already correct."""
+    """Format one file in place, and return whether it was formatted already.
+
+    With ``check`` or ``diff``, only print the name of a file that would change, or the change.
+    """
     from pathlib import Path
 
     from tltlc.interfaces.cli.inputs import check_text

@@ -1,4 +1,4 @@
-"""``tltlc lint``: report what compiles but may not mean what the author intended, with fixes."""
+"""``tltlc lint``: report probable mistakes in specs that compile, and fix some of them."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ def _lint_file(
 ) -> tuple[Diagnostic, ...]:
     """Lint a file, and fix it first if ``fixing``; return the remaining diagnostics.
 
-    ``elsewhere`` contains the names that other files may use, so the linter does not call them
-    unused.
+    ``elsewhere`` contains the names that other files may use. The linter does not report the
+    declarations of these names as unused.
     """
     from pathlib import Path
 

@@ -65,7 +65,7 @@ def show(rows: list[Row]) -> None:
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
     """Yield a row for each predicate of each library, with its signature as declared.
 
-    Pass the errors of broken files to ``add``.
+    Files that cannot be read or parsed give errors, which are passed to ``add``.
     """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl
@@ -114,7 +114,7 @@ def _codes() -> Iterator[Row]:
 
 
 def _levels() -> Iterator[Row]:
-    """Return the levels of the runtime; raise TLT0730 if it is not installed."""
+    """Return a row for each level of the runtime; raise TLT0730 if the runtime is not installed."""
     from tltlc.interfaces.cli import plugins
     from tltlc.interfaces.cli.exits import missing_component
 
@@ -129,9 +129,9 @@ _LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels":
 
 
 def _lines(rows: list[Row]) -> None:
-    """Print tab-separated columns.
+    """Print each row as a line of tab-separated values.
 
-    If the rows have signatures, leave out the names, because the signatures contain them.
+    If a row has a signature, leave out its name, because the signature contains the name.
     """
     for row in rows:
         print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))

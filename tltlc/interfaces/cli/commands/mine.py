@@ -160,7 +160,7 @@ def command(
 
 
 def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterator[str]:
-    """Yield messages about columns that are left out because they are not atoms."""
+    """Yield messages about columns of the traces that the search ignores, because they are no atoms."""
     misnamed = [name for name in words.left_out if name in words.misnamed]
     not_atoms = [name for name in words.left_out if name not in words.misnamed]
     if not_atoms:
@@ -176,7 +176,7 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 
 
 def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
-    """Read the files that the arguments name, and all traces in folders, sorted by path."""
+    """Return the trace files that the arguments name; for a folder, the trace files in and below it."""
     from tltlc.io.files import read_bytes
     from tltlc.monitor.parquet import as_text
     from tltlc.tools.judge.trace_files import find_traces
@@ -199,9 +199,10 @@ def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
 
 
 def _library(predicates: str) -> SourceFile:
-    """Return the text of the file with the predicates.
+    """Return the source text of the file ``predicates``.
 
-    If the argument is the name of a library and not a file, return a text that imports the library.
+    If ``predicates`` is the name of a library and not a file, return a text that imports the
+    library.
     """
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import is_file, read_source
@@ -218,7 +219,7 @@ def _is_name(predicates: str) -> bool:
 
 
 def _compile_options(predicates: str | None, settings: CompileSettings) -> CompileOptions:
-    """Return the options to compile the proposals, which use the atoms of a library."""
+    """Return the compiler's options for the proposed specs, from the project of ``predicates``."""
     from tltlc.io.project import Project, project_for
 
     check_libraries(settings.libraries)
@@ -229,7 +230,7 @@ def _compile_options(predicates: str | None, settings: CompileSettings) -> Compi
 
 
 def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tuple[bool, bool]:
-    """Search until the end, until time is up, or until Ctrl-C.
+    """Search for specs until the search is complete, ``seconds`` have passed, or Ctrl-C.
 
     Return whether the search completed, and whether Ctrl-C interrupted it.
     """
@@ -262,7 +263,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
 
 
 def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
-    """Yield a message if the traces have more atoms than the limit, and some were not read."""
+    """Yield a message if some atoms of the traces were not read, because there are too many."""
     from tltlc.io.limits import WORK
 
     if words.unread_count:
@@ -300,9 +301,10 @@ def _write_proposals(
     imported: str | None,
     report: Report,
 ) -> None:
-    """Write the proposals as a source file, or print them.
+    """Write the proposed specs as a source file, or print the file if ``path`` is standard output.
 
-    ``imported`` is the source line that imports the library of their predicates.
+    ``imported`` is the source line that imports the library with the predicates; None if no library
+    is imported.
     """
     from tltlc.io.writing import write_file
     from tltlc.tools.fmt import format_text
@@ -318,7 +320,7 @@ def _write_proposals(
 
 
 def _import_line(library: SourceFile, predicates: str, path: Path) -> str:
-    """Return the line that imports a library by name or by path into the file at ``path``.
+    """Return the ``import`` line that a file at ``path`` needs to use a library.
 
     Raises click.UsageError if no such line can be written.
     """

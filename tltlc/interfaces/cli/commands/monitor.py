@@ -1,4 +1,4 @@
-"""``tltlc monitor``: print a row for each step of a trace, as it is read, and then the verdict."""
+"""``tltlc monitor``: print a row for each step of a trace while reading it, and then the verdict."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def command(
 
 
 def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, *, as_json: bool) -> int:  # noqa: A002
-    """Judge one trace, and print its steps while it is read."""
+    """Judge one trace, and print a row for each step while reading it; return the exit status."""
     from tltlc.monitor import Monitor
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
@@ -113,7 +113,7 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
 
 @contextmanager
 def _open_trace(trace: str) -> Iterator[_OpenTrace]:
-    """Open a trace to read it line by line; opening and reading raise TLT0001 if they fail."""
+    """Yield a trace, open for reading line by line; raise TLT0001 if opening or reading fails."""
     if trace == STDIN:
         yield _OpenTrace(standard_input(), STDIN_NAME)
         return
@@ -126,20 +126,20 @@ def _open_trace(trace: str) -> Iterator[_OpenTrace]:
 
 
 def _as_text(lines: _OpenTrace, trace: str, signals: Sequence[Signal]) -> Stream:
-    """Return the lines of a trace; those of a trace in Parquet are JSON lines."""
+    """Return a trace as a stream of text lines; a trace in Parquet is converted to JSON lines."""
     from tltlc.monitor.parquet import is_parquet, json_lines
 
     return io.BytesIO(json_lines(lines.read(), trace, signals)) if is_parquet(lines.start(), trace) else lines
 
 
 class _OpenTrace:
-    """A file that raises TLT0001 if reading fails."""
+    """A trace file, open for reading; its methods raise TLT0001 if reading fails."""
 
     def __init__(self, file: BinaryIO, name: str) -> None:
         self._file, self._name = file, name
 
     def start(self) -> bytes:
-        """Return the first bytes of the file; empty for a stream that cannot look ahead."""
+        """Return the first bytes without consuming them; empty for a stream that cannot look ahead."""
         try:
             return self._file.peek(5) if isinstance(self._file, io.BufferedReader) else b""
         except OSError as error:

@@ -87,9 +87,9 @@ def _serve(port: int, open_browser: bool) -> None:
 
 
 def _report_ignored_project() -> None:
-    """Report that a project file above the current folder is ignored.
+    """If a project file lies above the current folder, report that the playground ignores it.
 
-    The texts in the playground may read nothing outside the current folder.
+    The specs in the playground may read nothing outside the current folder.
     """
     from tltlc.io.project import project_file
 
@@ -104,7 +104,10 @@ def _report_ignored_project() -> None:
 
 
 def _open_browser(address: str, stack: ExitStack) -> None:
-    """Open an address in a browser, through a file that exists until ``stack`` closes."""
+    """Open an address in a browser, through a temporary file that redirects to the address.
+
+    The file is removed when ``stack`` is closed.
+    """
     from threading import Thread
 
     from tltlc.diagnostics.diagnostic import TltlError

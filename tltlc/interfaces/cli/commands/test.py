@@ -69,7 +69,10 @@ def _run(path: str, settings: CompileSettings, add: Callable[[Iterable[Diagnosti
 
 
 def _unread_text(files: int) -> str:
-    """Return the part of the summary that counts the files with errors, whose tests did not run."""
+    """Return the part of the summary that counts files with errors; empty if there are no such files.
+
+    Their tests did not run.
+    """
     return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
 
 

@@ -59,7 +59,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings) -> int:
 
 
 def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
-    """Check, lint and test the files; report everything, and a summary."""
+    """Check, lint and test the source files once; report the findings, the failed tests and a summary."""
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, count_text, tally
     from tltlc.io.files import log_lookup

@@ -93,7 +93,7 @@ def command(
 def _traces(
     moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
 ) -> list[Witness]:
-    """Find the requested traces; report if a trace does not exist or cannot be found."""
+    """Return the traces that the options request; report if such a trace does not exist."""
     from tltlc.tools.witness import captions, traces
     from tltlc.tools.witness import cover as edge_cover
 
@@ -118,7 +118,7 @@ def _traces(
 
 
 def _trace_texts(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
-    """Return the texts of the traces by file name.
+    """Return the text of each trace, as a ``test`` block or as CSV, by file name.
 
     If the spec has no atoms, or for CSV no signals, report an error and return no texts.
     """
