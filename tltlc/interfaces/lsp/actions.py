@@ -25,7 +25,7 @@ def actions(
 ) -> list[types.CodeAction]:
     """Return the fixes for diagnostics that touch a span, as quick-fix actions.
 
-    ``findings`` are those of the linter in this document. ``encoding`` is the unit of columns.
+    ``findings`` are the linter's findings in ``document``. ``encoding`` is the unit of columns.
     ``uri_of`` converts a file name to a URI. ``edit_of`` converts the edits of each URI to a
     workspace edit.
     """

@@ -39,9 +39,9 @@ _NAMES: Final = {"NAME"}
 
 
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
-    """Return what may be written at a character offset, the likeliest items first.
+    """Return the words that may be written at a character offset, the likeliest first.
 
-    ``encoding`` is the unit of columns in the edits of the items.
+    ``encoding`` is the unit of columns in the edits that insert the words.
     """
     quotation = quoted_text(document.source, offset)
     if quotation is not None:
@@ -57,9 +57,9 @@ def completions(document: Document, offset: int, encoding: str) -> list[types.Co
 def _edits(
     items: Iterable[types.CompletionItem], document: Document, span: Span, encoding: str
 ) -> list[types.CompletionItem]:
-    """Make each item replace ``span``, the part of the word that is already written.
+    """Add to each completion an edit that replaces ``span``, the part of the word already written.
 
-    Number the items, so that the editor keeps their order.
+    Number the completions, so that the editor keeps their order.
     """
     at = range_of(document.source, span, encoding)
     ordered = list(items)
@@ -112,7 +112,7 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
 
 
 def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
-    """Yield the names that fit after the preceding tokens."""
+    """Yield the names that may follow the tokens before the cursor."""
     first, before = place.first, place.piece[-1].text if place.piece else ""
     if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
         yield from _settings(document, first)
@@ -214,7 +214,10 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the atoms of the spec that the enclosing ``test`` block is about."""
+    """Yield the atoms of the spec that the ``test`` block around the cursor tests.
+
+    ``block`` contains the tokens of the block before the cursor.
+    """
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
         if spec.name == name:
@@ -225,7 +228,10 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
 
 
 def _local_names(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the parameters of the enclosing declaration, and the variables of quantifiers."""
+    """Yield the parameters of the declaration at the cursor, and the variables of its quantifiers.
+
+    ``piece`` contains the tokens of the declaration before the cursor.
+    """
     names: dict[str, None] = {}
     if piece and piece[0].text in ("predicate", "let"):
         depth = 0
@@ -284,7 +290,7 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
 
 
 def _libraries(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the libraries that an import finds by name, first the libraries next to the text."""
+    """Yield the libraries that an import finds by name, first those in the folder of the document."""
     folders: dict[str, Path] = {}
     for folder in (_folder(document), *document.project.libraries, standard_library()):
         for path in _sources(folder, document):
@@ -296,7 +302,7 @@ def _libraries(document: Document) -> Iterator[types.CompletionItem]:
 
 
 def _paths(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the source files next to a text, and the source files in the folder above."""
+    """Yield the paths of the other source files in the folder of the document and in its parent folder."""
     here = _folder(document)
     for folder, prefix in ((here, ""), (here.parent, "../")):
         for path in _sources(folder, document):

@@ -1,4 +1,4 @@
-"""Find which terminals may follow at the cursor in an incomplete text, from the parser's tables."""
+"""Find out which terminal symbols the grammar allows at the cursor of an incomplete text."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class Cursor:
 
     @property
     def last(self) -> str:
-        """The type of the token before the word; empty at the start of a piece."""
+        """The type of the last token in ``piece``, just before the unfinished word; empty without tokens."""
         return self.piece[-1].type if self.piece else ""
 
     @property
     def first(self) -> str:
-        """The word that the piece starts with."""
+        """The text of the first token in ``piece``, often a keyword; empty without tokens."""
         return self.piece[0].text if self.piece else ""
 
 
@@ -61,7 +61,10 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
 
 
 def _word_start(text: str) -> int:
-    """Return where the word at the end of a text starts, or the length of the text if none does."""
+    """Return the offset at which the last word of a text starts.
+
+    If the text does not end with a word, return the length of the text.
+    """
     start = end = len(text)
     while start and text[start - 1] in _IN_WORD:
         start -= 1
@@ -71,10 +74,11 @@ def _word_start(text: str) -> int:
 
 
 def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return the word before the quoted text that contains an offset, and a span of that text.
+    """Return the word before a quoted text, such as ``import``, and the span of the text up to ``offset``.
 
-    The span goes from the character after the quotation mark to the offset. The word is empty if
-    nothing precedes the quotation mark. Return None if the offset is not in a quoted text.
+    The quoted text is the one that contains ``offset``; the span starts after its quotation mark.
+    The word is empty if nothing precedes the quotation mark. Return None if ``offset`` is not in a
+    quoted text.
     """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
@@ -106,7 +110,7 @@ def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
 
 
 def _accepted_terminals(start: str, tokens: Sequence[Token]) -> set[str] | None:
-    """Return the terminals that may follow the tokens, which are parsed as the symbol ``start``.
+    """Return the terminal symbols that may follow ``tokens``, parsed as the grammar symbol ``start``.
 
     Return None if the tokens contain a syntax error.
     """

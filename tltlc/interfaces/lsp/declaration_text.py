@@ -63,10 +63,10 @@ def declaration_text(
 
 
 def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
-    """Describe a name that is not a spec, in Markdown.
+    """Describe the declaration of a name that is not a spec, in Markdown.
 
-    ``env`` has what is known about visible names. ``via`` is the name of the imported file that
-    declares the name; None if no import is needed.
+    ``env`` contains the resolved meanings of visible names. ``via`` is the name of the imported file
+    that declares the name; None if the file itself declares it.
     """
     declaration = symbol.declaration
     lines = [_code(declaration_text(declaration, symbol.source))]
@@ -78,8 +78,9 @@ def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
 
 
 def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
-    """Describe a spec in Markdown: what it asks for, and ``figures``, a text about its size.
+    """Describe a spec in Markdown: its meaning in English, its settings, and ``figures``.
 
+    ``figures`` is a text about the size of the spec's automaton; None if the size is not known.
     ``spec`` is the resolved spec; None if the spec has errors.
     """
     lines = [_code(declaration_text(declaration, source, head=True))]
@@ -99,7 +100,7 @@ def _code(text: str) -> str:
 
 
 def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
-    """Yield the type, range, unit and value of a name, or the meaning of a ``let`` in English."""
+    """Yield sentences about a name: its type, range, unit and value; for a ``let``, its meaning."""
     declaration, context = symbol.declaration, env.context
     if isinstance(declaration, SignalDecl):
         yield from _signal(declaration, context)

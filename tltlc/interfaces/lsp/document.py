@@ -1,4 +1,4 @@
-"""One version of a text, with its syntax and names, which the compiler finds quickly."""
+"""One version of a text, with those results of the compiler that are quick: its syntax and names."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Document:
 
     @property
     def module(self) -> Module:
-        """The declarations that could be parsed."""
+        """The syntax tree of the text; after syntax errors, without the parts that were not parsed."""
         return self._session.module
 
     @property
@@ -82,7 +82,7 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of syntax and names that neither comments nor the project silence."""
+        """The diagnostics about syntax and names, without those that a comment or the project silences."""
         if self.is_broken:
             # Apart from syntax errors, report only errors in names that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
@@ -95,7 +95,7 @@ class Document:
 
     @property
     def is_clean(self) -> bool:
-        """Whether syntax and names have no errors, so automata can be built."""
+        """Whether the text has no errors in syntax and names, so that automata can be built."""
         return not any(
             diagnostic.severity == "error" for diagnostic in (*self.syntax_errors, *self.resolution.diagnostics)
         )
@@ -112,7 +112,7 @@ class Document:
 
     @cached_property
     def names(self) -> tuple[Occurrence, ...]:
-        """Every name that refers to a declaration, in order."""
+        """Every name in the text that refers to a declaration, in order."""
         return occurrences(self.scope, self.tokens)
 
     def name_at(self, offset: int) -> Occurrence | None:

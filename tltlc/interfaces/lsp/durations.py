@@ -1,4 +1,4 @@
-"""Show, after each limit or bound that is written as a time, how many steps it is.
+"""Show, after each limit or bound that is written as a time, its number of steps.
 
 The steps depend on the clock, which may be declared in another file.
 """
@@ -38,7 +38,7 @@ def steps_text(steps: int) -> str:
 
 
 def durations(document: Document) -> Iterator[tuple[NumberExpr, int]]:
-    """Yield each limit or bound that is written as a time, with its number of steps."""
+    """Yield each limit of a spec and each temporal bound that is written as a time, with its steps."""
     for declaration in document.module.declarations:
         for number in _counts(declaration):
             if number.unit not in (None, "step", "steps"):

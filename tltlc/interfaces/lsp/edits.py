@@ -1,4 +1,4 @@
-"""Convert edits to the editor's protocol, apply them, and find the edits that turn one text into another."""
+"""Convert edits to the Language Server Protocol, apply edits, and compute the edit between two texts."""
 
 from __future__ import annotations
 

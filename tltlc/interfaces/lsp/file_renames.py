@@ -20,7 +20,10 @@ Moves = Sequence[tuple[str, str]]
 
 
 def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
-    """Return the edits for imports that the renames would break, by document."""
+    """Return the edits, by document, that correct the imports which renamed files would break.
+
+    ``moves`` contains the old and new paths of the renamed files and folders.
+    """
     changes = [
         (document, list(_edits(document, moves))) for document in workspace.all() if may_import(document.source.text)
     ]
@@ -28,7 +31,7 @@ def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, l
 
 
 def may_import(text: str) -> bool:
-    """Whether a source text may import files."""
+    """Whether a source text may import files: it contains the word ``import``."""
     return "import" in text
 
 
@@ -63,7 +66,7 @@ def _leads_to(declaration: Import, folder: str, there: str) -> bool:
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """Return what to write after ``import``, in a file of ``folder``, to import the file ``there``.
+    """Return the text after ``import`` with which a file in ``folder`` imports the file ``there``.
 
     Return a name if ``declaration`` imports by name and the path ``there`` allows a name; otherwise
     a path in quotation marks. Return None if the path cannot be quoted in a source text.

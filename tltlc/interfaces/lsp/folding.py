@@ -1,4 +1,4 @@
-"""Find what can be folded: blocks, statements of several lines, and runs of comments or imports."""
+"""Find the lines that an editor can fold: blocks, long statements, and runs of comments or imports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _Lines = tuple[int, int]
 
 
 def folds(document: Document) -> list[types.FoldingRange]:
-    """Return the lines that can be folded, in order.
+    """Return the ranges of lines that an editor can fold, in order.
 
     The last line of a block, with its brace, stays visible.
     """
@@ -37,7 +37,7 @@ def _fold(lines: _Lines, kind: types.FoldingRangeKind | None = None) -> types.Fo
 
 
 def _statements(document: Document) -> Iterator[_Lines]:
-    """Yield the lines of declarations other than imports, and of the clauses in blocks."""
+    """Yield the first and last line of each declaration except imports, and of each clause in a block."""
     for declaration in document.module.declarations:
         if isinstance(declaration, Import):
             continue
@@ -58,7 +58,7 @@ def _is_alone(document: Document, span: Span) -> bool:
 
 
 def _runs(pieces: Iterable[_Lines]) -> Iterator[_Lines]:
-    """Merge the lines of adjacent pieces."""
+    """Merge ranges of lines that follow each other without a gap; yield the merged ranges."""
     run: _Lines | None = None
     for first, last in pieces:
         if run is not None and first <= run[1] + 1:

@@ -20,12 +20,12 @@ _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 
 @record
 class UnparsedParts:
-    """What the unparsed parts of a text with syntax errors may contain.
+    """Lists what the parser may have missed in a text with syntax errors.
 
-    ``declared`` has the names that they may declare. ``imports`` says whether they may contain an
-    import, and ``clock`` whether they may contain a clock. ``tests`` has, for each parsed test, the
-    span of the spec's name, because a diagnostic about the whole test has its label there.
-    ``source`` is the text.
+    ``declared`` has the names that the unparsed parts may declare. ``imports`` says whether these
+    parts may contain an import, and ``clock`` whether they may contain a clock. ``tests`` has, for
+    each parsed test, the span of the spec's name, because a diagnostic about the whole test has its
+    label there. ``source`` is the text.
     """
 
     declared: frozenset[str]
@@ -35,7 +35,10 @@ class UnparsedParts:
     source: SourceFile
 
     def may_explain(self, diagnostic: Diagnostic) -> bool:
-        """Whether what a diagnostic reports as missing may be in an unparsed part."""
+        """Whether an unparsed part may contain the thing that a diagnostic reports as missing.
+
+        Such things are declarations of names, the clock, and the ``expect`` of a test.
+        """
         if diagnostic.code == _NO_SUCH_ATOM:
             # The atom may belong to a clause that is being written.
             return True
@@ -53,7 +56,7 @@ class UnparsedParts:
 
 
 def unparsed_parts(module: Module, tokens: Sequence[Token]) -> UnparsedParts:
-    """Collect what the unparsed parts may contain, from the parsed declarations and the tokens."""
+    """Return what the unparsed parts of a text may contain, from its parsed declarations and its tokens."""
     words = [token.text for token in tokens]
     imports_read = sum(isinstance(declaration, Import) for declaration in module.declarations)
     return UnparsedParts(

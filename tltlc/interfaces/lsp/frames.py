@@ -40,7 +40,7 @@ class Body:
 
 @record
 class Fault:
-    """A problem with the headers, in words.
+    """A problem with the headers of a message, described in ``text``.
 
     If ``is_answered``, the editor gets an error response; otherwise the fault is only logged.
     """
@@ -54,7 +54,7 @@ Frame = Union[Body, Fault]
 
 
 class Frames:
-    """Collects bytes until messages are complete."""
+    """Splits a stream of bytes into frames: the bodies of messages, and faults of their headers."""
 
     def __init__(self) -> None:
         self._buffer = bytearray()
@@ -73,20 +73,20 @@ class Frames:
         self._frames: list[Frame] = []
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Return the frames that these bytes complete. The bytes of a frame may come in any pieces."""
+        """Take the next bytes of the stream, and return the frames that are now complete."""
         self._buffer += data
         while self._read_part():
             pass
         return self._take_frames()
 
     def end(self) -> list[Frame]:
-        """Return the remaining frames after the last byte; an incomplete body becomes a frame."""
+        """Return the remaining frames at the end of the stream; an incomplete body becomes a frame."""
         if self._in_body and self._buffer:
             self._add_body(len(self._buffer))
         return self._take_frames()
 
     def _read_part(self) -> bool:
-        """Read the next part of a message; return False if it is not complete."""
+        """Read the next header line, body or padding; return False if its bytes have not all arrived."""
         if self._in_body:
             return self._read_body()
         return self._read_padding() if self._padding else self._read_line()
@@ -98,7 +98,7 @@ class Frames:
     # --- headers ------------------------------------------------------------------------------
 
     def _read_line(self) -> bool:
-        """Read a line of the headers; return False if it is not complete."""
+        """Read a line of the headers; return False if its bytes have not all arrived."""
         if self._length is not None and self._buffer.startswith((b"{", b"[")):
             self._frames.append(Fault("a message has no empty line before it, but it is read as if it had one"))
             self._begin_body()
@@ -135,9 +135,9 @@ class Frames:
             self._json_end = JsonEnd()
 
     def _pass_over(self, skipped: bytes, *, is_long: bool) -> None:
-        """Report that bytes other than a header are skipped, unless this is reported already.
+        """Record a fault: bytes other than a header are skipped. Do so once for adjacent bytes.
 
-        ``is_long`` says whether they belong to a line that is too long.
+        ``is_long`` says whether the bytes belong to a line that is too long.
         """
         if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
             self._is_skipping = True
@@ -154,9 +154,9 @@ class Frames:
     # --- bodies -------------------------------------------------------------------------------
 
     def _read_body(self) -> bool:
-        """Read a body up to its last bracket, its length or the next header.
+        """Read a body up to its last bracket, its announced length or the next header.
 
-        Return False if none of these has arrived.
+        Return False if the end of the body has not arrived.
         """
         length = self._length or 0
         json_end = self._json_end.find(self._buffer, length)
@@ -182,7 +182,7 @@ class Frames:
         return True
 
     def _read_padding(self) -> bool:
-        """Skip the announced bytes after the last bracket of a body, if they are white space.
+        """Skip white space after the last bracket of a body, up to the length that its header announced.
 
         Return whether there is nothing more to skip. If one of these bytes is not white space, the
         header was wrong: record a fault, and search for the next header.

@@ -1,4 +1,4 @@
-"""Describe the word under the pointer."""
+"""Describe the word under the mouse pointer of the editor."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) ->
 
 
 def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Describe the keyword at an offset: its syntax and, for a clause, what the clause asks for."""
+    """Describe the keyword at an offset: its syntax and, for a clause, the meaning of the clause."""
     token = document.token_at(offset)
     if token is None or token.text not in _FORMS:
         return None
@@ -81,7 +81,7 @@ def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
 
 
 def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Describe the subformula whose operator is at an offset."""
+    """Describe the meaning of the subformula whose operator is at an offset."""
     for declaration in document.module.declarations:
         if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
             continue

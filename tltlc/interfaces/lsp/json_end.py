@@ -12,9 +12,9 @@ _QUOTE: Final = ord('"')
 
 
 class JsonEnd:
-    """Follows the brackets of one JSON text.
+    """Counts the brackets of one JSON text, to find its end.
 
-    Looks at each byte once, and does not check the syntax otherwise.
+    Looks at each byte once, and does not check the syntax.
     """
 
     def __init__(self) -> None:
@@ -25,8 +25,8 @@ class JsonEnd:
     def find(self, data: bytearray, limit: int) -> int | None:
         """Return the offset after the bracket that closes the first bracket.
 
-        Return None if that bracket is not in ``data[:limit]``. ``data`` must start with the bytes of
-        the previous call.
+        Return None if ``data[:limit]`` lacks the closing bracket. Call again when more bytes have
+        arrived; ``data`` must then start with the bytes of the previous call.
         """
         limit = min(limit, len(data))
         while self._at < limit:
@@ -41,9 +41,9 @@ class JsonEnd:
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Move to the end of the current string; return whether the end is in ``data[:limit]``.
+        """Move behind the current JSON string; return False if its end is not in ``data[:limit]``.
 
-        If it is not, the next call resumes at ``limit``, or at an incomplete escape before
+        In this case, the next call resumes at ``limit``, or at an incomplete escape before
         ``limit``.
         """
         match = _INSIDE.match(data, self._at, limit)
@@ -55,7 +55,7 @@ class JsonEnd:
         return True
 
     def _follow(self, mark: bytes) -> bool:
-        """Follow a bracket or quotation mark, and return whether it closes the first bracket."""
+        """Count a bracket or enter a string, and return whether ``mark`` closes the first bracket."""
         if mark == b'"':
             self._in_string = True
             return False

@@ -1,4 +1,4 @@
-"""Show numbers above each spec: its states, its distance, and the results of its tests."""
+"""Show numbers above each spec: its states, the distance to its goal, and the results of its tests."""
 
 from __future__ import annotations
 

@@ -39,7 +39,11 @@ class Symbol:
         return self.kind, self.source.name, self.span.start
 
     def is_same(self, other: Symbol) -> bool:
-        """Whether both are the same symbol, provided that their files belong to one program."""
+        """Whether both are the same symbol in a program that contains the files of both.
+
+        A program is a file with all files that it imports. In a program, signals of the same name
+        are one symbol, and so are params and entities.
+        """
         if self.kind in MERGED:
             return (self.kind, self.name) == (other.kind, other.name)
         return self.key == other.key
@@ -67,7 +71,7 @@ def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]
 
 
 def symbol_of(binding: Binding) -> Symbol:
-    """Return the symbol of a visible name."""
+    """Return the declaration that a visible name refers to."""
     return Symbol(binding.kind, binding.name, binding.declaration, binding.scope.source, binding.span)
 
 
@@ -97,7 +101,7 @@ class _Walk:
                 )
 
     def declaration(self, declaration: tree.Declaration) -> None:
-        """Collect the names of a declaration."""
+        """Collect the declared names and the used names in a declaration."""
         match declaration:
             case tree.Import():
                 for name in declaration.names or ():
@@ -144,9 +148,9 @@ class _Walk:
             self._expressions([declaration.body], local)
 
     def _label(self, item: tree.TestExpect) -> None:
-        """Collect the names in the label of a state if it is a formula, not English.
+        """Collect the names in a state label of a test, if the label is a formula and not English.
 
-        Labels use no import aliases.
+        Names in labels never begin with the alias of an import.
         """
         text = self._tokens[self._starts[item.span.start] + 2]
         formula, _ = parse_formula(SourceFile(self._scope.source.name, text.text[1:-1]))
@@ -171,9 +175,9 @@ class _Walk:
             waiting += [(child, visible) for child in children(part)]
 
     def _with_variable(self, part: tree.Quantified, local: _Locals) -> _Locals:
-        """Return the local names in the body of a quantifier.
+        """Return the local names that are visible in the body of a quantifier: ``local`` and its variable.
 
-        The variable is the second token of the quantifier.
+        Also collect the variable, which is the second token of the quantifier.
         """
         index = self._starts.get(part.span.start) if self._label_start is None else None
         if index is None or index + 1 >= len(self._tokens):

@@ -15,7 +15,7 @@ from tltlc.resolve.imports import STANDARD_LIBRARY_NAME, standard_library
 
 
 def name_of(uri: str) -> str:
-    """Return the name for messages: the absolute path of a file, or ``<URI>`` if it is no file."""
+    """Return a document's name for messages: the absolute path of a file, or ``<URI>`` if it is no file."""
     try:
         path = uris.to_fs_path(uri) if uri.startswith("file:") else None
     except ValueError:

@@ -63,12 +63,12 @@ def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.P
 
 
 def range_of(source: SourceFile, span: Span, encoding: str = UTF_16) -> types.Range:
-    """Return the range that a span covers."""
+    """Return a span of a source text as a range of positions."""
     return types.Range(position(source, span.start, encoding), position(source, span.end, encoding))
 
 
 def whole(source: SourceFile, encoding: str = UTF_16) -> types.Range:
-    """Return the range of the whole text."""
+    """Return the whole source text as a range of positions."""
     return range_of(source, Span(0, len(source.text)), encoding)
 
 
@@ -83,7 +83,7 @@ def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> in
 
 
 def _start(source: SourceFile, line: int) -> int:
-    """Return the offset of the first character of an existing line, counted from 0."""
+    """Return the offset of the first character of line ``line``; the first line is 0, and the line exists."""
     low, high = 0, len(source.text)
     while low < high:
         middle = (low + high) // 2

@@ -33,7 +33,7 @@ class Protocol(LanguageServerProtocol):
     """The protocol of pygls, extended so that malformed messages are answered, too."""
 
     def receive(self, frame: Frame) -> None:
-        """Handle the body of a message; if its headers have a fault, answer or log the fault."""
+        """Handle a frame: parse and handle the body of a message, or answer or log a fault of headers."""
         if isinstance(frame, Fault):
             if frame.is_answered:
                 self.refuse(None, JsonRpcInvalidRequest(frame.text))
@@ -58,7 +58,10 @@ class Protocol(LanguageServerProtocol):
             super().handle_message(structured)
 
     def refuse(self, message: Any, error: JsonRpcException) -> None:
-        """Log an error. Answer with it unless the message is a notification or itself an answer."""
+        """Refuse a message: log the error, and send it to the editor as the answer to the message.
+
+        A message that is a notification or itself an answer gets no answer.
+        """
         content = message if isinstance(message, dict) else {}
         LOG.warning("a message was refused (method: %s): %s", content.get("method"), error)
         if ("id" in content or "method" not in content) and not content.keys() & _ANSWERS:
@@ -89,7 +92,7 @@ class Protocol(LanguageServerProtocol):
         return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
-        """Raise JsonRpcException if a message is malformed or comes at a wrong time."""
+        """Raise JsonRpcException if a request or notification is malformed or comes at a wrong time."""
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method must be a text, and an id must be a whole number or a text")

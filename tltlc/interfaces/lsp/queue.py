@@ -19,11 +19,11 @@ The analysis of a small file takes much less time. To start the process again al
 
 
 class Queue:
-    """Analyses documents one after another.
+    """Analyses documents one after another, first the one that the user looked at last.
 
-    ``analyse(uri, again)`` analyses a document. If ``again`` is false, it may return an analysis
-    that is known already. ``give_up`` stops the current analysis: ``analyse`` then returns None
-    soon.
+    The caller passes two functions. ``analyse(uri, again)`` analyses a document; if ``again`` is
+    false, it may return an earlier analysis of the same text. ``give_up`` stops the current
+    analysis: ``analyse`` then returns None soon.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class Queue:
         self._give_way()
 
     def put(self, uri: str, *, again: bool = False) -> None:
-        """Schedule the analysis of a document; with ``again``, even if its analysis is known."""
+        """Schedule the analysis of a document; with ``again``, even if there is an analysis of its text."""
         self._waiting[uri] = again or self._waiting.get(uri, False)
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._work())
@@ -65,7 +65,7 @@ class Queue:
         return await future
 
     def drop(self, uri: str) -> None:
-        """Cancel the analysis of a document, whose text is outdated."""
+        """Cancel the analysis of a document, because its text has changed."""
         self._waiting.pop(uri, None)
         if self._current == uri:
             self._give_up()
@@ -73,7 +73,7 @@ class Queue:
             self._set_answer(uri, None)
 
     def clear(self) -> None:
-        """Cancel all analyses."""
+        """Cancel all analyses, the waiting ones and the current one."""
         for uri in [*self._waiting]:
             self.drop(uri)
         self._give_up()

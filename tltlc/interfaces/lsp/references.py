@@ -30,7 +30,7 @@ Matches = list[tuple[Document, list[Occurrence]]]
 
 
 def references(symbol: Symbol, workspace: Workspace) -> Matches:
-    """Return every place in the workspace that refers to the symbol, by document."""
+    """Return every use and declaration of a symbol in the workspace, by document."""
     documents = _documents(symbol, workspace)
     programs = _programs(symbol, documents)
     result = []
@@ -92,7 +92,10 @@ def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
 
 
 def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
-    """Whether ``source`` declares the same symbol, in a program that contains the symbol's file."""
+    """Whether ``source`` declares a name of the same kind and spelling as ``symbol``.
+
+    False if the document does not read the file of ``symbol``, itself or through imports.
+    """
     if path_of(symbol.source.name) not in document.reads:
         return False
     modules = document.resolution.modules
@@ -116,10 +119,11 @@ def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
 
 
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
-    """Return the paths of the files that belong to one program with the symbol's file.
+    """Return the paths of the files in which the name of ``symbol`` may mean this symbol.
 
-    A program is a file with all files that it imports. Programs that share a file count as one if
-    several files may declare the symbol.
+    These are the file that declares the symbol and the documents that import this file. Several
+    files may declare the same signal, param or entity. For these, the files that one document reads
+    belong together, and so do two such groups that share a file.
     """
     known = {path_of(symbol.source.name)}
     if symbol.kind not in MERGED:
@@ -179,10 +183,11 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return, for each name, its offset and the file and offset of its declaration.
+    """Return, for each name in a document, its offset, and the kind, file and offset of its declaration.
 
-    A correct rename does not change the result. So all offsets are those before the edits: with
-    ``shift``, the document is the edited one, and its offsets are converted.
+    The offset of a declaration in another file is given as 0. A correct rename changes none of
+    these values. With ``shift``, the document is the text after ``edits``, and its offsets are
+    converted to those before ``edits``, so that the caller can compare the two lists.
     """
     own = document.source.name
     before = _offset_before(edits if shift else [])

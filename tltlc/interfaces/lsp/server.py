@@ -63,7 +63,7 @@ def serve() -> bool:
 
 
 async def _listen(server: EditorSession, file: BufferedReader) -> None:
-    """Handle messages until the input ends."""
+    """Read messages from ``file``, and handle them until the input ends."""
     frames, protocol = Frames(), cast("Protocol", server.protocol)
     loop = asyncio.get_running_loop()
     data = b"?"
@@ -80,9 +80,9 @@ async def _listen(server: EditorSession, file: BufferedReader) -> None:
 
 
 class _EditorOutput:
-    """Output to the editor. The process ends when the editor stops reading.
+    """A writable file for the output to the editor; the process ends if the editor stops reading.
 
-    After ``exit`` the file is closed, and answers that are still in progress are dropped.
+    After the message ``exit``, the file is closed, and later answers are dropped.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -106,13 +106,13 @@ class _EditorOutput:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether a log record is about something other than a refused message."""
+    """Whether to log a record: it is about something other than a refused message."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
 
 def create() -> EditorSession:
-    """Create a server with all its handlers."""
+    """Create a language server, and register its handlers for requests and notifications."""
     server = EditorSession()
     for method, handler, options in (*_NOTIFICATIONS, *ANSWERS):
         server.feature(method, options)(_with_error_answers(server, handler))
@@ -123,7 +123,8 @@ def create() -> EditorSession:
 def _with_error_answers(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
     """Return a handler that calls ``handler`` and answers a TltlError with an error response.
 
-    It also records that the user looks at the document, which is then analysed before others.
+    The returned handler also records that the user looks at the document of the message, which is
+    then analysed before others.
     """
     if iscoroutinefunction(handler):
 

@@ -68,7 +68,7 @@ class EditorSession(LanguageServer):
     def workspace_edit(self, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
         """Convert edits, by URI, to a workspace edit.
 
-        If the editor supports it, the edits apply only to the versions that they were made for.
+        If the editor supports it, the edits name the versions of the documents that they apply to.
         """
         workspace = self.client_capabilities.workspace
         if not (workspace and workspace.workspace_edit and workspace.workspace_edit.document_changes):
@@ -82,7 +82,7 @@ class EditorSession(LanguageServer):
         return types.WorkspaceEdit(document_changes=[*changes])
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Log the error of a message. The error of a request is not logged, but sent as its answer."""
+        """Log the error of a message, except for requests, whose errors pygls sends as answers."""
         if source is not FeatureRequestError:
             LOG.error("a message was not understood: %s", error)
 
@@ -96,17 +96,17 @@ class EditorSession(LanguageServer):
             self._schedule("later", uri, LATER_S, self._schedule_analysis, restart=True)
 
     def on_use_change(self, uris: Iterable[str]) -> None:
-        """Schedule new analyses of documents, after a change in files that may import them.
+        """Schedule new analyses of the open documents among ``uris``.
 
-        The importing files may no longer use a declaration in a document, or use it for the first
-        time.
+        A file that imports these documents has changed. It may have begun or ceased to use one of
+        their declarations, which changes the warnings about unused declarations.
         """
         for uri in uris:
             if self.texts.is_open(uri):
                 self._schedule("again", uri, LATER_S, self._schedule_reanalysis, restart=True)
 
     def on_close(self, uri: str) -> None:
-        """Forget a closed document, and clear its diagnostics."""
+        """Handle the closing of a document: forget its analysis, and clear its diagnostics."""
         self.queue.drop(uri)
         self._analyses.pop(name_of(uri), None)
         for task in ("now", "later", "again"):
@@ -118,7 +118,7 @@ class EditorSession(LanguageServer):
         self.on_use_change(dict.fromkeys([*self._imported_uris.pop(uri, []), *self.texts.open_imports(uri)]))
 
     def shut_down(self) -> None:
-        """Stop all work and all notifications."""
+        """Cancel all timers and analyses, so that the editor gets no further notifications."""
         self.was_shut_down = True
         for timer in self._timers.values():
             timer.cancel()
@@ -139,7 +139,7 @@ class EditorSession(LanguageServer):
         self._timers[key] = asyncio.get_running_loop().call_later(delay_s, run)
 
     def _publish(self, uri: str) -> None:
-        """Publish the current diagnostics of a document."""
+        """Send the current diagnostics of an open document and of its project file to the editor."""
         document = self.texts.document(uri) if self.texts.is_open(uri) else None
         if document is None:
             return
@@ -158,9 +158,9 @@ class EditorSession(LanguageServer):
         self._publish_project(document)
 
     def _publish_project(self, document: Document) -> None:
-        """Publish the diagnostics of the document's project file.
+        """Send the diagnostics of a document's project file to the editor, if they have changed.
 
-        If diagnostics of other project files were published before, bring these up to date, too.
+        If diagnostics of other project files were sent before, bring these up to date, too.
         """
         errors = self.texts.project(document.source.name)[1]
         places = {label.source.name for diagnostic in errors for label in diagnostic.labels}
@@ -183,8 +183,8 @@ class EditorSession(LanguageServer):
     def _schedule_analysis(self, uri: str) -> None:
         """Schedule the analysis of a document, and of the open documents that it imports.
 
-        The imports are analysed again, because the document may use other names from them than
-        before.
+        The imported documents are analysed again, because their warnings about unused declarations
+        depend on this document.
         """
         before, self._imported_uris[uri] = self._imported_uris.get(uri, []), self.texts.open_imports(uri)
         self.on_use_change(dict.fromkeys([*before, *self._imported_uris[uri]]))
@@ -199,7 +199,7 @@ class EditorSession(LanguageServer):
             self.queue.put(uri, again=True)
 
     async def analysis_of(self, uri: str) -> DocumentAnalysis | None:
-        """Return the analysis of a document, and make it if needed.
+        """Return the analysis of a document's current text; run the analysis if there is none.
 
         Return None if the document is missing, has errors or changes meanwhile, or if the analysis
         takes too long.
@@ -208,10 +208,11 @@ class EditorSession(LanguageServer):
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
     async def _analyse_now(self, uri: str, again: bool) -> DocumentAnalysis | None:
-        """Analyse a document and publish the result; with ``again``, even if the analysis is known.
+        """Return the analysis of a document; if it is new, also send its diagnostics to the editor.
 
-        Return None if the document is missing, has errors or changes meanwhile, or if the analysis
-        is stopped.
+        If there is an analysis of the current text, return that one, except with ``again``. Return
+        None if the document is missing, has errors or changes meanwhile, or if the analysis is
+        stopped.
         """
         document = self.texts.document(uri)
         if document is None or not document.is_clean:
@@ -232,9 +233,9 @@ class EditorSession(LanguageServer):
         return analysis
 
     def _refresh_editor(self) -> None:
-        """Ask the editor to refresh lenses and hints.
+        """Ask the editor to request code lenses and inlay hints again.
 
-        Lenses show figures of the analysis, and hints may depend on other files.
+        Lenses show numbers of the analysis, and hints may depend on other files.
         """
         workspace = self.client_capabilities.workspace or types.WorkspaceClientCapabilities()
         if workspace.code_lens and workspace.code_lens.refresh_support:

@@ -1,4 +1,4 @@
-"""The slow analysis, in a process of its own: automata, lint findings and tests of a text."""
+"""The slow part of an analysis, run in its own process: automata, lint findings and tests of a text."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class Request:
 class SpecFigures:
     """The size of a spec's automaton, and how many tests of the spec pass and fail.
 
-    ``states`` is the number of states. ``distance`` is the distance of the initial state; None if
-    no trace satisfies the spec.
+    ``states`` is the number of states. ``distance`` is the distance from the initial state to the
+    goal; None if no trace satisfies the spec.
     """
 
     spec: str
@@ -55,7 +55,7 @@ class SpecFigures:
 
 @record
 class DocumentAnalysis:
-    """The findings of compiler and linter, the failed tests, and the figures of each spec."""
+    """The result of an analysis: findings of compiler and linter, failed tests, and numbers for each spec."""
 
     findings: tuple[LintFinding, ...]
     failures: tuple[Diagnostic, ...] = ()
@@ -63,7 +63,7 @@ class DocumentAnalysis:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of the findings and the failed tests."""
+        """The diagnostics of all findings, then those of the failed tests."""
         return (*(finding.diagnostic for finding in self.findings), *self.failures)
 
 
@@ -85,12 +85,15 @@ def analyse(request: Request) -> DocumentAnalysis:
 
 
 def _seems_unused(view: View) -> bool:
-    """Whether the file has a declaration or an import that it does not use itself."""
+    """Whether a file has a declaration or an import that it does not use itself."""
     return any(True for rule in rules() if rule.code in _USE_RULES for _ in rule.check(view))
 
 
 def _elsewhere(request: Request) -> Container[str]:
-    """Return the names that other files use; for open files, the text in the editor counts."""
+    """Return the names that occur in the files which import the analysed file.
+
+    For files that are open in the editor, the text in the editor counts.
+    """
     name = request.source.name
     if name.startswith("<"):
         return frozenset()

@@ -69,7 +69,7 @@ def _has_letters(name: str, query: str) -> bool:
 
 
 def _outline_entries(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
-    """Yield each declared name with its kind, the span of the declaration and that of the name."""
+    """Yield each name of a declaration, its kind, the span of the declaration, and the span of the name."""
     match declaration:
         case tree.Import():
             yield declaration.target, Kind.Module, declaration.span, declaration.target_span

@@ -48,7 +48,7 @@ class AnalysisWorker:
             raise
 
     def abandon(self) -> None:
-        """Kill the current analysis; the next one starts a new process."""
+        """Kill the process that runs the current analysis; the next analysis starts a new process."""
         if self._process is not None:
             self._process.kill()
             self._process.join()
@@ -56,7 +56,7 @@ class AnalysisWorker:
         self._process = self._pipe = None
 
     def _connection(self) -> Connection:
-        """Return the pipe to the process; start the process first if it is not running."""
+        """Return the pipe to the worker process; start this process first if it is not running."""
         if self._pipe is None or self._process is None or not self._process.is_alive():
             self.abandon()
             context = multiprocessing.get_context("spawn")
@@ -75,7 +75,10 @@ def _exchange(pipe: Connection, request: Request) -> DocumentAnalysis | None:
 
 
 def answer_all(pipe: Connection) -> None:
-    """Answer requests until the pipe closes; this is the main function of the process."""
+    """Analyse the texts that arrive through ``pipe``, and send back the results, until the pipe closes.
+
+    This is the main function of the worker process.
+    """
     threading.Thread(target=_end_with_server, daemon=True).start()
     limit("RLIMIT_DATA", COMMAND.memory)
     from tltlc.interfaces.lsp.slow_analysis import analyse
@@ -90,7 +93,7 @@ def answer_all(pipe: Connection) -> None:
 
 
 def _end_with_server() -> None:
-    """End this process as soon as the server ends, even if the server is killed.
+    """End this worker process as soon as the server ends, even if the server is killed.
 
     This also ends an analysis that is still running.
     """

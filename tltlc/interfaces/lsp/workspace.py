@@ -32,16 +32,16 @@ class Workspace:
     # --- notifications ------------------------------------------------------------------------
 
     def put(self, uri: str, version: int | None, text: str) -> list[str]:
-        """Record a new or changed text.
+        """Record the new or changed text of an open document.
 
-        Return the URIs of the open documents that it affects, its own first.
+        Return the URIs of the open documents that the change affects, first ``uri`` itself.
         """
         name = name_of(uri)
         self._open[name] = (uri, version, text)
         return [uri, *self._forget(name)]
 
     def close(self, uri: str) -> list[str]:
-        """Forget a closed text, so that the file on disk counts again.
+        """Forget the text of a closed document, so that the file on disk counts again.
 
         Return the URIs of the open documents that this affects.
         """
@@ -50,7 +50,7 @@ class Workspace:
         return self._forget(name)
 
     def refresh(self) -> list[str]:
-        """Drop the documents that depend on a changed file.
+        """Drop the cached documents that depend on a file that has changed on disk.
 
         Return the URIs of the dropped documents that are open.
         """
@@ -154,9 +154,9 @@ class Workspace:
                 yield document
 
     async def parse(self, is_needed: Callable[[str], bool]) -> None:
-        """Parse the documents whose texts ``is_needed`` selects, and find their names in advance.
+        """Parse the documents whose texts ``is_needed`` selects, and cache their names for later requests.
 
-        Between two documents, the server may answer other requests.
+        Between two documents, other tasks of the event loop may run, such as requests.
 
         Raises:
             TltlError: TLT0004, there is too much to search or to parse.
@@ -187,7 +187,7 @@ class Workspace:
         return any(is_below(path, folder) for folder in self.folders)
 
     def _forget(self, name: str) -> list[str]:
-        """Drop the document of a text and the documents that depend on it.
+        """Drop the cached document called ``name``, and the documents that depend on it.
 
         Return the URIs of the dependent documents that are open.
         """
