@@ -1,4 +1,4 @@
-"""A page that shows what a spec means while you type it.
+"""The playground: a web page that shows the meaning of a spec while you type it.
 
 The compiler runs on the server of ``tltlc serve``, or in the browser. Begin with `page_data.view`.
 """

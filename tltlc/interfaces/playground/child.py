@@ -1,4 +1,4 @@
-"""The process that reads one JSON request from standard input, and answers on standard output.
+"""A child process of the server, which reads one JSON request from its input and prints the answer.
 
 Nothing inside a process can interrupt a compilation, so it runs in a process that the server can
 end.
@@ -55,7 +55,7 @@ def limit_resources() -> None:
 
 
 def readable_folders() -> list[str | os.PathLike[str]]:
-    """Return the folders that a text may import from: the current one and tltlc's libraries."""
+    """Return the folders from which a spec may import: the current folder and tltlc's libraries."""
     from tltlc.resolve.imports import standard_library
 
     folders: list[str | os.PathLike[str]] = [standard_library()]

@@ -1,6 +1,6 @@
-"""Child processes that answer one request each.
+"""Child processes that run the compiler and answer one request of the playground each.
 
-A child is ended if it takes too long or the client has gone.
+The server ends a child if it takes too long or the client has gone.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ class AbandonedError(Exception):
 
 
 class Children:
-    """Answers requests, at most :data:`MOST_AT_ONCE` at a time, each for at most ``limit_s`` seconds.
+    """Answers requests in child processes, at most :data:`MOST_AT_ONCE` at a time.
 
-    One child is always ready before its request comes, because it takes time to load the compiler.
+    A request may take at most ``limit_s`` seconds. A child needs time to load the compiler, so one
+    child starts in advance and waits for the next request.
     """
 
     def __init__(self, limit_s: float = LIMIT_S) -> None:
@@ -104,7 +105,7 @@ class Children:
             return child
 
     def _replace_child(self, child: subprocess.Popen[bytes]) -> None:
-        """End a child, and prepare another one."""
+        """End a child, and start another one that waits for the next request."""
         _end(child)
         with self._lock:
             self._running.discard(child)
@@ -115,7 +116,7 @@ class Children:
 
 
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
-    """Return the answer of a child.
+    """Send a request to a child, and return the child's answer.
 
     If the answer is larger than :data:`tltlc.io.limits.ANSWER` allows, return only its start, one
     byte more than is allowed. Raises AbandonedError if the client no longer waits, TimeoutExpired
@@ -139,7 +140,10 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
 
 
 def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
-    """Send the whole request, then read the answer: a child reads everything before it writes."""
+    """Send the whole request to a child, then read and return the answer.
+
+    A child reads everything before it writes.
+    """
     assert child.stdin is not None
     assert child.stdout is not None
     # If the child has ended already, it reads nothing. Its exit status says why it ended.
@@ -154,7 +158,7 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
 
 
 def _failure_answer(status: int) -> str:
-    """Return an error in place of the answer of a child that ended with this status."""
+    """Return an error to send instead of an answer, after a child ended with exit status ``status``."""
     if status == NO_MEMORY:
         return error_answer(TOO_LARGE)
     if status >= 0:

@@ -43,7 +43,7 @@ class Response:
 
 
 class Site(Protocol):
-    """Makes the answers of a server."""
+    """The interface of the object that makes the answers of a server."""
 
     def check(self, head: Head) -> None:
         """Raise RefusedError if a request must be refused, whatever its body is."""
@@ -84,10 +84,9 @@ class OpenConnections:
         return len(self._all)
 
     def add(self, connection: Connection) -> bool:
-        """Add a connection.
+        """Add a connection; return False if there is no room for it.
 
-        If there is no room, first close the least important connection. Return False if none may be
-        closed.
+        If there is no room, :meth:`make_room` first tries to close another connection.
         """
         if len(self._all) >= self.limits.most and not self.make_room():
             return False
@@ -109,7 +108,7 @@ class OpenConnections:
         return True
 
     def remove(self, connection: Connection) -> None:
-        """Forget a connection."""
+        """Remove a connection that has been closed from the open connections."""
         self._all.pop(connection, None)
 
     def close(self) -> None:
@@ -224,7 +223,7 @@ class Connection(asyncio.Protocol):
         self._close()
 
     def _probe_client(self) -> None:
-        """Send interim answers until the answer is ready.
+        """Send interim responses (100 Continue) until the answer to the current request is ready.
 
         If the client has hung up, sending one fails, and asyncio closes the connection.
         """
@@ -234,7 +233,7 @@ class Connection(asyncio.Protocol):
         self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._probe_client)
 
     def _enter(self, state: ConnectionState) -> None:
-        """Change the state, and start the timer for its time limit."""
+        """Change the state of the connection, and start the timer for the time limit of the new state."""
         limits = self._connections.limits
         seconds = {
             ConnectionState.IDLE: limits.idle_s,
@@ -255,7 +254,7 @@ class Connection(asyncio.Protocol):
             self.abort()
 
     def _advance(self) -> None:
-        """Read as much of a request as has arrived."""
+        """Read the request in the received data; once it is complete, start to answer it."""
         if not self._buffer:
             return
         if self.state is ConnectionState.IDLE:
@@ -280,7 +279,7 @@ class Connection(asyncio.Protocol):
         self._task.add_done_callback(report_failure)
 
     def _read_head(self) -> bool:
-        """Try to read the head; return whether it is complete."""
+        """Try to read the head of a request (first line and headers); return whether it is complete."""
         result = read_head(bytes(self._buffer[:_MOST_HEAD]))
         if result is None:
             return False
@@ -306,7 +305,10 @@ class Connection(asyncio.Protocol):
         self._send(response, with_body=head.method != "HEAD")
 
     def _refuse(self, status: HTTPStatus, head: Head | None = None) -> None:
-        """Refuse a request. Close the connection, because the next request may start anywhere."""
+        """Refuse a request, and close the connection afterwards.
+
+        In the data after a refused request, the start of the next request is unknown.
+        """
         self._closes = True
         self._buffer.clear()
         if not self._hung_up.is_set():
@@ -327,9 +329,10 @@ class Connection(asyncio.Protocol):
             self._on_sent()
 
     def _on_sent(self) -> None:
-        """Read the next request, or wait for the client to hang up.
+        """After an answer is sent, read the next request, or wait for the client to hang up.
 
-        The server does not close the connection first, because the answer could then be cut off.
+        If this was the last answer, the client closes the connection. If the server closed it first,
+        the answer could be cut off.
         """
         if self._closes:
             self._leave()

@@ -19,14 +19,14 @@ def add_line(curve: Curve, end: Point) -> Curve:
 
 
 def add_bend(curve: Curve, end: Point) -> Curve:
-    """Extend a curve by a piece to ``end`` that starts and ends horizontally."""
+    """Extend a curve to ``end`` by a Bézier curve that starts and ends horizontally."""
     x, y = curve[-1]
     half = (end[0] - x) / 2
     return (*curve, (x + half, y), (end[0] - half, end[1]), end)
 
 
 def add_drop(curve: Curve, end: Point) -> Curve:
-    """Extend a curve by a piece down to ``end`` that starts and ends vertically."""
+    """Extend a curve down to ``end`` by a Bézier curve that starts and ends vertically."""
     x, y = curve[-1]
     half = (end[1] - y) / 2
     return (*curve, (x, y + half), (end[0], end[1] - half), end)

@@ -1,4 +1,4 @@
-"""Find the fixes of errors that the page offers; each fix is tried first."""
+"""Find fixes of errors that the playground can offer; each fix is tried before it is offered."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of texts. In each column that an edge passes, it has a
-height of its own, called its level, so that it crosses no state and no text. The text of the edge
-is above the level. Traps are in a row below the columns. An edge to a trap goes straight down from
-its state or, if other states are below that state, down a lane beside them. All lengths are in
-pixels of the SVG; y points down.
+Columns of states alternate with columns of edge texts. A *node* is a state, or an edge in a column
+that it passes; the height of a node is called its *level*. Nodes of a column do not overlap, so
+edges cross no state and no text. The text of an edge is above its level. Traps are in a row below
+the columns. An edge to a trap goes straight down from its state or, if other states are below that
+state, down a lane beside them. All lengths are in pixels of the SVG; y points down.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ class StateBox:
 class Layout:
     """The centres of states, the centres of edges' texts, the curves of edges, and the total size.
 
-    The keys of ``middles`` are the numbers of the states; those of ``texts`` and ``curves`` are the
-    ends of the edges.
+    The keys of ``middles`` are the numbers of the states. The keys of ``texts`` and ``curves`` are
+    edges, as pairs of source and target.
     """
 
     middles: Mapping[int, Point]
@@ -66,14 +66,14 @@ def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Po
     """Lay out boxes and edges; ``corner`` is the left upper corner of the picture.
 
     Box 0 is the initial state, and ``texts`` has the size of each edge's text. Loops, and the texts
-    of edges to the row below, are not placed here, because they are drawn over and under the boxes.
-    No edge may lead from the row below to another box.
+    of edges to traps, are not placed here, because they are drawn over and under the boxes. No edge
+    may lead from a trap to another box.
     """
     return _LayoutPass(boxes, texts, corner).layout()
 
 
 class _LayoutPass:
-    """Computes first the columns, then the levels of their nodes, and then the curves of edges."""
+    """Computes one layout: first the columns, then the heights of their nodes, then the curves of edges."""
 
     def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:
         self.boxes, self.texts = boxes, texts
@@ -105,7 +105,7 @@ class _LayoutPass:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
 
     def _reach(self, node: Node) -> tuple[float, float]:
-        """Return how far a node extends above and below its level, in pixels."""
+        """Return how far a node extends above and below its level (height), in pixels."""
         if len(node) == 1:
             box = self.boxes[node[0]]
             return box.height / 2 + box.over, box.height / 2 + box.under
@@ -115,8 +115,7 @@ class _LayoutPass:
     def _levels(self, top: float) -> dict[Node, float]:
         """Return the level (height) of each node; ``top`` is the upper end of the highest node.
 
-        The level is near the levels of the nodes that edges link with the node. Nodes of a column
-        do not overlap.
+        Nodes that an edge links have similar levels. Nodes of a column do not overlap.
         """
         beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
         levels: dict[Node, float] = {}
@@ -135,7 +134,7 @@ class _LayoutPass:
         return {node: level + shift for node, level in levels.items()}
 
     def _spread(self, nodes: Sequence[Node], ideal_levels: Mapping[Node, float], levels: dict[Node, float]) -> None:
-        """Set the levels of the nodes of a column near their ideal levels, in order and with gaps.
+        """Set the levels of ``nodes``, a whole column, near their ideal levels, in order and with gaps.
 
         The mean of the levels is the mean of the ideal levels.
         """
@@ -150,7 +149,7 @@ class _LayoutPass:
             levels[node] += shift
 
     def _apart(self, upper: Node, lower: Node) -> float:
-        """Return the least distance between the levels of two nodes, one right above the other."""
+        """Return the least distance between the levels of two nodes that are neighbours in a column."""
         gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
@@ -172,7 +171,7 @@ class _LayoutPass:
             nodes = nodes[number:]
 
     def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
-        """Return the least and greatest level of a node between its neighbours in the column."""
+        """Return the least and greatest level that a node can have between its neighbours in the column."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
         low = levels[nodes[place - 1]] + self._apart(nodes[place - 1], node) if place else -inf
@@ -180,7 +179,10 @@ class _LayoutPass:
         return low, max(low, high)
 
     def _spans(self, left: float) -> list[tuple[float, float]]:
-        """Return the left and right end of each column."""
+        """Return the x coordinates of the left and right end of each column.
+
+        ``left`` is the left end of the first column.
+        """
         rises = [0.0] * len(self.columns)
         for nodes in self.chains.values():
             for node, next_node in pairwise(nodes):
@@ -213,7 +215,7 @@ class _LayoutPass:
         return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
 
     def _ports(self) -> dict[tuple[Ends, int], Point]:
-        """Return where each edge leaves its source and reaches its target, by edge and state.
+        """Return the point at which each edge touches its source and its target, by edge and state.
 
         The edges at one side of a state are sorted by the levels of the nodes that they lead to.
         """
@@ -245,7 +247,7 @@ class _LayoutPass:
         return curve
 
     def _drops(self) -> dict[Ends, Curve]:
-        """Return the curves of edges to the row below; edges to one box end side by side."""
+        """Return the curves of edges to traps; edges to the same trap end side by side."""
         paths_down = {a: self._path_down(a) for a, _ in self.drops}
         curves = {}
         for target, (x, y) in self.row.items():
@@ -259,7 +261,7 @@ class _LayoutPass:
         return curves
 
     def _path_down(self, state: int) -> Curve:
-        """Return the curve from a state down to the bottom of the columns."""
+        """Return the first part of an edge to a trap: the curve from its state to the bottom of the columns."""
         (x, y), box = self._middle(state), self.boxes[state]
         curve: Curve = ((x, y + box.height / 2),)
         if state in self.in_lanes:
@@ -269,7 +271,7 @@ class _LayoutPass:
         return add_line(curve, (curve[-1][0], self.bottom))
 
     def _row_below(self, left: float) -> dict[int, Point]:
-        """Return the places of the boxes in the row below, each below the edges that lead to it."""
+        """Return the centre of each trap in the row below the columns, near the edges that lead to it."""
         ideal_x = {
             state: mean([self._path_down(a)[-1][0] for a, b in self.drops if b == state], 0.0)
             for state, box in self.boxes.items()

@@ -34,7 +34,7 @@ def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
 
 
 def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
-    """Return an edge as nodes, one for each column from source to target."""
+    """Return an edge as a list of nodes, one for each column that it passes, from source to target."""
     source, target = ends
     a, b = column[source], column[target]
     between = range(a + 1, b) if a < b else range(a - 1, b, -1)
@@ -67,7 +67,7 @@ def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -
 
 
 def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
-    """Return, for each node, the nodes that it is linked with."""
+    """Return, for each node, the nodes at the other ends of its links."""
     beside: dict[Node, list[Node]] = {}
     for node, neighbour in links:
         beside.setdefault(node, []).append(neighbour)

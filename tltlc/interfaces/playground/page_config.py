@@ -1,4 +1,4 @@
-"""The data that the page needs when it is loaded: examples, and the words of the language."""
+"""The data that the playground page needs when it is loaded: examples, and words of the spec language."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ EXAMPLES: Final = Path(__file__).with_name("examples")
 
 
 def start() -> dict[str, Any]:
-    """Return the answer to the request ``{}``.
+    """Return the answer to the first request of the page, which is ``{}``.
 
-    It contains the ``examples``, and the keywords (``words``) and ``units`` that the page colours.
+    The answer contains the ``examples``, and the keywords (``words``) and ``units`` that the page
+    colours.
     """
     tables = load()
     # A soft keyword is a name in most places, so it keeps the colour of a name.
@@ -22,6 +23,6 @@ def start() -> dict[str, Any]:
 
 
 def examples() -> list[dict[str, str]]:
-    """Return the examples in order, each with its ``title`` (from the first line) and ``text``."""
+    """Return the example specs in order, each with its ``title`` (from the first line) and ``text``."""
     texts = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.tltl"))]
     return [{"title": text.partition("\n")[0].removeprefix("// "), "text": text} for text in texts]

@@ -1,4 +1,4 @@
-"""Compute everything that the page shows about a text, as JSON values."""
+"""Compute everything that the playground page shows about a spec text, as JSON values."""
 
 from __future__ import annotations
 
@@ -125,10 +125,10 @@ def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter]
 def diagnostic(
     message: Diagnostic, source: SourceFile | None = None, offered_fixes: Iterable[OfferedFix] = ()
 ) -> dict[str, Any]:
-    """Return a message as the page expects it.
+    """Return a diagnostic as the JSON values that the playground page shows.
 
     ``source`` is the text on the page; labels in other files get no offsets. ``offered_fixes`` may
-    contain fixes of other messages, which are left out.
+    contain fixes of other diagnostics, which are left out.
     """
     short = shorten(message)
     return {

@@ -1,4 +1,4 @@
-"""Draw the automaton as an SVG picture; the page colours it and highlights the current state."""
+"""Draw an automaton as SVG; the playground page colours it and highlights the current state."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _START: Final = 26.0
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
-    """Return the picture as SVG, and notes about the picture and what it leaves out.
+    """Return a picture of an automaton as SVG, and notes, for example about what the picture leaves out.
 
     If the automaton has too many states or edges, return None and a note.
 
@@ -53,7 +53,7 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
 
 
 class _PictureText:
-    """Computes the texts and places of one picture."""
+    """Computes the SVG text of one picture, with the wrapped texts and the layout that it needs."""
 
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
@@ -68,7 +68,7 @@ class _PictureText:
         self.places = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
 
     def svg(self) -> str:
-        """Return the picture."""
+        """Return the picture of the automaton as SVG text."""
         width, height = self.places.width + _MARGIN, self.places.height + _MARGIN
         left, y = self._frame(0)[0], self.places.middles[0][1]
         start = f'<circle cx="{left - _START:.1f}" cy="{y:.1f}" r="3.5"/>'
@@ -83,7 +83,10 @@ class _PictureText:
         )
 
     def _lines(self, ends: Ends) -> list[str]:
-        """Return the lines of an edge's text. They are longer if it goes over or under a state."""
+        """Return the text of an edge as lines, which are longer for loops and edges to a trap.
+
+        These texts are placed over or under a state, where there is more room.
+        """
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
 
@@ -99,7 +102,7 @@ class _PictureText:
         return StateBox(width, height, beside, under, max(loop[0], fall[0]))
 
     def _frame(self, state: int) -> tuple[float, float, float, float]:
-        """Return the left, top, right and bottom of a state."""
+        """Return the left, top, right and bottom coordinates of the frame around a state."""
         (x, y), box = self.places.middles[state], self.boxes[state]
         return x - box.width / 2, y - box.height / 2, x + box.width / 2, y + box.height / 2
 
@@ -135,7 +138,7 @@ class _PictureText:
         )
 
     def _arrow(self, ends: Ends) -> str:
-        """Return the arrow of an edge, and its text."""
+        """Return the arrow of an edge and the text of its guard, as SVG."""
         lines = self.lines[ends]
         width, height = _size(lines)
         left, top, right, bottom = self._frame(ends[0])
@@ -154,7 +157,10 @@ class _PictureText:
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """Return the violated state that no edge leaves, unless it is the initial state; else None."""
+    """Return the state with the verdict ``violated`` that no edge leaves; None if there is none.
+
+    The initial state does not count.
+    """
     leaving = {edge.source for edge in drawing.edges if edge.source != edge.target}
     traps = (state.id for state in drawing.states if state.verdict == "violated" and state.id not in leaving)
     return next((state for state in traps if state), None)

@@ -1,4 +1,4 @@
-"""The requests of the page and their answers, as JSON.
+"""The requests of the playground page and their answers, as JSON.
 
 Requests and answers are the same whether the compiler runs on a server or in the browser.
 """
@@ -24,12 +24,12 @@ TOO_LARGE: Final = "this takes more memory than the playground has"
 
 
 class RequestError(ValueError):
-    """Raised if a text is not a request of the page."""
+    """Raised if a text is not a valid request of the playground page."""
 
 
 @record
 class Question:
-    """A request of the page about a text.
+    """A request of the playground page about a spec text.
 
     ``spec``, ``letters`` and ``notation`` are the parameters of :func:`view`.
     """
@@ -83,7 +83,7 @@ def question(request: str) -> Question | None:
 
 
 def error_answer(title: str, help_: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
-    """Return the answer for a text that cannot be analysed: TLT0775, with this title and help."""
+    """Return the answer for a text that cannot be analysed: error TLT0775, with this title and help."""
     message = Diagnostic("TLT0775", title, help=help_)
     return _json({"diagnostics": [diagnostic(message)], "more": 0, "specs": [], "tests": [], "spec": None})
 

@@ -92,7 +92,7 @@ def read_head(data: bytes) -> tuple[Head, int] | None:
 
 
 def _first_line(line: bytes) -> tuple[str, str, bool]:
-    """Return the method, the path, and whether the version is 1.0."""
+    """Parse the first line of a request: return the method, the path, and whether this is HTTP/1.0."""
     match = _LINE.fullmatch(line)
     if match is None:
         raise RefusedError(HTTPStatus.BAD_REQUEST)
@@ -128,7 +128,7 @@ def _headers(text: bytes) -> dict[str, str]:
 
 
 def _header(line: bytes) -> tuple[str, str]:
-    """Return the name of a header in lower case, and its value without surrounding blanks."""
+    """Parse a header line: return the name in lower case, and the value without surrounding blanks."""
     name, colon, value = line.partition(b":")
     if not (colon and _NAME.fullmatch(name) and _VALUE.fullmatch(value)):
         raise RefusedError(HTTPStatus.BAD_REQUEST)

@@ -1,4 +1,4 @@
-"""Serve the playground on this machine: the files of the page, and the answers to its requests."""
+"""Serve the playground on this machine: the files of the web page, and the answers to its requests."""
 
 from __future__ import annotations
 
@@ -55,7 +55,10 @@ _HEADERS: Final = {
 
 
 class PageHandler:
-    """Answers ``GET`` for the page's files, and ``POST`` to :data:`_API` if it has the token."""
+    """Answers ``GET`` for the files of the page, and ``POST`` to :data:`_API`.
+
+    The headers of a ``POST`` must contain ``token``, a secret that only the page knows.
+    """
 
     def __init__(self, children: Children, token: str) -> None:
         self.files = page_files()
@@ -82,7 +85,10 @@ class PageHandler:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
-        """Return a file of the page, or the answer to its request; None if the page has hung up."""
+        """Return a file of the page, or the answer to a request of the page.
+
+        Return None if nobody waits for the answer any more.
+        """
         if head.path != _API:
             name = _file_name(head.path)
             kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
@@ -105,7 +111,7 @@ class PageHandler:
         return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
 
     def close(self) -> None:
-        """Stop waiting for answers."""
+        """Take no more requests, and cancel the requests that no thread has begun to answer."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _check_question(self, head: Head) -> None:
@@ -146,7 +152,10 @@ def _is_from_page(head: Head) -> bool:
 
 
 def _within_descriptors(connections: Connections) -> Connections:
-    """Limit the connections to the file descriptors that the process itself does not need."""
+    """Return ``connections`` with a lower maximum, if the system allows too few file descriptors.
+
+    A connection needs a descriptor, and the process itself needs some.
+    """
     with suppress(ImportError):
         import resource
 
@@ -192,7 +201,10 @@ class PlaygroundServer:
 
     @property
     def address(self) -> str:
-        """The address of the page, with the token in the fragment, which browsers do not send."""
+        """The address of the page, which contains the secret token.
+
+        The token is in the fragment of the URL, which browsers do not send.
+        """
         return f"http://{HOST}:{self.server_address[1]}/#token={self.token}"
 
     def serve_forever(self) -> None:
@@ -223,7 +235,7 @@ class PlaygroundServer:
             self._stopped.wait()
 
     def server_close(self) -> None:
-        """Free the port, and end the children and all pending work."""
+        """Stop the server, free the port, and end the child processes and all pending work."""
         self.children.close()
         self.shutdown()
         self.page.close()
@@ -241,7 +253,7 @@ class PlaygroundServer:
     # --- new connections ----------------------------------------------------------------------
 
     def _watch_listener(self) -> None:
-        """Start looking for new connections."""
+        """Start accepting new connections."""
         if self._retry_timer is not None:
             self._retry_timer.cancel()
             self._retry_timer = None
@@ -263,9 +275,10 @@ class PlaygroundServer:
         task.add_done_callback(report_failure)
 
     def _pause_accepting(self) -> None:
-        """Stop accepting until a connection has been closed to free a file descriptor.
+        """Stop accepting connections, because the process cannot open more file descriptors.
 
-        If none may be closed, stop for :data:`_AGAIN_S`.
+        If a connection may be closed, close it and go on. Otherwise, go on after :data:`_AGAIN_S`
+        seconds.
         """
         self._loop.remove_reader(self._listener)
         if self.connections.make_room():
@@ -284,7 +297,7 @@ class PlaygroundServer:
 
     @contextmanager
     def _signals_wake_loop(self) -> Iterator[None]:
-        """Within the context, wake the event loop at each signal, so that its handler runs at once.
+        """Within the context, wake the event loop at each signal, so that the signal's handler runs at once.
 
         Python runs the handler of a signal between two steps of the main thread. A signal that
         another thread gets, or that comes just before the wait begins, would not be handled until a
@@ -309,5 +322,5 @@ class PlaygroundServer:
                 self._loop.remove_reader(reader)
 
     def _wake(self) -> None:
-        """Wake the loop twice a second. On Windows, it notices Ctrl-C only when it is awake."""
+        """Wake the event loop twice a second. On Windows, it notices Ctrl-C only when it is awake."""
         self._loop.call_later(0.5, self._wake)

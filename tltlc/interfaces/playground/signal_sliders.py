@@ -1,4 +1,4 @@
-"""The signals of a spec as controls of the page: a slider range and a unit."""
+"""The data for the sliders with which a user of the playground sets the signals of a spec."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ If there are params of the signal's type, the greatest absolute value among them
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:
     """Return for each signal its name, type, unit, documentation, range and slider range.
 
-    The ends of the range are None where it is open.
+    An end of the range is None if the range is open there; a slider range always has two ends.
     """
     return [
         {

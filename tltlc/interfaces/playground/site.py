@@ -1,4 +1,4 @@
-"""The files that the server sends, and the files of a static site with the compiler in it."""
+"""The files of the playground page, and of a static site that runs the compiler in the browser."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _ENDINGS: Final = (".py", ".json", ".lark", ".md", ".tltl")
 
 
 def page_files() -> dict[str, bytes]:
-    """Return the files of the page by name."""
+    """Return the contents of the playground page's files, by name."""
     return {path.name: path.read_bytes() for path in sorted(PAGE.iterdir()) if path.is_file()}
 
 
 def site_files(pyodide: Path) -> dict[str, bytes]:
-    """Return the files of the site by path: the page, the compiler, and Pyodide.
+    """Return the contents of the static site's files, by path: the page, the compiler, and Pyodide.
 
     ``pyodide`` is the folder of the npm package of Pyodide.
 

@@ -1,4 +1,4 @@
-"""Run a trace that the user builds step by step, and suggest traces to start with."""
+"""Run a trace that a user of the playground builds step by step, and suggest traces to start with."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ _LONGEST: Final = 200
 
 
 def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
-    """Return the monitor's output for each step.
+    """Return a row with the monitor's output for each step of a trace; a letter is the input of a step.
 
-    If the monitor refuses a step, its row has an ``error`` and is the last row. A letter gives the
-    names of the atoms that hold (unknown names are ignored), or the values of the signals. In a
-    row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
-    ``signals`` has a value of each signal that fits the letter, or is None if none were found.
+    A letter gives the names of the atoms that hold (unknown names are ignored), or the values of
+    the signals. In a row, ``from`` is the state before the step, ``values`` are the values of the
+    atoms in order, and ``signals`` are values of the signals that make these atoms hold; None if no
+    such values were found. If the monitor refuses a step, its row has an ``error`` and is the last
+    row.
     """
     monitor, finder = Monitor(fspa), SampleFinder(fspa)
     result: list[dict[str, Any]] = []
@@ -65,9 +66,9 @@ def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
 
 
 def idle_step(fspa: Fspa) -> dict[str, Any]:
-    """Return the step that the page suggests for a new row: one in which little happens.
+    """Return the step that the page suggests for a new row of the trace: one in which little happens.
 
-    The step keeps the automaton in the initial state if possible, and few atoms hold.
+    In this step, few atoms hold, and the automaton stays in the initial state if possible.
     """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
