@@ -1,4 +1,4 @@
-"""Unpack archives safely: no path in an archive can make a file outside the folder for it."""
+"""Unpack archives safely: no path in an archive can make a file outside the target folder."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def _clash(first: str, second: str) -> bool:
 
 
 def _fold_case(name: str) -> str:
-    """Return a text that is the same for all names that some file system treats as equal."""
+    """Return a key that is the same for all names which some file system treats as equal."""
     return normalize("NFC", normalize("NFD", name).casefold())
 
 

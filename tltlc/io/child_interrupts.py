@@ -1,4 +1,4 @@
-"""Handle Ctrl-C, which a terminal sends to this process and to its children.
+"""Handle Ctrl-C, which a terminal sends to this process and to its child processes.
 
 Some children should not receive it, so that only this process handles it
 (:func:`block_interrupts`). Other children receive it, and may end before this process handles it.

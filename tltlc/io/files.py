@@ -30,7 +30,7 @@ For a folder, a device or a pipe, it is only the kind. It is None if nothing is 
 
 
 class AccessLog(dict[str, Stamp]):
-    """Maps each path that was looked up or read to the stamp that it had before.
+    """Maps each path that was looked up or read to its stamp (such as time and size) just before.
 
     ``read`` has the device and inode numbers of the regular files that were read.
     """
@@ -68,7 +68,10 @@ def confine_reads(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
 
 
 def may_read(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is inside the folders of :func:`confine_reads`, both as written and with links resolved."""
+    """Whether :func:`confine_reads` allows a path, both as written and with links resolved.
+
+    Without :func:`confine_reads`, every path is allowed.
+    """
     folders = _folders.get()
     if folders is None:
         return True
@@ -85,7 +88,7 @@ def _is_inside(path: str, folders: Iterable[str]) -> bool:
 
 
 def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
-    """Return the error TLT0777 for a file or folder outside the folders of :func:`confine_reads`."""
+    """Return the error TLT0777 for a file or folder that :func:`confine_reads` forbids to read."""
     title = f"`{name}` is outside the folder of the playground, so it is not read"
     return Diagnostic(
         "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"
@@ -94,9 +97,9 @@ def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
 
 @contextmanager
 def unsaved_texts(texts: Mapping[str, str]) -> Iterator[None]:
-    """Read these texts instead of the files at their absolute paths inside the ``with`` block.
+    """Inside the ``with`` block, use the unsaved texts of an editor instead of the files on disk.
 
-    The files need not exist.
+    ``texts`` maps the absolute path of each file to its text. The files need not exist.
     """
     token = _unsaved_texts.set(texts)
     try:
@@ -112,10 +115,10 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 
 @contextmanager
 def access_log() -> Iterator[AccessLog]:
-    """Record every path that this module looks up or reads inside the ``with`` block, with its earlier stamp.
+    """Yield a log of the paths that this module looks up or reads inside the ``with`` block.
 
-    What was computed inside the block stays valid as long as :func:`stamp` returns the same for
-    each of these paths.
+    The log maps each path to its stamp just before the first access. Results that were computed
+    inside the block stay valid as long as :func:`stamp` returns the same for each of these paths.
     """
     log = AccessLog()
     _active_logs.append(log)
@@ -146,18 +149,21 @@ def log_stream_read(stream: BinaryIO) -> None:
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path was read, by this or another name, since the innermost :func:`access_log` began.
+    """Whether the file at a path was read, under any name, since the innermost :func:`access_log` began.
 
-    A command that watches files begins a new log in each round. Otherwise an output could count as
-    read: an editor may replace a source file, and the system may then give the inode number of the
-    old file to the output.
+    Files are compared by their inode numbers. A command that watches files begins a new log in each
+    round, because the system reuses inode numbers: after an editor has replaced a source file, an
+    output may get the number of the old file.
     """
     # Devices and pipes do not count, because writing to them replaces nothing.
     return bool(_active_logs) and _identity(path) in _active_logs[-1].read
 
 
 def descriptor_of(path: str | os.PathLike[str]) -> int | None:
-    """Return 1 or 2 if standard output or standard error of this process goes to the file at a path, else None."""
+    """Return 1 if standard output of this process goes to the file at a path, 2 if standard error does.
+
+    Return None if neither does.
+    """
     identity = _identity(path)
     return next(
         (descriptor for descriptor in (1, 2) if identity is not None and _identity(descriptor) == identity), None
@@ -181,7 +187,11 @@ def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
 
 
 def stamp(path: str) -> Stamp:
-    """Return the current stamp of a path."""
+    """Return the current stamp of a path: the file's time of change, size and inode number.
+
+    Another stamp later means that the file has changed. For a folder, a device or a pipe, the stamp
+    is only the kind; if nothing is at the path, it is None.
+    """
     try:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
@@ -325,7 +335,9 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
 
 
 def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:
-    """Return the text in the bytes of a file: UTF-8, with or without a byte order mark.
+    """Decode the bytes of a file, which must be UTF-8, with or without a byte order mark.
+
+    ``name`` is the name of the file in messages.
 
     Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than
     ``max_bytes``.
@@ -356,7 +368,7 @@ def reading_error(name: str, error: OSError | ValueError) -> TltlError:
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Return in words why the system refused to open, create or write a file."""
+    """Return the reason, in words, for which the system refused to open, create or write a file."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
@@ -389,7 +401,8 @@ def _missing_file_help(name: str) -> str | None:
 def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
     """Return the error for text that is not UTF-8, with a label at the first invalid byte.
 
-    The label is in the text in which U+FFFD replaces the invalid bytes.
+    The text of the label has U+FFFD in place of the invalid bytes. ``start`` is the offset of the
+    first one in ``data``.
     """
     source = SourceFile(name, data.decode(errors="replace"))
     offset = len(data[:start].decode())

@@ -1,4 +1,4 @@
-"""The limits of everything that is read or checked, in one place, so that none is forgotten.
+"""The limits of all inputs and of long computations, in one place, so that none is forgotten.
 
 Input above a limit is reported with TLT0004 (bytes) or TLT0006 (nesting, number of values), or with
 an error of the input's format. Computations that could take very long count their steps, and stop
@@ -22,7 +22,7 @@ class Limit:
 
     ``size`` is in bytes, as stored on disk. ``depth`` is the number of levels of nesting.
     ``values`` is the number of values, keys and separators, unless the description of the limit
-    says what it counts. ``unpacked`` is in bytes, after decompression. None means that there is no
+    names other things. ``unpacked`` is in bytes, after decompression. None means that there is no
     limit of this kind.
     """
 
@@ -51,7 +51,7 @@ class Connections:
 
 @record
 class ProcessLimit:
-    """The resources of a process: ``memory`` in bytes, ``work_s`` in seconds of processor time."""
+    """The most memory (bytes) and processor time (seconds, ``work_s``) that a process may use."""
 
     memory: int
     work_s: int
@@ -59,7 +59,7 @@ class ProcessLimit:
 
 @record
 class ArithmeticLimit:
-    """The limits of an expression.
+    """The limits of an arithmetic expression.
 
     ``depth`` is the greatest depth of nested operators, functions, conditions and ``when``.
     ``compared`` is the greatest depth of an atom that compares two expressions. ``parts`` is the
@@ -217,17 +217,17 @@ WORK: Final[Mapping[str, int]] = {
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """Return the error TLT0006 for a text that nests too deep.
+    """Return the error TLT0006 for a text that nests deeper than ``limit`` allows.
 
-    ``span`` is the place, if it is known.
+    ``span`` is the part of the text that nests too deep; None if it is not known.
     """
     return _structure_error(source, f"nests deeper than {limit.depth} levels", "reduce the nesting", span)
 
 
 def too_many_values_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
-    """Return the error TLT0006 for a text with too many values.
+    """Return the error TLT0006 for a text with more values than ``limit`` allows.
 
-    ``span`` is the place, if it is known.
+    ``span`` is the part of the text with too many values; None if it is not known.
     """
     problem = f"contains more than {limit.values:,} values"
     return _structure_error(source, problem, "split it, or leave out values that nothing reads", span)

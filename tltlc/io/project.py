@@ -68,7 +68,7 @@ class Project:
 
     @contextmanager
     def apply_lint_levels(self) -> Iterator[None]:
-        """If the ``with`` block raises a :class:`TltlError`, apply :meth:`with_lint_levels` to its diagnostics."""
+        """Apply :meth:`with_lint_levels` to the diagnostics of a :class:`TltlError` from the ``with`` block."""
         try:
             yield
         except TltlError as error:
@@ -95,7 +95,10 @@ def project_for(path: str) -> Project:
 
 
 def project_file(folder: Path) -> Path | None:
-    """Return the nearest project file in an absolute folder or above it; None if none of these folders has one."""
+    """Return the path of the project file in a folder, or else in the nearest folder above it.
+
+    ``folder`` must be an absolute path. Return None if no folder has a project file.
+    """
     files = (parent / FILE_NAME for parent in (folder, *folder.parents))
     # A broken link counts, so that reading it reports the problem.
     return next((file for file in files if is_file(file) or (os.path.lexists(file) and may_read(file))), None)
@@ -104,8 +107,8 @@ def project_file(folder: Path) -> Path | None:
 def read_project(path: Path) -> Project:
     """Return the settings in a project file.
 
-    Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if it is not a
-    file; TLT0701 if it is not TOML. If the file is TOML, all its errors are raised together:
+    Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if ``path`` is
+    not a file; TLT0701 if the file is not TOML. If it is TOML, all its errors are raised together:
     TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library that
     :func:`tltlc.io.files.confine_reads` forbids to read.
     """
@@ -159,7 +162,7 @@ def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFi
 
 
 def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
-    """Map each code in the table ``lint`` to its level; append the errors in the table to ``errors``."""
+    """Return the level of each code in the table ``lint``; append the errors in the table to ``errors``."""
     if not isinstance(table, dict):
         errors.append(_wrong_value(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
@@ -210,7 +213,7 @@ _KINDS: Final = {
 
 
 def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
-    """Return a label on the first line that begins with the key, as a tuple.
+    """Return a tuple with a label at the first line that begins with ``key``.
 
     The tuple is empty if there is no such line.
     """
@@ -220,7 +223,10 @@ def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
 
 @lru_cache(maxsize=1)
 def _first_words(text: str) -> Mapping[str, Span]:
-    """Map each word or quoted text that begins a line, perhaps after a bracket, to the span of its first place."""
+    """Return the words and quoted texts that begin a line, each with the span of its first occurrence.
+
+    A bracket may stand before the word, as in ``[lint]``.
+    """
     import re
 
     spans: dict[str, Span] = {}

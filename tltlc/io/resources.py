@@ -45,19 +45,20 @@ class OutOfTimeError(BaseException):
 
 
 def permit(process: ProcessLimit) -> None:
-    """Set the limits that :func:`resource_limits` applies in this process.
+    """Set the memory and the processor time to which :func:`resource_limits` limits this process.
 
-    A number of bytes or seconds that is 0 means that there is no limit.
+    A limit of 0 means that there is no limit.
     """
     _command_limits[:] = [process]
 
 
 @contextmanager
 def resource_limits() -> Iterator[None]:
-    """Raise OutOfTimeError or MemoryError in the ``with`` block when it uses more than :func:`permit` allows.
+    """Limit the processor time and the memory of the ``with`` block to what :func:`permit` has set.
 
-    Does nothing inside another ``with`` block of this function, outside the main thread, or without
-    a call of :func:`permit`.
+    If the block uses more, OutOfTimeError or MemoryError is raised in it. Does nothing inside
+    another ``with`` block of this function, outside the main thread, or without a call of
+    :func:`permit`.
     """
     if not _command_limits or _active or current_thread() is not main_thread():
         # Only the main thread receives signals, and an outer block has set the limits already.
@@ -91,8 +92,9 @@ def limit(name: str, most: int) -> None:
 def _quiet_destructors() -> Iterator[None]:
     """Suppress Python's messages about destructors that ran out of memory or time.
 
-    The command itself runs out of memory or time soon after, and reports this. Python still prints a line if
-    there is no memory left to call the hook.
+    The command itself runs out of memory or time soon after, and reports this. This function
+    replaces ``sys.unraisablehook``. If there is no memory left to call it, Python still prints a
+    message.
     """
     previous = sys.unraisablehook
 
@@ -127,7 +129,10 @@ def _raise_out_of_time(number: int, frame: FrameType | None) -> NoReturn:
 
 @contextmanager
 def _memory_limit(size: int) -> Iterator[None]:
-    """Limit the memory of the process in bytes, without mapped files such as libraries."""
+    """Inside the ``with`` block, limit the memory of the process to ``size`` bytes; 0 means no limit.
+
+    Mapped files, such as libraries, do not count.
+    """
     try:
         import resource
     except ImportError:

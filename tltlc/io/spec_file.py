@@ -35,10 +35,11 @@ _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
 def split(argument: str) -> tuple[str, str | None]:
-    """Return the path and the name of an argument ``PATH:NAME``, or the argument and None if it has no name.
+    """Split an argument ``PATH:NAME`` into path and name.
 
-    If a file has the whole argument as its path, the argument has no name. On Windows, a single
-    letter before the colon is a drive, not a path.
+    The name is None if the argument is only a path. This is also the case if the whole argument is
+    the path of an existing file. On Windows, a single letter before the colon is a drive, not a
+    path.
     """
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110

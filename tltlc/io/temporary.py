@@ -64,7 +64,9 @@ class Temporaries:
         return self._paths[-1]
 
     def back_up(self, target: Path) -> None:
-        """Back up the file at a path, or note that there is none, so that :meth:`restore` can undo its replacement.
+        """Back up the file at ``target``, so that :meth:`restore` can put it back later.
+
+        If there is no file, :meth:`restore` will remove a file that is there by then.
 
         Raises:
             OSError: the system refuses.
@@ -83,7 +85,7 @@ class Temporaries:
         self._backups.append((target, backup))
 
     def restore(self) -> list[Path]:
-        """Put back the files that were backed up, and return the paths at which the system refuses this."""
+        """Put back all files that were backed up; return the paths where the system refuses this."""
         backups, self._backups = self._backups, []
         return [target for target, backup in reversed(backups) if not _restore_file(target, backup)]
 
@@ -104,9 +106,9 @@ class Temporaries:
 
 @contextmanager
 def temporaries() -> Iterator[Temporaries]:
-    """Yield a new :class:`Temporaries`, and close it at the end.
+    """Yield a new :class:`Temporaries`, and close it at the end of the ``with`` block.
 
-    If the ``with`` block raises an exception, first put back the files that were backed up.
+    If the block raises an exception, first put back the files that were backed up.
     """
     owner = Temporaries()
     try:
@@ -120,9 +122,9 @@ def temporaries() -> Iterator[Temporaries]:
 
 @contextmanager
 def new_folders(folders: Iterable[Path]) -> Iterator[None]:
-    """Create missing folders and their missing parents.
+    """Create missing folders and their missing parents at the start of the ``with`` block.
 
-    If the ``with`` block raises an exception, remove the new folders that are empty.
+    If the block raises an exception, remove the new folders that are empty.
 
     Raises:
         OSError, ValueError: the system refuses to create a folder.
@@ -237,7 +239,7 @@ def _is_own_folder(path: Path) -> bool:
 
 
 def _restore_file(target: Path, backup: Path | None) -> bool:
-    """Put a backup back, or remove the file at ``target`` if there was none before.
+    """Move a backup back to ``target``; without a backup, remove the file at ``target``.
 
     Returns False if the system refuses.
     """
@@ -268,9 +270,10 @@ def _is_file(path: Path) -> bool:
 
 
 def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
-    """Create a lock file in a folder; return the prefix of temporary files there, and the lock file.
+    """Create and lock a lock file in a folder.
 
-    Instead of the file, returns None if locks do not work.
+    Return the prefix for the names of temporary files there, and the open lock file; None in place
+    of the file if locks do not work.
     """
     for _ in range(_ATTEMPTS):
         prefix = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"
@@ -289,7 +292,7 @@ def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
 
 
 def _is_still_at(path: Path, file: IO[bytes]) -> bool:
-    """Whether an open file is still the one at a path."""
+    """Whether a path still leads to the open file ``file``, which may have been removed or replaced."""
     try:
         return os.path.samestat(path.lstat(), os.fstat(file.fileno()))
     except FileNotFoundError:
@@ -297,7 +300,7 @@ def _is_still_at(path: Path, file: IO[bytes]) -> bool:
 
 
 def _remove_lock(path: Path, file: IO[bytes]) -> None:
-    """Remove a lock file that this process has locked. Windows removes only closed files."""
+    """Close and remove a lock file that this process has locked."""
     if os.name == "nt":
         file.close()
     with suppress(OSError):

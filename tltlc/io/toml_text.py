@@ -31,11 +31,11 @@ _MOST_CHARACTERS: Final = 200
 
 
 def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
-    """Return the table in a TOML text.
+    """Parse a TOML text, and return its top-level table.
 
     Raises:
-        TltlError: ``code`` with ``help_`` if the text is not TOML; TLT0006 if it nests deeper or has
-            more values than :data:`tltlc.io.limits.TOML` allows.
+        TltlError: the error ``code`` with the help ``help_`` if the text is not TOML; TLT0006 if it
+            nests deeper or has more values than :data:`tltlc.io.limits.TOML` allows.
     """
     _check_limits(source)
     if sys.version_info >= (3, 11):
@@ -107,9 +107,9 @@ def _check_limits(source: SourceFile) -> None:
 
 
 def _syntax_error(source: SourceFile, message: str, code: str, help_: str) -> Diagnostic:
-    """Return a diagnostic with a message of the TOML library, and with a label.
+    """Return a diagnostic for an error message of the TOML library.
 
-    The label is at the position that the message names, or at the end of the text if it names none.
+    Its label is at the position that the message names, or else at the end of the text.
     """
     location = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
     reason = message[: location.start()] if location else message

@@ -104,10 +104,10 @@ def remove_file(path: Path, advice: str) -> None:
 
 @contextmanager
 def replace_file(path: Path, advice: str = _OPTION) -> Iterator[Path]:
-    """Yield a temporary path beside ``path``, for code that writes a file itself.
+    """Yield a temporary path beside ``path``, at which the ``with`` block must write a file.
 
-    The temporary path has the same extension. At the end, the file there is renamed to ``path``. If
-    the ``with`` block raises an exception, also by Ctrl-C, the file is removed instead.
+    The temporary path has the same extension. At the end of the block, the temporary file is renamed
+    to ``path``. If the block raises an exception, also by Ctrl-C, the file is removed instead.
 
     Raises:
         TltlError: TLT0005 the system refuses to write, with ``advice`` as its help.
@@ -167,7 +167,7 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
 
 
 def _write_temporary(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
-    """Write a temporary file, with the permissions of the file that it replaces."""
+    """Write a temporary file with the permissions ``mode``, those of the file that it will replace."""
     with temporary.open("wb") as file:
         file.write(data)
         if durable:
@@ -178,7 +178,7 @@ def _write_temporary(temporary: Path, data: bytes, mode: int | None, durable: bo
 
 
 def _has_content(path: Path, mode: int, data: bytes) -> bool:
-    """Whether the path is a regular file with this content."""
+    """Whether a path is a regular file with the content ``data``; ``mode`` is the mode of the path."""
     try:
         return stat.S_ISREG(mode) and path.stat().st_size == len(data) and path.read_bytes() == data
     except OSError:
@@ -186,7 +186,7 @@ def _has_content(path: Path, mode: int, data: bytes) -> bool:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Flush a folder, so that the renames in it reach the disk; do nothing on Windows."""
+    """Flush a folder, so that the renamed files in it reach the disk; do nothing on Windows."""
     if os.name == "nt":
         return
     descriptor = os.open(folder, os.O_RDONLY)
