@@ -32,7 +32,7 @@ def drop_constants(node: Formula) -> Formula:
 
 
 def drop_repeated(node: Formula) -> Formula:
-    """Keep only the first of equal operands."""
+    """Keep only the first of equal operands of an ``and`` or ``or``."""
     distinct = dict.fromkeys(node.args)
     return node if len(distinct) == len(node.args) else join(node.op, distinct)
 
@@ -49,7 +49,7 @@ def decide_complementary(node: Formula) -> Formula:
 
 
 def absorb(node: Formula) -> Formula:
-    """Drop redundant operands.
+    """Drop redundant operands of an ``and`` or ``or``.
 
     From ``and``, drop those that another operand implies; from ``or``, those that imply another
     operand. Of two equivalent operands, drop the later one.
@@ -65,14 +65,14 @@ def absorb(node: Formula) -> Formula:
 
 
 def _makes_redundant(op: str, operand: Formula, part: Formula) -> bool:
-    """Whether ``part`` is redundant beside ``operand`` in an ``and`` or ``or``."""
+    """Whether the operand ``part`` is redundant beside ``operand`` in an ``and`` or ``or``."""
     return syntactically_implies(operand, part) if op == "and" else syntactically_implies(part, operand)
 
 
 def resolve(node: Formula) -> Formula:
-    """Inside an operand, drop the parts that the other operands rule out.
+    """Drop parts of an operand that have no effect, because of the other operands.
 
-    ``a & (!a | b)`` becomes ``a & b``.
+    ``a & (!a | b)`` becomes ``a & b``: beside ``a``, the part ``!a`` is false.
     """
     if len(node.args) > _MOST_OPERANDS:
         return node
@@ -91,7 +91,10 @@ def resolve(node: Formula) -> Formula:
 
 
 def _rules_out(op: str, operand: Formula, inner: Formula) -> bool:
-    """Whether ``operand`` makes ``inner``, which is a part of another operand, redundant in this other operand."""
+    """Whether ``inner``, a part of one operand, has no effect because of ``operand``, another operand.
+
+    In ``a & (!a | b)``, the operand ``a`` rules out ``!a``.
+    """
     if op == "and":
         return syntactically_implies(operand, complement(inner))
     return syntactically_implies(complement(operand), inner)
@@ -158,5 +161,5 @@ def shorten_equivalence(node: Formula) -> Formula:
 
 
 def _opposite(node: Formula) -> Formula:
-    """Return the negation, which is longer by at most one operator."""
+    """Return the negation of a formula: without its ``not``, or with a new ``not``."""
     return node.args[0] if node.op == "not" else build.not_(node)

@@ -87,9 +87,9 @@ def _last_step(node: Formula) -> Formula | None:
 
 
 def _repeats_operands(body: Formula, last: Formula) -> bool:
-    """Whether ``last``, the last operand of ``body``, is ``X`` or ``N`` over the other operands of ``body``.
+    """Whether ``body`` is ``p | X p``, ``p | X(p | X p)`` and so on; ``last`` is its last operand.
 
-    After these operands, ``last`` may have one more, which repeats them in the same way.
+    ``p`` stands for one or more operands. The same forms with ``&`` or ``N`` count, too.
     """
     operands, inner = body.args[:-1], last.args[0]
     if inner == (operands[0] if len(operands) == 1 else rebuild(body, operands)):
@@ -98,10 +98,10 @@ def _repeats_operands(body: Formula, last: Formula) -> bool:
 
 
 def operands_with_bounds(node: Formula) -> list[Formula]:
-    """Return the operands of an ``or`` or ``and``.
+    """Return the operands of an ``or`` or ``and``, with expansions of bounded operators as one operand.
 
-    Operands that together are the expansion of a bounded operator of at least :data:`LEAST` steps
-    become one operand.
+    Operands that together are such an expansion, of at least :data:`LEAST` steps, become one
+    operand.
     """
     operands: list[Formula] = []
     for operand in node.args:
@@ -138,7 +138,7 @@ def _next_op(node: Formula) -> str:
 
 
 def _operands(body: Formula, node: Formula) -> tuple[Formula, ...]:
-    """Return the operands that ``body`` adds to ``node``; nested operands are flattened."""
+    """Return the operands of ``body`` if it has the operator of ``node``; otherwise ``body`` alone."""
     return body.args if body.op == node.op else (body,)
 
 

@@ -129,7 +129,7 @@ def atom(name: str) -> Formula:
 
 
 def not_(operand: Formula) -> Formula:
-    """Return the negation."""
+    """Return ``not operand``, the negation."""
     return _intern("not", (operand,))
 
 
@@ -225,7 +225,10 @@ A tuple contains the operator, the indices of the operands in this list, and the
 
 
 def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
-    """Return the distinct subformulas as plain data, and the index of each formula in that list."""
+    """Return the distinct subformulas of some formulas as a list of tuples, for serialization.
+
+    Also return the index of each formula in this list.
+    """
     nodes: FlatNodes = []
     index: dict[Formula, int] = {}
     places = []
@@ -238,7 +241,7 @@ def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
 
 
 def unflatten(nodes: FlatNodes) -> list[Formula]:
-    """Return the formula of each tuple that :func:`flatten` made, in the same order."""
+    """Return the formulas for the list of tuples that :func:`flatten` made, in the same order."""
     formulas: list[Formula] = []
     for op, args, name in nodes:
         formulas.append(_intern(op, tuple(formulas[argument] for argument in args), name))
@@ -250,13 +253,14 @@ def _unpickle(nodes: FlatNodes) -> Formula:
 
 
 def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:
-    """Return the temporal operator ``op`` over its one or two operands."""
+    """Return the formula with the temporal operator ``op`` and these one or two operands."""
     return _intern(op, operands)
 
 
 def rebuild(formula: Formula, args: tuple[Formula, ...]) -> Formula:
-    """Return the operator of ``formula`` over the operands ``args``; ``and`` and ``or`` are
-    flattened.
+    """Return a formula with the operator of ``formula`` and the operands ``args``.
+
+    Nested operands of ``and`` and ``or`` are flattened.
     """
     if formula.op == "and":
         return and_(*args)

@@ -34,7 +34,7 @@ def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
 
 @lru_cache(maxsize=8192)
 def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
-    """Return the negation, with ``not`` pushed inwards through up to ``depth`` operators."""
+    """Return the negation of a formula, with ``not`` pushed inwards through up to ``depth`` operators."""
     if formula.op == "not":
         return formula.args[0]
     if formula is TRUE or formula is FALSE:

@@ -51,7 +51,10 @@ def _is_normal(node: Formula) -> bool:
 
 
 def _strip(signed: _Signed) -> _Signed:
-    """Return the same signed formula with its leading negations moved into the sign."""
+    """Remove the leading negations of a signed formula, and invert its sign for each of them.
+
+    A signed formula is a formula and its sign, which is False for the negation of the formula.
+    """
     node, positive = signed
     while node.op == "not":
         node, positive = node.args[0], not positive
@@ -59,7 +62,11 @@ def _strip(signed: _Signed) -> _Signed:
 
 
 def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
-    """Return the top operator after pushing the sign inwards, and its signed operands."""
+    """Push the sign of a signed formula inwards: return its new top operator, and its signed operands.
+
+    For ``a & b`` with the sign False (negated), the operator is ``or``, and both operands get the
+    sign False.
+    """
     node, positive = signed
     op = node.op
     if op == "implies":
@@ -76,7 +83,10 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
 
 
 def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """Return the operands in order and each once, with every operand that has the operator ``op`` flattened."""
+    """Return signed operands (formulas, each maybe negated) in order and each once.
+
+    An operand that has the operator ``op`` is replaced by its own operands.
+    """
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
     stack = list(reversed(operands))
@@ -94,7 +104,11 @@ def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
 
 
 def _combine(signed: _Signed, op: Op, operands: tuple[Formula, ...]) -> Formula:
-    """Return the normal form of a signed formula, given its top operator and the normal forms of its operands."""
+    """Return the negation normal form of a signed formula, which is a formula or its negation.
+
+    ``op`` is the top operator after pushing the sign inwards, and ``operands`` are the normal forms
+    of its operands.
+    """
     node, positive = signed
     if op in ("and", "or"):
         # The normal form of an operand may have the same operator: (a & b) | (a & b) becomes a & b.

@@ -187,7 +187,7 @@ def _run_pass(formula: Formula, done: dict[Formula, Formula]) -> Formula:
 
 @lru_cache(maxsize=16384)
 def _rewrite_root(node: Formula) -> Formula:
-    """Apply rewrites to the outermost operator until none matches."""
+    """Apply rewrites to the outermost operator of a formula until none matches."""
     for _ in range(_MOST_STEPS):
         for rewrite in _BY_OP.get(node.op, ()):
             rewritten = rewrite.apply(node)

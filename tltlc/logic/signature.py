@@ -22,7 +22,7 @@ _cache: WeakKeyDictionary[Formula, int] = WeakKeyDictionary()
 
 
 def signature(formula: Formula) -> int:
-    """Return the truth of the formula at the three positions of the 64 traces, as 192 bits.
+    """Return the truth of a formula at the three positions of 64 fixed pseudo-random traces, as 192 bits.
 
     The lowest 64 bits are the truth at the first position, one bit for each trace. If ``a`` implies
     ``b`` on every finite trace, then ``signature(a) & ~signature(b)`` is 0.
@@ -85,7 +85,10 @@ def _weak_next(bits: int) -> int:
 
 
 def _random_bits(name: str) -> int:
-    """Return 192 bits that depend on the name alone (splitmix64, Steele et al. 2014)."""
+    """Return 192 pseudo-random bits for the name of an atom; equal names have equal bits.
+
+    The generator is splitmix64 (Steele et al. 2014).
+    """
     state, bits = crc32(name.encode()), 0
     for _ in range(3):
         state = (state + 0x9E3779B97F4A7C15) & _WORD

@@ -34,7 +34,10 @@ def evaluate_constant(node: Formula) -> Formula:
 
 
 def evaluate_at_last(node: Formula) -> Formula:
-    """Replace ``F p`` by ``true`` if p is true at every last sample, and ``G p`` by ``false`` if p is false there."""
+    """Replace ``F p`` by ``true`` if ``p`` is true at the last sample of every trace.
+
+    Replace ``G p`` by ``false`` if ``p`` is false at the last sample of every trace.
+    """
     value = value_at_last(node.args[0])
     if value is None or value != (node.op == "F"):
         return node
@@ -105,7 +108,7 @@ def simplify_release(node: Formula) -> Formula:
 
 
 def distribute(node: Formula) -> Formula:
-    """Merge operands that begin with the same temporal operator.
+    """Merge operands of ``and`` or ``or`` that begin with the same temporal operator.
 
     ``G a & G b`` becomes ``G(a & b)``, and ``F a | F b`` becomes ``F(a | b)``. ``X a & N b``
     becomes ``X(a & b)``, and ``X a | N b`` becomes ``N(a | b)``.
@@ -125,7 +128,10 @@ def distribute(node: Formula) -> Formula:
 
 
 def merge_at_last(node: Formula) -> Formula:
-    """Merge operands ``F G p`` and ``G F p``, which are only about the last sample."""
+    """Merge operands of the forms ``F G p`` and ``G F p``, which both mean ``p`` at the last sample.
+
+    ``F G a & G F b`` becomes ``F G (a & b)``.
+    """
     positions = [i for i, part in enumerate(node.args) if part.op in ("F", "G") and part.args[0].op == DUAL[part.op]]
     if len(positions) < 2:
         return node
@@ -173,7 +179,7 @@ def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
 
 
 def merge_weak_and_strong(node: Formula) -> Formula:
-    """Merge two operands into one operator.
+    """Merge two operands of ``and`` or ``or`` into one temporal operator.
 
     - ``a U b | G a`` becomes ``a W b``.
     - ``a M b | G b`` becomes ``a R b``.
@@ -208,9 +214,9 @@ def _positions(node: Formula, part: Formula) -> list[int] | None:
 
 
 def _replace(node: Formula, positions: Collection[int], new: Formula) -> Formula:
-    """Return the node with ``new`` in place of the operand at the first of the positions.
+    """Return a copy of ``node`` in which ``new`` replaces the operands at ``positions``.
 
-    The operands at the other positions are removed.
+    ``new`` stands at the first of these positions.
     """
     first = min(positions)
     parts = (new if i == first else part for i, part in enumerate(node.args) if i == first or i not in positions)
