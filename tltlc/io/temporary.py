@@ -300,7 +300,7 @@ def _is_still_at(path: Path, file: IO[bytes]) -> bool:
 
 
 def _remove_lock(path: Path, file: IO[bytes]) -> None:
-    """Close and remove a lock file that this process has locked."""
+    """Close and remove a lock file that this process has open. Windows removes only closed files."""
     if os.name == "nt":
         file.close()
     with suppress(OSError):
