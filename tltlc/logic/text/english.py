@@ -30,7 +30,11 @@ _Clause = tuple[str, int]
 
 
 class _SentenceContext(NamedTuple):
-    """How many levels of clauses may still nest (``depth``), and whether traces never end (``endless``)."""
+    """What the functions below pass on while they turn one formula into a sentence.
+
+    ``depth`` is how many more levels of clauses may nest. ``endless`` says whether the sentence is
+    about traces that never end.
+    """
 
     depth: int
     endless: bool
@@ -60,8 +64,9 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
 
 
 def clause_text(formula: Formula, *, endless: bool = False) -> str:
-    """Return a formula that is no constant as a clause: ``keep alive throughout`` for ``G alive``.
+    """Return a formula as an English clause: ``keep alive throughout`` for ``G alive``.
 
+    The formula must not be the constant true or false.
     ``endless`` says that the clause is about traces that never end.
     """
     return _clause(formula, "now", _SentenceContext(_DEEPEST, endless))[0]
@@ -139,9 +144,10 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
 
 
 def _parts(node: Formula) -> list[Formula]:
-    """Return the operands, with those that have no temporal operator joined to one.
+    """Return the operands of an ``and`` or ``or``, some of them joined to one formula.
 
-    The joined operand stands where the first of them stood.
+    The operands without a temporal operator are joined. The joined formula stands where the first
+    of these operands stood.
     """
     make = build.and_ if node.op == "and" else build.or_
     operands = operands_with_bounds(node)
@@ -156,7 +162,7 @@ def _parts(node: Formula) -> list[Formula]:
 
 
 def _join_clauses(clauses: Sequence[_Clause]) -> _Clause:
-    """Join the clauses into one list."""
+    """Join clauses to one clause: ``reach a, and keep b throughout``."""
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
         return clauses[0]
@@ -175,7 +181,7 @@ def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _Claus
 
 
 def _goals(body: Formula, context: _SentenceContext) -> str:
-    """Return the goals of ``F body``, one after another."""
+    """Return the text of the goals of ``F body`` in order: ``a, then b, then c``."""
     return "".join(f", {link} {goal}" if link else goal for link, goal in _linked_goals(body, context))
 
 
@@ -211,9 +217,10 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 
 
 def _goal(body: Formula, context: _SentenceContext) -> str:
-    """Return the last goal of a sequence.
+    """Return the text of the last goal in a sequence of goals.
 
-    It is a condition, a choice of goals, or a condition with what must hold from that step on.
+    ``body`` is the formula that must hold when the goal is reached. The text names a condition, a
+    choice of goals, or a condition and what must hold from the step on at which it is reached.
     """
     if is_state(body):
         return phrase(body)
@@ -334,7 +341,7 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _Clause:
 
 
 def _step_noun(node: Formula, context: _SentenceContext) -> str:
-    """Return a noun for a moment at which ``node`` holds."""
+    """Return a noun for a step at which ``node`` holds, for example ``step with near(exit)``."""
     if _is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
     return (
@@ -345,19 +352,28 @@ def _step_noun(node: Formula, context: _SentenceContext) -> str:
 
 
 def _inner_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause of ``node`` as part of another clause, in brackets unless it is plain."""
+    """Return the clause of ``node`` for use inside another clause.
+
+    It stands in brackets, unless its rank is ``_PLAIN``.
+    """
     text, rank = _clause(node, when, context.deeper())
     return text if rank == _PLAIN else f"({text})"
 
 
 def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause of ``node`` as the last part of another, in brackets if it is scoped."""
+    """Return the clause of ``node`` for use at the end of another clause.
+
+    It stands in brackets only if its rank is ``_SCOPED``.
+    """
     text, rank = _clause(node, when, context.deeper())
     return f"({text})" if rank == _SCOPED else text
 
 
 def _rank_of_state(state: Formula) -> int:
-    """Return the rank of a clause about a formula without temporal operators."""
+    """Return the rank of a clause about ``state``, a formula without temporal operators.
+
+    The rank decides where the clause needs brackets.
+    """
     return _PLAIN if is_literal(state) else _LIST
 
 
@@ -370,7 +386,7 @@ def _without_negation(node: Formula) -> Formula:
 
 
 def _negation(node: Formula) -> Formula:
-    """Return the negation, pushed through the outermost operator."""
+    """Return the negation of a formula, pushed through its outermost operator."""
     if node.op == "iff":
         return build.iff(node.args[0], complement(node.args[1]))
     return complement(node, depth=1)

@@ -91,7 +91,8 @@ _Item = str | tuple[Formula, int]
 def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
     """Return the text of the formula, with only the brackets that it needs.
 
-    If the formula is an operand, ``least`` is the least strength at which it needs no brackets.
+    If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
+    brackets: a number as in :data:`STRENGTH`.
     """
     return "".join(_pieces(formula, spelling, least))
 
@@ -113,8 +114,9 @@ def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
 def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
     """Yield the text of the formula, from left to right.
 
-    If the formula is an operand, ``least`` is the least strength at which it needs no brackets. An
-    explicit stack replaces recursion, since formulas nest deep.
+    If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
+    brackets: a number as in :data:`STRENGTH`. An explicit stack replaces recursion, since formulas
+    nest deep.
     """
     stack: list[_Item] = [(formula, least)]
     while stack:
@@ -153,7 +155,10 @@ def _push_operand(stack: list[_Item], prefix: str, operand: Formula, spelling: S
 
 
 def _push_infix(stack: list[_Item], node: Formula, spelling: Spelling) -> None:
-    """Push the operands of an infix operator, the last one first, with its symbol between them."""
+    """Push onto ``stack`` what remains to be printed for ``node``, a formula with an infix operator.
+
+    This is the operands, the last one first, with the symbol of the operator between them.
+    """
     strength, inner = STRENGTH[node.op], OPERAND if spelling.brackets_between_infix else 0
     operands = operands_with_bounds(node) if node.op in ("or", "and") else node.args
     # All infix operators except <-> group to the right, and operands of & and | never have the same operator.

@@ -38,7 +38,7 @@ class Outline:
 
 
 def outline(formula: Formula, *, endless: bool = False) -> Outline:
-    """Return the outline of a formula.
+    """Return the conjuncts of a formula as English clauses, sorted by what kind of requirement they are.
 
     ``endless`` says that the formula is about traces that never end. It must then be a constant, or
     contain no constant.

@@ -1,7 +1,7 @@
-"""Parse the formulas in artefacts: texts that :func:`tltlc.logic.text.printer.ascii_text` printed.
+"""Parse the formulas in artefacts, the files ``NAME.fspa.json`` with compiled automata.
 
-The grammar of the language reads many more notations, and needs declarations. This parser needs
-only the names of the atoms.
+:func:`tltlc.logic.text.printer.ascii_text` printed these formulas. The parser of source texts reads
+many more notations, and needs declarations. This parser needs only the names of the atoms.
 """
 
 from __future__ import annotations
