@@ -38,8 +38,8 @@ class CompileOptions:
     ``library_dirs`` are searched for imports, after the folder of the file itself. ``params`` maps
     names of params to values that replace those in the text, written as in the language
     (``{"level_size": "30 m"}``). ``state_budget`` is the most states that the construction of an
-    automaton may explore; over infinite traces, the most steps of the construction are proportional
-    to it. ``specs`` has the names of the specs to build; if it is empty, all are built.
+    automaton may explore; for a spec over infinite traces, a number of steps proportional to it is
+    the limit instead. ``specs`` has the names of the specs to build; if it is empty, all are built.
     """
 
     library_dirs: tuple[Path, ...] = ()
@@ -103,7 +103,7 @@ class Session:
 
     @cached_property
     def program(self) -> ResolvedFile:
-        """The specs and tests.
+        """The specs and tests of the source text, with all names resolved.
 
         Errors: :class:`TltlError` with the diagnostics of parsing if the text has syntax errors;
         with those of parsing and resolving if it has other errors.

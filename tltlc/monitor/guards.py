@@ -46,15 +46,16 @@ def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:
-    """Return the index of the atom that determines the robustness of the most robust of the guards."""
+    """Return the index of the atom of the literal that :func:`bounding_literal` returns."""
     return bounding_literal(guards, values)[0]
 
 
 def bounding_literal(guards: Sequence[Guard], values: Sequence[float]) -> tuple[int, bool]:
-    """Return the literal that determines the robustness of the most robust of the guards.
+    """Return the literal whose value is the robustness of the most robust of the guards.
 
     It is the literal with the least value in the most robust prime implicant. Of prime implicants
-    or literals with equal values, the first counts.
+    or literals with equal values, the first counts. The literal is the index of its atom, and
+    whether it is positive.
     """
     primes = (prime for guard in guards for prime in guard.primes)
     best = max(primes, key=lambda prime: prime_robustness(prime, values))

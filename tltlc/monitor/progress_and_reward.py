@@ -35,9 +35,10 @@ class RewardOptions:
 
     - ``mode`` is the name of the reward, one of :data:`MODES`.
     - ``termination`` says when an episode ends. With ``entry``, it ends as soon as it enters a trap
-      or an accepting state; if the spec is judged at its limit, only as soon as the verdict is
-      final. With ``paper``, it ends one step later, as in the printed algorithm, and every spec is
-      judged at its goal.
+      or an accepting state. But if the spec says ``judge at limit``, or has this by default, the
+      episode goes on until the verdict is final or the limit is reached. With ``paper``, the
+      episode ends one step later, as in the printed algorithm, and every spec is judged as with
+      ``judge at goal``.
     - ``terminal_penalty`` says what a violation costs: the sum of the penalties of all remaining
       steps (``undiscounted``), or this sum discounted by ``gamma`` (``discounted``).
     - ``gamma`` in (0, 1] is the discount of mode ``potential`` and of the ``discounted`` terminal
@@ -144,7 +145,7 @@ def step_progress(
 
 
 def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> float:
-    """Return what line 14 adds to the progress, in [0, 1 / spec_size].
+    """Return what line 14 of Algorithm 1 adds to the progress, in [0, 1 / spec_size].
 
     It tells how near the automaton is to taking an edge from ``state`` towards a goal.
     """
@@ -153,10 +154,10 @@ def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> floa
 
 
 def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
-    """Return the share of the limit that the episode has survived, in [0, 1].
+    """Return the share of the spec's limit in steps that the episode has survived, in [0, 1].
 
-    It is 1 if the spec is satisfied, and 0 if it is violated, or if it has no limit and is still
-    undecided.
+    The share is 1 if the spec is satisfied, and 0 if it is violated, or if it has no limit and is
+    still undecided.
     """
     verdict, limit = tables.fspa.states[target].verdict, tables.fspa.limit_steps
     if verdict == "satisfied":

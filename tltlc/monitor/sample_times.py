@@ -72,7 +72,7 @@ class SampleTimes:
 
     @property
     def advice(self) -> str:
-        """The help of a message about a wrong time: how to mend the trace."""
+        """Help for the error about a wrong time: how to record the trace again so that it fits."""
         if self._clock_s is None:
             return "record the samples in the order in which they happen, with times in seconds"
         return "record every sample at the rate of `clock`, with times in seconds, or change `clock` in the spec"
@@ -83,6 +83,6 @@ def _seconds(seconds: float) -> str:
 
 
 def times_fit(times: Sequence[float], clock_s: float | None) -> bool:
-    """Whether all times of a trace are right, as :class:`SampleTimes` checks them."""
+    """Whether :class:`SampleTimes` finds no wrong time among the times of a trace."""
     check = SampleTimes(clock_s)
     return all(check.problem(time) is None for time in times)

@@ -22,7 +22,7 @@ _TOLERANCE: Final = 1e-12
 
 @record
 class TestResult:
-    """The result of a test.
+    """The result of a ``test`` block.
 
     ``failure`` is a diagnostic about the first expectation that fails, or about a sample at which
     exclusive atoms hold together. It is None if the test passed.
@@ -38,16 +38,16 @@ class TestResult:
 
 
 def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
-    """Return the results of the tests of a source text, in order.
+    """Run the tests of a source text, and return their results in order.
 
-    A test is left out if ``automata`` has no automaton of its spec.
+    A test is skipped if ``automata`` has no automaton for the spec that it tests.
     """
     by_name = {fspa.name: fspa for fspa in automata}
     return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)
 
 
 def run_test(test: Test, fspa: Fspa) -> TestResult:
-    """Return the result of one test.
+    """Run one test of a spec on the automaton of the spec, and return the result.
 
     At each ``step`` of the test, the atoms that the step names have the value 1, and all other
     atoms -1. An ``expect`` is about the trace of all steps before it. The failure has the code
@@ -75,7 +75,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
 
 
 def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
-    """Return a diagnostic if an expectation fails; None if it holds.
+    """Return a diagnostic if an ``expect`` of a test fails; None if it holds.
 
     ``step`` is the last step before the expectation; None if the test begins with the expectation.
     """
@@ -102,7 +102,7 @@ def _meets(progress: float, expect: Expect) -> bool:
 
 
 def _without_blanks(label: str) -> str:
-    """Return a label without white space, so that `F (a)` and `F(a)` compare equal."""
+    """Return the label of a state without white space, so that `F (a)` and `F(a)` compare equal."""
     return "".join(label.split())
 
 

@@ -10,10 +10,10 @@ from tltlc.core.record import record
 class MonitorTables:
     """What the monitor needs to know about each state. Each of the tuples below has one entry for each state.
 
-    ``edges`` has the edges that leave the state, and ``improving`` only the edges that lead from it
-    to a smaller distance. ``base_progress`` is the share of the greatest distance (``spec_size``)
-    that is done in the state, in [0, 1]. ``ends_on_entry`` says whether an episode ends when it
-    enters the state, with ``termination="entry"``.
+    ``edges`` has the edges that leave the state. ``improving`` has only those of them that lead to
+    a state nearer to a goal. ``base_progress`` says how much of the greatest distance to a goal
+    (``spec_size``) is done in the state, as a share in [0, 1]. ``ends_on_entry`` says whether an
+    episode ends when it enters the state, with ``termination="entry"``.
     """
 
     fspa: Fspa
@@ -24,7 +24,7 @@ class MonitorTables:
 
 
 def tables(fspa: Fspa) -> MonitorTables:
-    """Return the tables of an automaton."""
+    """Compute the lookup tables that a monitor of this automaton needs."""
     edges: list[list[Edge]] = [[] for _ in fspa.states]
     for edge in fspa.edges:
         edges[edge.source].append(edge)

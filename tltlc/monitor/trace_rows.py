@@ -147,7 +147,7 @@ class TraceLines:
         return text
 
     def _bad_line(self, line: bytes, remark: str, column: int, help: str) -> TltlError:  # noqa: A002
-        """Return an error that points at the current line, even if the row began on an earlier one."""
+        """Return the error TLT0622 about ``line``, the line read last; a row may have begun before it."""
         self._first, self.text = self._read, line.decode(errors="replace")
         return self.error(remark, (column, column + 1), help)
 
@@ -192,7 +192,7 @@ def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
 
 
 def _cells(line: str, lines: TraceLines) -> list[str]:
-    """Return the cells of a row that begins with ``line``.
+    """Return the cells of a CSV row that begins with ``line``.
 
     A quoted cell may continue on further lines, which are read from ``lines``.
     """

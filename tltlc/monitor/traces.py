@@ -62,8 +62,9 @@ def in_trace(name: str, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, 
 
 
 def _check_time(time: float | None, times: SampleTimes, lines: TraceLines, columns: tuple[int, int] | None) -> None:
-    """Check the time of the next sample; None stands for a cell that is not a number.
+    """Raise TltlError (TLT0623) if the time of the next sample is wrong.
 
+    ``time`` is None if its cell does not contain a number.
     ``columns`` is the part of the line to mark, as in :meth:`TraceLines.error`.
     """
     problem = "this is not a number" if time is None else times.problem(time)
@@ -92,7 +93,11 @@ def _table_samples(
 
 
 def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
-    """Return each signal with the position of its column, from 0."""
+    """Return each signal with the position of its column in the trace, from 0.
+
+    Raises:
+        TltlError: TLT0621 a signal has no column, TLT0622 a signal has two columns.
+    """
     positions: dict[str, int] = {}
     twice = {name for position, name in enumerate(header) if positions.setdefault(name, position) != position}
     missing = [signal.name for signal in signals if signal.name not in positions]
@@ -108,9 +113,10 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
 
 
 def _format_advice(line: str, header: Sequence[str]) -> str | None:
-    """Return advice if the header begins a JSON list, separates columns by semicolons or tabs, or names no columns.
+    """Return advice for a trace whose first line is no header with columns separated by commas.
 
-    Returns None if it does none of these.
+    Returns None unless the line begins a JSON list, separates its columns by semicolons or tabs, or
+    names no columns.
     """
     if line.lstrip().startswith("["):
         return JSON_LINES_HELP

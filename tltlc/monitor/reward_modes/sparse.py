@@ -22,11 +22,15 @@ def reward(
     """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
 
     The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
-    is the distance to the nearest trace with the opposite acceptance. A trace has the distance d if
-    no value of an atom, at any sample, differs by more than d. The distance follows from the
-    widest run to a state with the opposite acceptance, since the width of a run tells how much the
-    values must change for the trace to take it. If no run reaches a state with the opposite
-    acceptance, the robustness is 1 or -1.
+    is the distance to the nearest opposite trace: one that is rejected if this one is accepted, and
+    the other way round. The distance of two traces is the greatest difference between the values
+    of an atom at a sample.
+
+    A run is a path in the automaton with one edge for each sample. Its width, the least robustness
+    of its edges, tells how much the values must change for the trace to take this run. So the
+    distance follows from the widest opposite run: one that ends in a rejecting state if the trace
+    is accepted, and in an accepting state otherwise. If there is no opposite run, the robustness is
+    1 or -1.
 
     ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
     equivalent formula has a robustness nearer to 0.
@@ -41,7 +45,10 @@ def reward(
 
 
 def _widen(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
-    """Return the widths after one more sample, which is the sample of ``transition``."""
+    """Return the width of the widest run to each state after one more sample, that of ``transition``.
+
+    ``widths`` are these widths before the sample.
+    """
     widened: Widths = {}
     for state, width in widths.items():
         for edge in tables.edges[state]:
