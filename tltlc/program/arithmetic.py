@@ -60,10 +60,10 @@ _Node = Union[source.Expression, source.Condition]
 
 
 class _Path:
-    """The conditions that are all true where an expression is computed: those of ``before``, then ``condition``.
+    """The conditions that are all true where an expression is computed, as a linked list.
 
-    ``variable`` is the variable of the program that says whether all of them are true. It is None
-    until the first statement needs it.
+    ``condition`` is the last one, and ``before`` has the others. ``variable`` is the variable of
+    the program that says whether all of them are true. It is None until a statement needs it.
     """
 
     __slots__ = ("before", "condition", "variable")
@@ -74,12 +74,12 @@ class _Path:
 
 
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
-    """Return the statements with a declaration of the variable ``name``.
+    """Return ``statements``, changed so that they declare the variable ``name``.
 
     ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``.
-    If the last statement assigns the value, it becomes the declaration. ``changes`` says whether
-    the variable is assigned again later, for example when the value of an atom is clamped to [-1,
-    1].
+    If the last statement assigns this value, it becomes the declaration. Otherwise, a declaration
+    without a value comes first. ``changes`` says whether the variable is assigned again later, for
+    example when the value of an atom is clamped to [-1, 1].
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
@@ -103,7 +103,7 @@ class ExpressionTranslator:
     """Translates expressions to statements.
 
     ``signals`` and ``params`` map the names of signals and params to variables. Temporary variables
-    are called ``PREFIX1``, ``PREFIX2`` and so on; all have different names.
+    are called ``prefix`` and a number, counted from 1; all have different names.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:

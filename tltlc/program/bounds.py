@@ -38,7 +38,7 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 
 @record
 class Range:
-    """The interval in which a value lies. The value is never NaN.
+    """The interval in which the value of an expression lies. The value is never NaN.
 
     Both ends are included and may be infinite.
     """
@@ -283,7 +283,7 @@ class _Facts:
 def _ends(operation: Callable[[float, float], float], left: Range | None, right: Range | None, op: str) -> Range | None:
     """Return the range of an operation that is monotonic in each operand; None if its result may be NaN.
 
-    ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operation's sign.
+    ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operator, such as ``*``.
     """
     if left is None or right is None:
         return None

@@ -103,8 +103,8 @@ class Program:
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
     """Return the program of an automaton's monitor.
 
-    ``reserved`` are the names that no variable may have: words of the language and names in its
-    template.
+    ``reserved`` are the names that no variable may have: words of the language in which the program
+    will be printed, and names in the template of its file.
     """
     names = VariableNames([*reserved, *_OWN])
     # Expressions of deeply nested predicates need a higher recursion limit.

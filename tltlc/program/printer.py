@@ -76,12 +76,12 @@ class Printer:
         return lines
 
     def declaration(self, statement: Declare) -> str:
-        """Return a declaration, with or without a value."""
+        """Return the code that declares a variable, with its value if it has one yet."""
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{self.TYPES[statement.type]} {statement.name}{value}{self.END}"
 
     def assignment(self, statement: Assign) -> str:
-        """Return an assignment."""
+        """Return the code that assigns a value to a variable."""
         return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:
@@ -105,7 +105,7 @@ class Printer:
         return "} else {"
 
     def closing(self) -> list[str]:
-        """Return the lines that end an ``if``."""
+        """Return the lines that end an ``if`` after its last body."""
         return ["}"]
 
     def nothing(self, depth: int) -> list[str]:
@@ -113,14 +113,14 @@ class Printer:
         return []
 
     def comment(self, text: str) -> list[str]:
-        """Return the lines of a comment."""
+        """Return the lines of a comment that says ``text``."""
         return [f"{self.COMMENT} {line}" for line in comment_lines(text)]
 
     # --- pieces of files --------------------------------------------------------------------------
 
     @classmethod
     def block(cls, lines: Iterable[str], depth: int = 1) -> str:
-        """Return the lines as a text, indented by ``depth`` levels."""
+        """Return the lines as one text, each indented by ``depth`` levels unless it is empty."""
         return "\n".join(f"{cls.INDENT * depth}{line}" if line else "" for line in lines)
 
     @classmethod
@@ -154,11 +154,11 @@ class Printer:
         return name
 
     def real(self, value: float) -> str:
-        """Return the literal of a number that is not negative."""
+        """Return a number that is not negative as a floating-point literal."""
         return repr(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return a call of a numeric function."""
+        """Return the code that calls a numeric function such as ``min``."""
         return f"{function}({', '.join(arguments)})"
 
     def _text_and_binding(self, node: Expression) -> tuple[str, int]:

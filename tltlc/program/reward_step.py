@@ -39,7 +39,10 @@ BEFORE = "before"
 
 
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
-    """Return the statements that run after each transition of an automaton."""
+    """Return the statements that compute progress, reward and the end of the episode.
+
+    They run after each transition of the automaton.
+    """
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
@@ -61,11 +64,11 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """Return statements that compute the progress of a spec that is judged at its limit.
+    """Return statements that compute the progress of a spec with ``judge at limit``.
 
-    The progress is the share of the limit that the episode has survived. It is 1 as soon as the
-    spec is satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the spec is
-    satisfied.
+    The progress is the share of the limit in steps that the episode has survived. It is 1 as soon
+    as the spec is satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the
+    spec is satisfied.
     """
     cases: list[tuple[Expression, tuple[Statement, ...]]] = [
         (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),

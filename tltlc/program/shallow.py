@@ -20,9 +20,10 @@ _DEEPEST: Final = 30
 
 
 def split_deep_values(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
-    """Return the statements of a state, with parts of deep expressions moved to new variables.
+    """Return the statements, with parts of deeply nested expressions moved to new variables.
 
-    The prefix of the new variables is chosen so that no name in ``taken`` begins with it.
+    ``statements`` compute the transition from one state of an automaton. The prefix of the new
+    variables is chosen so that no name in ``taken`` begins with it.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):

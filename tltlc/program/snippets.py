@@ -47,10 +47,11 @@ def values_sentence(field: Signal | Param) -> str:
 
 
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
-    """Return an example of a sample in the language's syntax, for a comment: ``{ health: …, seen: true }``.
+    """Return an example of a sample for a comment: ``{ health: …, seen: true }``.
 
-    ``key`` returns the name of a signal as the language writes it, and ``equals`` is the text
-    between the name and its value. If the example is too long, returns ``signals``.
+    It is written as in the language of the generated file. ``key`` returns the name of a signal as
+    this language writes it, and ``equals`` is the text between the name and its value. If the
+    example is too long, the result is the word ``signals``.
     """
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"

@@ -1,4 +1,4 @@
-"""The statements of each state: they find the edge to take, and compute its robustness and the progress.
+"""For each state, the statements that find the edge to take, and compute its robustness and the progress.
 
 Begin with `state_statements`.
 """
@@ -45,9 +45,10 @@ _ZERO: Final = Real(0.0)
 
 
 def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """Return the statements of a state, given its number.
+    """Return the statements that compute the transition from a state, given its number.
 
-    ``atoms`` are the variables with the values of the atoms.
+    They find the edge to take, its robustness, the progress and the limiting atom. ``atoms`` are
+    the names of the variables with the values of the atoms.
     """
     return _StateCode(tables, state, atoms).statements()
 
@@ -73,7 +74,10 @@ class _StateCode:
         return (If(cases, self._edge_statements(last)),)
 
     def _edge_statements(self, edge: Edge) -> tuple[Statement, ...]:
-        """Return the statements that run when an edge is taken."""
+        """Return the statements that run when the automaton takes an edge.
+
+        They assign the next state, the robustness of the edge, the progress and the limiting atom.
+        """
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
         lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
@@ -92,9 +96,10 @@ class _StateCode:
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
     def _progress(self, value: Expression) -> list[Statement]:
-        """Return the assignment of progress, or nothing for a spec that is judged at its limit.
+        """Return the statement that assigns ``value`` to the progress.
 
-        The progress of such a spec does not depend on the edge taken.
+        Returns no statement if the spec is judged at its limit: then the progress does not depend
+        on the edge taken.
         """
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
@@ -108,8 +113,8 @@ class _StateCode:
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
-        The robustness of a prime implicant is its least literal. If a minimum of maxima has fewer
-        literals, returns that instead; only the sign of a 0 may differ.
+        The robustness of a prime implicant is the value of its least literal. If an equivalent
+        minimum of maxima has fewer literals, returns that instead; only the sign of a 0 may differ.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -122,7 +127,7 @@ class _StateCode:
         return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
-        """Return statements that find the most robust prime implicant and its least literal.
+        """Return statements that find the most robust of the prime implicants, and its least literal.
 
         Of prime implicants or literals with the same value, the first one counts. The robustness is
         assigned to ``NEAREST``, the index of the literal's atom to ``LIMITING``.
@@ -172,7 +177,11 @@ _Literals = Mapping[tuple[int, bool], Expression]
 
 @lru_cache(maxsize=1)
 def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
-    """Return the value and the test of each literal over the variables ``atoms``."""
+    """Return two tables with an expression for each literal over the variables ``atoms``.
+
+    The expressions of the first compute the value of the literal; those of the second test whether
+    the literal is true.
+    """
     values: dict[tuple[int, bool], Expression] = {}
     tests: dict[tuple[int, bool], Expression] = {}
     for index, name in enumerate(atoms):

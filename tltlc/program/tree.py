@@ -29,21 +29,21 @@ FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp
 
 @record
 class Real:
-    """A finite double."""
+    """A constant that is a finite double."""
 
     value: float
 
 
 @record
 class Int:
-    """An integer."""
+    """A constant that is an integer."""
 
     value: int
 
 
 @record
 class Bool:
-    """True or false."""
+    """The constant true or false."""
 
     value: bool
 

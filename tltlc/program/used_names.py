@@ -55,7 +55,7 @@ def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
 
 
 def _values(statements: Iterable[Statement]) -> Iterator[Expression]:
-    """Yield the expressions in statements, including those in branches."""
+    """Yield the expressions that statements compute or test, also inside the cases of an ``if``."""
     for statement in statements:
         match statement:
             case Declare(_, _, value):
