@@ -50,11 +50,11 @@ _NO_POINT: Mapping[str, float] = {}
 
 @record
 class RangeProblem:
-    """A property of a predicate that is wrong or could not be proved.
+    """A finding: the range or continuity of a predicate is wrong, or could not be proved.
 
-    ``witness`` gives the value of each signal and param at the point in ``message``. It is empty if
-    the kind ends in ``unproved`` or ``unchecked``. ``is_undefined`` is true if the predicate has no
-    value at that point.
+    ``witness`` gives the value of each signal and param at the point that ``message`` describes. It
+    is empty if ``kind`` ends in ``unproved`` or ``unchecked``. ``is_undefined`` is true if the
+    predicate has no value at that point.
     """
 
     kind: FindingKind
@@ -101,7 +101,10 @@ def _unchecked_problem(aspect: Literal["range", "continuity"], why: str) -> Rang
 
 
 def _findings(predicate: Predicate) -> tuple[RangeProblem, ...]:
-    """Check the range, then continuity. Continuity is skipped if the range cannot be checked."""
+    """Return the findings on the range of a predicate, and then on its continuity.
+
+    If the range cannot be checked within the steps, continuity is not checked.
+    """
     try:
         with step_limit(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
             range_finding = _check_range(predicate)
@@ -204,7 +207,10 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
 
 
 def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
-    """Return what is left to prove: that two cases of a ``when`` agree where they meet."""
+    """Return a proof goal for each two cases of a ``when`` that may differ where they meet.
+
+    Cases that are proved to agree there without sympy are left out.
+    """
     all_cases = cases(when)
     if len(all_cases) < 2:
         return []
@@ -263,7 +269,10 @@ def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:
 
 
 def _point_text(values: Mapping[str, float]) -> str:
-    """Return ``with distance = 3, far = 2 ``, or an empty text if there are no variables."""
+    """Return the values of variables for a message: ``with distance = 3, far = 2 ``.
+
+    Returns an empty text if there are no variables.
+    """
     if not values:
         return ""
     return "with " + ", ".join(f"{name} = {_number_text(value)}" for name, value in values.items()) + " "

@@ -41,7 +41,10 @@ class Meeting:
 def meetings(
     all_cases: Sequence[ConstrainedValue], whole: ConstrainedBox, bools: frozenset[Variable]
 ) -> Iterator[Meeting]:
-    """Yield the pairs of cases with different values that may meet. Raises TooManyCasesError."""
+    """Yield each pair of cases that may meet, unless both have the same expression as their value.
+
+    Raises TooManyCasesError.
+    """
     if len(all_cases) > MOST_MEETING_CASES:
         raise TooManyCasesError
     for first, second in combinations(all_cases, 2):
@@ -89,10 +92,10 @@ def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Co
 
 
 def _same_after_substitution(difference: Expression, region: ConstrainedBox) -> bool:
-    """Whether the difference is zero after substitution.
+    """Whether ``difference`` becomes zero if the equations of the region are inserted.
 
-    Each equation that holds on the region is solved for a factor. The solution then replaces the
-    factor.
+    Each equation that holds on the region is solved for a signal, param or other factor in it. The
+    solution then replaces this factor in ``difference``.
     """
     from tltlc.resolve.range_proof import normal_form as nf
 

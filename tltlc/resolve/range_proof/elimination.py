@@ -76,7 +76,11 @@ class Prover:
         return self._by_elimination(f, limits, {**ranges, **_ranges_of(region)}, strict)
 
     def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Try the variables in turn, those of the lowest degree first."""
+        """Whether ``f`` is provably never negative, shown by eliminating one of its variables.
+
+        The variables are tried in turn, those of the lowest degree first. Raises GiveUpError if no
+        variable can be eliminated.
+        """
 
         def degree(x: Term) -> tuple[int, str]:
             return max(_degree(term, x) for term in (f, *limits)), x.name
@@ -139,9 +143,10 @@ class Prover:
         return self.proves_nonnegative(limit, free, rest, strict=strict and excess == 0)
 
     def _holds_where_zero(self, leading: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Whether ``f`` is provably never negative at the points where a leading coefficient is zero.
+        """Whether ``f`` is provably never negative at the points where ``leading`` is zero.
 
-        The general roots and limits do not cover these points.
+        ``leading`` is the leading coefficient of a polynomial in the variable to eliminate. Where it
+        is zero, the polynomial has a lower degree, and thus other roots and other limits.
         """
         if leading.is_number:
             return True
@@ -192,14 +197,17 @@ def _border_roots(limit: Term, x: Term) -> list[Term]:
 
 
 def _range_limits(x: Term, side: Interval) -> list[Term]:
-    """Return the terms that are >= 0 in the range of x."""
+    """Return the terms ``x - low`` and ``high - x``, which are >= 0 in the range of x.
+
+    An infinite end of the range has no term.
+    """
     low, high = side
     lower = [x - sympy.Rational(repr(low))] if isfinite(low) else []
     return [*lower, sympy.Rational(repr(high)) - x] if isfinite(high) else lower
 
 
 def _reality_limits(candidate: Term) -> Iterator[Term]:
-    """Yield the terms that must be >= 0 for a root to be real."""
+    """Yield the terms that must be >= 0 for ``candidate``, the root of a polynomial, to be real."""
     for power in candidate.atoms(sympy.Pow):
         base, exponent = power.as_base_exp()
         if not exponent.is_integer:

@@ -113,7 +113,7 @@ class _Translation:
 
 
 def _power(base: Term, exponent: int) -> Term:
-    """Return the power; raise GiveUpError if the exponent or the resulting numbers are too large."""
+    """Return ``base ** exponent``; raise GiveUpError if the exponent or the resulting numbers are too large."""
     bits = max((number.p.bit_length() + number.q.bit_length() for number in base.atoms(sympy.Rational)), default=0)
     if abs(exponent) > LARGEST_DEGREE or bits * abs(exponent) > MOST_BITS:
         raise GiveUpError
@@ -121,7 +121,7 @@ def _power(base: Term, exponent: int) -> Term:
 
 
 def _divisors(value: Expression) -> Iterator[Expression]:
-    """Yield the expressions that the value divides by, including bases of negative powers."""
+    """Yield the divisors in an expression, including bases of negative powers."""
     if isinstance(value, Op):
         for arg in value.args:
             yield from _divisors(arg)

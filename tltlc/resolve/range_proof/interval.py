@@ -1,9 +1,9 @@
 """Interval arithmetic on the real line, rounded outwards.
 
 An interval is a pair ``(low, high)`` with ``low <= high``. An infinite end means that there is no
-bound on that side; the values themselves are finite. The functions that are named for an operation
-take and return intervals. The result contains every value of the operation on numbers from the
-arguments. Zeros stay exact, so signs survive rounding.
+bound on that side; the values themselves are finite. A function that is named for an operation, such
+as :func:`add`, takes and returns intervals: its result contains every value that the operation has
+for numbers from the argument intervals. Zeros stay exact, so signs survive rounding.
 """
 
 from __future__ import annotations
@@ -22,30 +22,30 @@ class UndefinedError(Exception):
 
 
 def add(a: Interval, b: Interval) -> Interval:
-    """Return the sum."""
+    """Return an interval that contains ``x + y`` for all x in a and y in b."""
     return _sum(a[0], b[0], -inf), _sum(a[1], b[1], inf)
 
 
 def negate(a: Interval) -> Interval:
-    """Return ``-a``."""
+    """Return the interval of ``-x`` for all x in a."""
     return -a[1], -a[0]
 
 
 def subtract(a: Interval, b: Interval) -> Interval:
-    """Return the difference."""
+    """Return an interval that contains ``x - y`` for all x in a and y in b."""
     return add(a, negate(b))
 
 
 def multiply(a: Interval, b: Interval) -> Interval:
-    """Return the product; the factors may vary independently."""
+    """Return an interval that contains ``x * y`` for all x in a and y in b."""
     corners = [(x, y) for x in a for y in b]
     return min(_product(x, y, -inf) for x, y in corners), max(_product(x, y, inf) for x, y in corners)
 
 
 def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
-    """Return the quotient; raise UndefinedError if the divisor may be 0.
+    """Return an interval that contains ``x / y`` for all x in a and y in b.
 
-    ``nonzero`` states that the divisor is not 0, although its interval may end at 0.
+    Raises UndefinedError if y may be 0. ``nonzero`` states that y is not 0, although b may end at 0.
     """
     if b[0] < 0 < b[1] or b == (0.0, 0.0) or (0.0 in b and not nonzero):
         raise UndefinedError("divides by zero")
@@ -54,7 +54,10 @@ def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
 
 
 def power(a: Interval, b: Interval) -> Interval:
-    """Return ``a ^ b``; raise UndefinedError for roots of negatives and for 0 to a negative power."""
+    """Return an interval that contains ``x ^ y`` for all x in a and y in b.
+
+    Raises UndefinedError if this includes the root of a negative number, or 0 to a negative power.
+    """
     if b[0] == b[1] and b[0] == int(b[0]) and abs(b[0]) <= _LARGEST_POWER:
         return _integer_power(a, int(b[0]))
     if a[0] < 0:
@@ -66,14 +69,20 @@ def power(a: Interval, b: Interval) -> Interval:
 
 
 def root(a: Interval) -> Interval:
-    """Return the square root; raise UndefinedError if the argument may be negative."""
+    """Return an interval that contains the square root of each x in a.
+
+    Raises UndefinedError if x may be negative.
+    """
     if a[0] < 0:
         raise UndefinedError("takes the root of a negative number")
     return _root(a[0], -inf), _root(a[1], inf)
 
 
 def exponential(a: Interval) -> Interval:
-    """Return ``exp``; raise UndefinedError if the value may overflow."""
+    """Return an interval that contains ``exp(x)`` for each x in a.
+
+    Raises UndefinedError if ``exp(x)`` may overflow.
+    """
     if a[1] > LARGEST_EXPONENT:
         raise UndefinedError("is too large to compute")
     low, high = (
@@ -83,7 +92,7 @@ def exponential(a: Interval) -> Interval:
 
 
 def hyperbolic_tangent(a: Interval) -> Interval:
-    """Return ``tanh``."""
+    """Return an interval that contains ``tanh(x)`` for each x in a."""
     low, high = (
         0.0 if end == 0 else _round_outwards(tanh(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
     )
@@ -91,24 +100,24 @@ def hyperbolic_tangent(a: Interval) -> Interval:
 
 
 def absolute(a: Interval) -> Interval:
-    """Return ``abs``."""
+    """Return the interval of ``abs(x)`` for all x in a."""
     if a[0] >= 0:
         return a
     return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
 
 
 def minimum(a: Interval, b: Interval) -> Interval:
-    """Return ``min``."""
+    """Return the interval of ``min(x, y)`` for all x in a and y in b."""
     return min(a[0], b[0]), min(a[1], b[1])
 
 
 def maximum(a: Interval, b: Interval) -> Interval:
-    """Return ``max``."""
+    """Return the interval of ``max(x, y)`` for all x in a and y in b."""
     return max(a[0], b[0]), max(a[1], b[1])
 
 
 def intersection(a: Interval, b: Interval) -> Interval | None:
-    """Return the intersection, or None if it is empty."""
+    """Return the intersection of two intervals, or None if it is empty."""
     low, high = max(a[0], b[0]), min(a[1], b[1])
     return (low, high) if low <= high else None
 
@@ -179,9 +188,9 @@ def _quotient(x: float, y: float, towards: float) -> float:
 
 
 def _signed_ends(b: Interval) -> Interval:
-    """Return the ends of an interval without 0 inside.
+    """Return the ends of ``b``, with an end at 0 replaced by the number next to 0 inside ``b``.
 
-    An end at 0 is replaced by the smallest number of its sign.
+    0 may be an end of ``b``, but must not lie between its ends.
     """
     return (b[0] or 5e-324), (b[1] or -5e-324)
 

@@ -31,7 +31,7 @@ class TooLargeError(Exception):
 
 @record
 class Quotient:
-    """``numerator / denominator``; equals the original expression wherever that is defined."""
+    """A quotient of polynomials, which equals an expression wherever the expression is defined."""
 
     numerator: Polynomial
     denominator: Polynomial
@@ -116,7 +116,7 @@ def add(a: Polynomial, b: Polynomial, scale: Fraction | int = 1) -> Polynomial:
 
 
 def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Return the product. Raises TooLargeError."""
+    """Return ``a * b``. Raises TooLargeError."""
     if len(a) * len(b) > _MOST_TERMS * 10:
         raise TooLargeError
     spend(2 * len(a) * len(b))
@@ -132,7 +132,7 @@ def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Polynomial:
-    """Return the polynomial with ``factor`` replaced. Raises TooLargeError."""
+    """Return the polynomial with ``factor`` replaced by the polynomial ``by``. Raises TooLargeError."""
     result: Polynomial = {}
     spend(len(polynomial))
     for monomial, coefficient in polynomial.items():

@@ -36,7 +36,7 @@ class ProofGoal:
 
 
 def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[ProofGoal]:
-    """Return the goals that are not proved on the whole region; the total work is bounded."""
+    """Try to prove each goal on the region ``whole``, with bounded work; return the unproved ones."""
     nodes = sum(size(goal.value, _NODES_OF_ALL) for goal in goals)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
     open_goals = []

@@ -30,7 +30,7 @@ _MOST_STEPS = WORK["check of a predicate"]
 
 @record
 class Answer:
-    """Whether the claim of a question is proved, and how many steps the proof took.
+    """The result of an attempted proof: whether it succeeded, and how many steps it took.
 
     The steps count again each time that the cached answer is used.
     """
@@ -40,7 +40,10 @@ class Answer:
 
 
 def answer(question: str, compute: Callable[[], Answer]) -> Answer:
-    """Return the cached answer to a question, or compute and cache it."""
+    """Return the cached answer to a question, or call ``compute`` and cache its result.
+
+    The question is a text from :func:`question`.
+    """
     from hashlib import sha256
 
     key = sha256(question.encode()).hexdigest()

@@ -21,10 +21,11 @@ _FAR_AWAY = 1e6
 
 @record
 class ConstrainedBox:
-    """The points of a box where some expressions lie within known bounds.
+    """A region: the points of a box where some expressions lie within known bounds.
 
-    The expressions in ``nonzero`` are 0 nowhere in it. A region may be empty without being
-    recognised as empty.
+    A box has an interval for each signal and param. ``known`` has the bounds of the expressions.
+    Those in ``nonzero`` are 0 nowhere in the region. A region may be empty without being recognised
+    as empty.
     """
 
     box: Box
@@ -32,9 +33,9 @@ class ConstrainedBox:
     nonzero: frozenset[Expression] = frozenset()
 
     def constrain(self, constraints: Iterable[Constraint]) -> ConstrainedBox | None:
-        """Return the part where the constraints hold, with its box narrowed.
+        """Return the part of the region where the constraints hold, with its box narrowed to it.
 
-        Returns None if it is provably empty.
+        Returns None if this part is provably empty.
         """
         known, nonzero = dict(self.known), set(self.nonzero)
         for constraint in _with_chains(constraints):
@@ -50,7 +51,7 @@ class ConstrainedBox:
         return ConstrainedBox(self.box, known, frozenset(nonzero)).narrow()
 
     def narrow(self) -> ConstrainedBox | None:
-        """Return the same points in a box as small as the known bounds allow.
+        """Return the same region with a smaller box, as far as the known bounds allow.
 
         Returns None if the bounds exclude each other.
         """

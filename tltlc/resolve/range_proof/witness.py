@@ -55,7 +55,7 @@ def value_at(expression: Expression, point: Point) -> SamplePoint:
 
 @lru_cache(maxsize=512)
 def _cost(expression: Expression) -> int:
-    """Return the number of steps that an evaluation counts as."""
+    """Return how many steps one evaluation of an expression counts as."""
     return 1 + sum(1 for _ in nodes(expression)) // 3
 
 
@@ -113,10 +113,10 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
 
 
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
-    """Yield the finest grid of at most _LARGEST_GRID points.
+    """Yield the points of a grid, at most _LARGEST_GRID.
 
-    If the grid of the first two values of each axis has more points, yields its first _LARGEST_GRID
-    points.
+    The grid has all combinations of the first n values of each axis. From 2 to 12, n is as large as
+    the number of points allows. If n = 2 gives too many points, only the first are yielded.
     """
     depth = 2
     while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
@@ -139,9 +139,9 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
 
 
 def _constants(expression: Expression) -> Iterator[float]:
-    """Yield the numbers in an expression that may be borders.
+    """Yield the constants in an expression: a variable may be at a border where it equals one of them.
 
-    LEAST is not one: it is the least robustness of a comparison.
+    LEAST is left out, because it is the least robustness of a comparison and no border.
     """
     return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
 
@@ -181,9 +181,10 @@ def _climb(
     box: Box,
     bools: frozenset[Variable],
 ) -> SamplePoint:
-    """Return a point where the excess has a local maximum, found from ``start``.
+    """Search for a local maximum of ``excess`` from ``start``, and return its point.
 
-    The search takes smaller and smaller steps along the axes.
+    The excess of a point says how far the value there lies outside the allowed range. The search
+    takes smaller and smaller steps along the axes.
     """
     best = start
     steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}

@@ -17,7 +17,10 @@ class OutOfWorkError(Exception):
 
 
 class ProofBudget:
-    """The remaining steps, and a cache of answers for as long as the limit is active."""
+    """What is left of a :func:`step_limit`, and a cache that lives as long as the limit is active.
+
+    ``left`` is the number of steps that remain. ``memo`` is the cache.
+    """
 
     __slots__ = ("left", "memo")
 
@@ -35,7 +38,7 @@ def current_budget() -> ProofBudget | None:
 
 
 def spend(steps: int = 1) -> None:
-    """Count steps; raise OutOfWorkError if none are left."""
+    """Count steps against the active :func:`step_limit`; raise OutOfWorkError if too few are left."""
     work = _CURRENT.get()
     if work is not None:
         work.left -= steps
