@@ -52,9 +52,9 @@ def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
 
 
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
-    """Apply ``F`` or ``G`` once, without its bound.
+    """Return ``F operand`` or ``G operand``, as if the operator had no bound.
 
-    Apply ``X`` or ``N`` as often as ``steps`` says.
+    For ``X`` and ``N``, whose number of steps is no bound, apply the operator ``steps`` times.
     """
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)

@@ -28,9 +28,9 @@ _NEVER_NEGATIVE = ("length", "time", "speed")
 def check_predicates(context: Context) -> None:
     """Check the range and continuity of every predicate in use, each once, and log the findings.
 
-    A range must hold for all values of the params. A jump is reported only if it occurs with the
-    current values of the params: ``near(exit, close = 3 m)`` jumps in a level of 2 m, which does
-    not matter if the level has 20 m.
+    A predicate must stay in its range for all values of the params. A jump of its value is reported
+    only if it occurs with the current values of the params: ``near(exit, close = 3 m)`` jumps in a
+    level of 2 m, which does not matter if the level has 20 m.
 
     All checks together may take a limited number of steps. If no steps are left, one warning
     (TLT0503) names the first predicate that was not checked and counts the others.
@@ -61,9 +61,9 @@ def _check(instance: Instance, context: Context) -> None:
 
 
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
-    """Whether the range is wrong only because a signal may be negative that never should be.
+    """Whether a predicate leaves its range only if some length, time or speed is negative.
 
-    Such signals are lengths, times and speeds without a declared lower end.
+    Only signals without a declared lower end count: the game most likely never makes them negative.
     """
     from tltlc.resolve.range_proof import check_predicate
 
@@ -78,7 +78,7 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
 
 
 def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
-    """Whether the continuity check reports anything with every param fixed at its value."""
+    """Whether the check of a predicate's continuity reports anything with every param fixed at its value."""
     from tltlc.resolve.range_proof import check_predicate
 
     if not _variables_read(instance, ParamNode):

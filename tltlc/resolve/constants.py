@@ -86,7 +86,10 @@ def samples(value: NumberExpr, env: Env) -> int:
 
 
 def _sample_count(steps: float, value: NumberExpr, env: Env) -> int:
-    """Return the number rounded up; raise ResolutionError (TLT0312) above MOST_SAMPLES."""
+    """Return ``steps`` rounded up to a whole number of samples.
+
+    Raises ResolutionError (TLT0312) if it is above MOST_SAMPLES.
+    """
     if steps > MOST_SAMPLES:
         title = f"this is more than {MOST_SAMPLES:,} steps"
         raise problem("TLT0312", title, env.scope.source, value.span, advice="write a smaller number")

@@ -25,7 +25,11 @@ MOST_EXPANSIONS = 50_000
 
 @record
 class SignalInfo:
-    """A declared signal. If it has parameters, there is one signal for each choice of entities."""
+    """The declaration of a signal.
+
+    If the signal has parameters, the declaration stands for many signals: one for each choice of
+    entities (objects of the level) as arguments.
+    """
 
     name: str
     parameters: tuple[str, ...]
@@ -38,7 +42,7 @@ class SignalInfo:
     place: Label
 
     def signal_of(self, entities: tuple[str, ...]) -> Signal:
-        """Return the signal that has these entities as its arguments."""
+        """Return the signal of this declaration that has these entities as its arguments."""
         return Signal(self.name, self.type, self.low, self.high, self.doc, entities)
 
 
@@ -46,7 +50,8 @@ class SignalInfo:
 class Instance:
     """A predicate with its arguments, whose range and continuity are to be checked.
 
-    Entities are replaced by parameter names, so that all entities share one check.
+    Arguments that are entities (objects of the level) are replaced by the names of the parameters,
+    so that all entities share one check.
     """
 
     name: str

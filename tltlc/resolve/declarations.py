@@ -160,7 +160,7 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
 
 
 def _apply_overrides(options: ResolveOptions, context: Context) -> None:
-    """Apply the param values given outside the source text."""
+    """Set params in ``context`` to the values that ``options.params`` gives them; log problems."""
     if options.params:
         from tltlc.resolve.overrides import apply_overrides
 

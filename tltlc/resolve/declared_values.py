@@ -1,4 +1,4 @@
-"""Uses of declared params and signals in expressions, as quantities."""
+"""Uses of declared params and signals in expressions, as quantities: numbers with range and dimension."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def param(binding: Binding, env: Env) -> Quantity:
-    """Return a declared param as a quantity."""
+    """Return the quantity that a param stands for in an expression, with its range and dimension."""
     declaration = binding.declaration
     assert isinstance(declaration, ParamDecl)
     declared = env.context.params.get(declaration.name)
@@ -29,7 +29,10 @@ def param(binding: Binding, env: Env) -> Quantity:
 
 
 def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
-    """Return a declared signal, with the entities given as its arguments, as a quantity."""
+    """Return the quantity that a signal stands for in an expression, with its range and dimension.
+
+    If the signal has parameters, the arguments in ``expr`` must be entities.
+    """
     declaration = binding.declaration
     assert isinstance(declaration, SignalDecl)
     pairs = match(expr, binding, declaration.parameters, env.scope)
@@ -45,7 +48,7 @@ def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
 
 
 def signal_value(signal: Signal) -> Quantity:
-    """Return a signal as a quantity, with its range and dimension."""
+    """Return a signal as a quantity: an expression with the range and the dimension of the signal."""
     low = -inf if signal.low is None else signal.low
     high = inf if signal.high is None else signal.high
     dimension = units.TYPES[signal.type]

@@ -33,10 +33,10 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
 
 
 def _keeps_value(written_unit: str | None, expected_unit: str | None, actual: Dimension) -> bool:
-    """Whether a fix may keep the written number and put the expected unit after it.
+    """Whether the fix for a wrong unit may keep the number and only change the unit after it.
 
-    This holds if no unit was written, or if the written unit begins the expected one, as ``m``
-    begins ``m/s``. If no unit is expected, the written unit must be the SI unit.
+    It may if no unit was written, or if the written unit begins the expected one, as ``m`` begins
+    ``m/s``. If no unit is expected, the written unit must be the SI unit.
     """
     if expected_unit is None:
         return written_unit == units.si_unit(actual)

@@ -150,7 +150,7 @@ def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -
 
 
 def _atom(value: Quantity, robustness: Expression, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
-    """Return the atom with the name of ``value`` and the given robustness."""
+    """Return the atom with the name of ``value`` and the expression ``robustness``."""
     base, arguments = value.call or (value.text, ())
     return env.context.atom(base, robustness, doc, env.scope.source, expr.span, arguments)
 
@@ -184,7 +184,7 @@ def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGe
 
 
 def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> FormulaGenerator:
-    """Expand the body of a let with the values of its parameters, once for each combination."""
+    """Expand the body of a let with the values of its parameters, once for each combination of values."""
     context, source = inside.context, user.scope.source
     key = id(declaration)
     if key in context.broken:

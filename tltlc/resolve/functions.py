@@ -31,7 +31,7 @@ def check_arguments(call: CallExpr, env: Env) -> None:
 
 
 def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
-    """Return the dimension of a function's value.
+    """Return the dimension of the value of a call; ``values`` are its arguments.
 
     Raises ResolutionError (TLT0305) if the dimensions of the arguments do not fit.
     """

@@ -71,7 +71,7 @@ class _MarginRange:
 
 
 def _share(left: Quantity, right: Quantity, margin_range: _MarginRange) -> Expression:
-    """Return the margin divided by its greatest value."""
+    """Return an expression for the margin ``left - right``, divided by the width of ``margin_range``."""
     if isinf(margin_range.width):
         halves = Op("-", (_half(left.expression), _half(right.expression)))
         return Op("/", (halves, Const(margin_range.half_width)))

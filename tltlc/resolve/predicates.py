@@ -170,7 +170,10 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
 
 
 def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> Value:
-    """Return a symbolic value for a parameter: for a number, a signal with the parameter's name."""
+    """Return a value that stands for any argument of a parameter.
+
+    For a number, it is a signal with the parameter's name.
+    """
     if parameter.type == "entity":
         return Entity(parameter.name)
     type_ = parameter_type(parameter, binding)

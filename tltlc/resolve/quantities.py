@@ -29,7 +29,7 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 
 def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
-    """Resolve an arithmetic expression to a quantity.
+    """Resolve an arithmetic expression to a quantity: a number with a range and a dimension.
 
     ``depth`` is the number of operators around the expression. Raises ResolutionError if the
     expression is not a number, its units do not fit, or it is too deep or too wide.
@@ -45,7 +45,7 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
-    """Resolve the condition of a ``when``; return it and its text.
+    """Return the resolved condition of a ``when``, and its text for the names of atoms.
 
     ``depth`` is the number of operators around the expression. Raises ResolutionError if the
     expression is no condition.
@@ -173,7 +173,7 @@ def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
 
 
 def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
-    """Whether this is a literal speed such as ``3 m/s``.
+    """Whether a division is a literal speed such as ``3 m/s``.
 
     The unit after the ``/`` is lexed as a name. A signal or param of that name takes precedence,
     except in constants, where neither is allowed.
@@ -190,9 +190,10 @@ def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
 
 
 def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` if `s` is not declared.
+    """Raise ResolutionError (TLT0304) for ``a / 1 m/s``, where the speed needs brackets.
 
-    The parser reads it as ``(a / 1 m) / s``.
+    The parser reads this as ``(a / 1 m) / s``. If `s` is declared, that may be meant, and there is
+    no error.
     """
     inner, per = expr.left, expr.right
     if (

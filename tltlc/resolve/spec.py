@@ -21,7 +21,8 @@ Judge = Literal["goal", "limit"]
 class Signal:
     """A number that the game supplies at each step, in SI units.
 
-    A bound is None where the range is open. ``arguments`` are the entities that the signal is about.
+    ``low`` or ``high`` is None where the range is open. ``arguments`` are the entities (objects of
+    the level) that the signal is about.
     """
 
     base: str
