@@ -26,7 +26,10 @@ LONGEST_RUN_S = 60
 
 
 def main(words: Sequence[str]) -> int:
-    """Check each case of the index; return 0, 1 if anything differs, or 2 for wrong usage."""
+    """Run the command line ``words``, and return the exit status.
+
+    It is 0 if all results are as expected, 1 if anything differs, and 2 for wrong usage.
+    """
     only = words[1].split(",") if len(words) > 1 and words[0] == "--only" else None
     command = words[2:] if only else words
     if not command or command[0].startswith("-"):
@@ -46,7 +49,10 @@ def main(words: Sequence[str]) -> int:
 
 
 def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -> str | None:
-    """Return what is wrong with the command line, or None."""
+    """Return what is wrong with the command line, or None if nothing is.
+
+    ``only`` are the cases that it asks for, and ``names`` all cases that exist.
+    """
     if not any("{name}" in word for word in command):
         return "the command has no {name}, so all cases would run the same monitor"
     for case in only:
@@ -57,9 +63,9 @@ def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -
 
 
 def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, index: Mapping[str, Any]) -> int:
-    """Check each case; print the differences, and at the end how many traces have any.
+    """Check each case of the corpus that ``only`` names, or all if it is None; return the exit status.
 
-    Return the exit status.
+    Prints the differences, and at the end how many traces have any.
     """
     traces = differing = 0
     for case in index["cases"]:
@@ -148,9 +154,10 @@ def _is_near(cell: str, expected: str, tolerance: float) -> bool:
 
 
 def _message_differences(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
-    """Yield the differences of standard error from what is expected.
+    """Yield in words what is wrong with ``err``, the standard error output of a monitor.
 
-    For an error, it must have one line with the names at fault, and else one line for each warning.
+    If ``error`` is given, the output must have one line about it, with the names of the signals or
+    atoms at fault. Otherwise, it must have no error, and ``warnings`` lines with a warning.
     """
     lines = err.splitlines()
     errors = [line for line in lines if line.startswith("error: ")]

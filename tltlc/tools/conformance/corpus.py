@@ -79,7 +79,7 @@ def _is_product(node: Op) -> bool:
 
 
 def _case_files(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> backends.Files:
-    """Return the files of one case."""
+    """Return the files of one case, by path; ``outcomes`` has the expected output for each trace."""
     name = case.fspa.name
     contents = backends.emit("json", case.fspa)
     if case.source is not None:
@@ -100,7 +100,7 @@ def _refusal_text(refusal: Refusal) -> str:
 
 
 def _index_entry(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> dict[str, Any]:
-    """Return the entry of a case in the index."""
+    """Return the entry of a case in the index; ``outcomes`` has the expected output for each trace."""
     fspa, name = case.fspa, case.fspa.name
     traces = []
     for number, outcome in enumerate(outcomes, start=1):
@@ -123,7 +123,7 @@ def _index_entry(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> d
 
 
 def _package_text(name: str) -> str:
-    """Return the text of a file in the folder of this module."""
+    """Return the text of the file ``name`` in the folder of this module."""
     path = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120
     with open(path, encoding="utf-8") as file:  # noqa: PTH123
         return file.read()

@@ -111,7 +111,7 @@ def _infinite_signals(fspa: Fspa, sample: Sample) -> list[str]:
 
 
 def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
-    """Return the first atom that has no value, and the reason."""
+    """Return why an atom has no value, and the name of this atom: the one that monitors report."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
     for atom in fspa.atoms:

@@ -20,9 +20,9 @@ SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bo
 class OddTrace:
     """A trace, and how it must be read.
 
-    ``samples`` has the values of ``x`` and ``seen`` in each sample that must be read. ``line`` is the
-    number of the line, from 1, that must be refused. It is None if the whole trace must be read,
-    and 0 if the trace has no sample.
+    ``samples`` has the values of the signals ``x`` and ``seen`` in each sample that must be read.
+    ``line`` is the number of the line, from 1, that must be refused. It is None if the whole trace
+    must be read, and 0 if the trace has no sample.
     """
 
     trace: bytes

@@ -1,4 +1,4 @@
-"""Cases that together contain each temporal operator, both judges, and specs with and without a limit."""
+"""Cases with each temporal operator, with both values of ``judge``, and with and without a limit."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def _predicates_case(name: str, seed: int) -> ConformanceCase:
 
 
 def _automaton(name: str, draw: Draw, infinite: bool, expressions: Mapping[str, Expression] = EMPTY) -> Fspa:
-    """Return the first random automaton of a suitable size."""
+    """Draw random formulas until one has an automaton of a suitable size, and return the automaton."""
     while True:
         goal = formula(draw, _ATOMS, 3 + draw.below(3))
         if expressions:

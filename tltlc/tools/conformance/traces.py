@@ -39,8 +39,9 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
 def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused: bool = False) -> bytes:
     """Return a random trace of ``length`` samples that a monitor reads without an error.
 
-    With ``refused``, a sample that the monitor refuses follows. The search for each sample is
-    limited; if it finds none, the last sample that was tried is taken anyway.
+    ``pools`` gives, for some signals, the values to draw from. With ``refused``, a sample that the
+    monitor refuses follows. The search for each sample is limited; if it finds none, the last
+    sample that was tried is taken anyway.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])

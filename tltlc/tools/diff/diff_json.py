@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def document(report: FileDiff) -> dict[str, Any]:
-    """Return the report as a JSON object."""
+    """Return ``report``, the differences between two files, as a JSON object."""
     return {
         "a": report.a,
         "b": report.b,
@@ -49,9 +49,10 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Return ``beginnings`` of the pair's :class:`~tltlc.tools.diff.relation.Comparison` as JSON.
+    """Return as JSON how the two specs differ in the finite beginnings of traces that they allow.
 
-    Return None unless one spec is over finite traces and the other over infinite traces.
+    This is ``beginnings`` of :class:`~tltlc.tools.diff.relation.Comparison`. Returns None unless one
+    spec is over finite traces and the other over infinite traces.
     """
     comparison = pair.comparison.beginnings
     if comparison is None:

@@ -32,7 +32,8 @@ class Difference:
     ``name`` is the name of the signal, param or atom, and empty for other kinds. ``a`` and ``b`` are
     the values in A and B: the record of a signal, param or atom, the names of the atoms of an
     ``exclusive`` group, or the value of a setting of the spec. A value is None if A or B lacks it.
-    ``value_difference`` is set only for atoms.
+    ``value_difference`` is a sample at which an atom has different values in A and B; None for other
+    kinds.
     """
 
     kind: DifferenceKind

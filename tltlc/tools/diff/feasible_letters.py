@@ -54,7 +54,7 @@ class FeasibleLetters:
         return trace
 
     def _obstacles(self, trace: Trace) -> list[Literals]:
-        """Return the conjunctions of literals in the letters for which no sample is found."""
+        """Return the conjunctions of literals in the letters of a trace for which no sample is found."""
         if self._joint is None or self._finder is None:
             return []
         obstacles = []

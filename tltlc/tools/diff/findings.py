@@ -138,7 +138,10 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
-    """Return TLT0757: an atom and ``others``, atoms of the same predicate, have other values."""
+    """Return TLT0757: an atom now has other values than before, and so have ``others``.
+
+    These are the names of atoms of the same predicate.
+    """
     assert difference.value_difference is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
     return values_changed(f"`{difference.name}`", others, difference.value_difference, types, place)
@@ -161,7 +164,7 @@ def values_changed(
     place: Label,
     kind: str = "atom",
 ) -> Diagnostic:
-    """Return TLT0757: an atom or predicate has other values; the help shows one sample.
+    """Return TLT0757: an atom or predicate now has other values than before; the help shows a sample.
 
     ``subject`` is its name in the title. ``others`` are the names of atoms that changed alike.
     """
