@@ -23,9 +23,9 @@ class Step(NamedTuple):
     - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
-    - ``limiting``: the name of the atom that kept the automaton from a state with a smaller
-      distance. This atom determines the robustness of the most robust edge to such a state. None if
-      the state changed, or if no edge leads to a smaller distance.
+    - ``limiting``: the name of the atom that kept the automaton from a state nearer to a goal. This
+      atom determines the robustness of the most robust edge to such a state. None if the state
+      changed, or if no edge leads nearer to a goal.
     """
 
     state: int

@@ -1,4 +1,4 @@
-"""Read traces in Apache Parquet, https://parquet.apache.org, as traces in JSON lines."""
+"""Convert traces in Apache Parquet, https://parquet.apache.org, to traces in JSON lines."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class _ColumnError(Exception):
 def is_parquet(start: bytes, name: str) -> bool:
     """Whether a file is in Parquet, judged by the ending of its name, or by ``start``, its first bytes.
 
-    A trace in CSV may begin with the same four characters. But in Parquet, a control character other
-    than a tab or a line end follows them, which CSV cannot have there.
+    A file in Parquet begins with ``PAR1``. A trace in CSV may begin with the same characters. But in
+    Parquet, a control character other than a tab or a line end follows, which CSV cannot have there.
     """
     following = start[4:5]
     is_control = b"" < following < b" " and following not in (b"\t", b"\n", b"\r")

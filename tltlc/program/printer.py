@@ -60,7 +60,7 @@ class Printer:
     # --- statements -------------------------------------------------------------------------------
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements, indented by ``depth`` levels."""
+        """Return the lines of code for statements, indented by ``depth`` levels."""
         lines: list[str] = []
         for statement in statements:
             if isinstance(statement, If):
@@ -85,7 +85,7 @@ class Printer:
         return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of an ``if`` with all its cases and its ``else``."""
+        """Return the lines of code for an ``if`` with all its cases and its ``else``."""
         indent = self.INDENT * depth
         lines: list[str] = []
         for index, (test, body) in enumerate(statement.cases):

@@ -133,7 +133,10 @@ class FormulaParser:
         return match.group() if match else ""
 
     def _apply(self, operands: list[Formula], operators: list[_Operator], least: int) -> None:
-        """Apply the operators on the stack that bind at least as tightly as ``least``, up to an open bracket."""
+        """Apply the last ``operators`` to the last ``operands``, which are both stacks.
+
+        Stops at an open bracket, and at an operator that binds less tightly than ``least``.
+        """
         while operators and _strength(operators[-1]) >= least:
             operator = operators.pop()
             if isinstance(operator, tuple):
