@@ -207,7 +207,7 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
 
 
 def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
-    """Return a proof goal for each two cases of a ``when`` that may differ where they meet.
+    """Return a proof goal for each pair of cases of a ``when`` that may differ where they meet.
 
     Cases that are proved to agree there without sympy are left out.
     """

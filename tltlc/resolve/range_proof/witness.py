@@ -139,9 +139,9 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
 
 
 def _constants(expression: Expression) -> Iterator[float]:
-    """Yield the constants in an expression: a variable may be at a border where it equals one of them.
+    """Yield the constants in an expression, as values to try for its variables: cases may meet there.
 
-    LEAST is left out, because it is the least robustness of a comparison and no border.
+    LEAST is left out: it is the least robustness of a comparison, and no case begins or ends there.
     """
     return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
 
