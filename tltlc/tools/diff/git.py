@@ -1,7 +1,7 @@
 """Read files from a git repository at a revision.
 
-Nothing is written into the repository, except objects that a partial clone lacks and is configured
-to fetch.
+Nothing is written into the repository, with one exception: in a partial clone, git may fetch the
+objects that are missing.
 """
 
 from __future__ import annotations
@@ -201,7 +201,7 @@ def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
 
 
 def _link_targets(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
-    """Yield the file within the commit that each link leads to, with the path of the link.
+    """Yield, for each link, the git hash of the file that it leads to, with the path of the link.
 
     Links that lead to no file in the commit are left out.
     """
@@ -289,15 +289,15 @@ def _git(folder: Path, *arguments: str, stdin: bytes = b"") -> CompletedProcess[
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment for git.
+    """Return the environment variables for a git process, which then writes English messages.
 
-    It leaves out the variables by which a git hook refers to its own repository.
+    They are those of this process, except those by which a git hook refers to its repository.
     """
     return {name: value for name, value in os.environ.items() if name not in _HOOK_VARIABLES} | {"LC_ALL": "C"}
 
 
 def _revision_help(repository: Path, revision: str) -> str:
-    """Return the help text for a revision that does not exist."""
+    """Return what to try instead of a revision that does not exist, for example a similar name."""
     from difflib import get_close_matches
 
     output = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""
@@ -316,5 +316,5 @@ def _too_large(revision: str, contents: str) -> TltlError:
 
 
 def no_version(title: str, help_: str) -> TltlError:
-    """Return the error TLT0751: the earlier version of the files is not available."""
+    """Return the error TLT0751 with this title and help: no earlier version is available."""
     return TltlError([Diagnostic("TLT0751", title, help=help_)])

@@ -27,9 +27,9 @@ class OfferedName:
 
     ``is_own`` is true if the library itself declares the name, and false if it imports the name.
     ``value`` is set for a signal or param. ``meanings`` is set for a predicate that the library
-    declares itself. It maps each number of arguments that a use can have to the meaning of such a
-    use: each argument is a signal or an entity with the name of its parameter, and parameters
-    without an argument have their defaults.
+    declares itself. It maps each number of arguments that a use can have to the meaning of a sample
+    use. There, the argument for a parameter ``p`` is a signal or an entity that is itself called
+    ``p``. Parameters without an argument have their defaults.
     """
 
     name: str
@@ -75,10 +75,10 @@ def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> 
 
 
 def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """Return the meaning of a use of a predicate with arguments for ``open_parameters`` only.
+    """Return what a predicate means if only ``open_parameters`` get arguments, the rest defaults.
 
-    Each argument is a signal or an entity with the name of its parameter. None if the use does not
-    resolve, for example because of unknown units.
+    The argument for a parameter ``p`` is a signal or an entity that is itself called ``p``. The
+    result is None if this use does not resolve, for example because of unknown units.
     """
     local: dict[str, Value] = {}
     signals: list[Signal] = []

@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
 @record
 class Rules:
-    """The ``exclusive`` groups that a file itself declares, and its clock, with their places.
+    """The ``exclusive`` groups and the clock that a file declares, with their places in its text.
 
-    ``exclusive`` maps the sorted names of each group to its place. ``clock_s`` is the period of the
-    clock in seconds, and ``clock`` its place; both are None if the file declares no clock.
+    Groups and clocks of imported files do not count. ``exclusive`` maps the sorted names of each
+    group to its place. ``clock_s`` is the period of the clock in seconds, and ``clock`` its place;
+    both are None if the file declares no clock.
     """
 
     exclusive: Mapping[tuple[str, ...], Label] = EMPTY
@@ -31,7 +32,10 @@ class Rules:
 
 
 def rules(module: Module, program: ResolvedFile) -> Rules:
-    """Return the rules of a module, which must have resolved without errors."""
+    """Return the ``exclusive`` groups and the clock of a module.
+
+    ``program`` is the module as resolved, which must have had no errors.
+    """
     own = [declaration for declaration in module.declarations if isinstance(declaration, ExclusiveDecl)]
     vocabulary = program.exclusive
     # The groups of imported files come first.
@@ -45,7 +49,7 @@ def rules(module: Module, program: ResolvedFile) -> Rules:
 
 
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
-    """Yield the changes between the rules of two versions of a file."""
+    """Yield a diagnostic for each change of groups or clock between two versions of a file."""
     for names, place in old.exclusive.items():
         if not are_exclusive(names, new.exclusive):
             yield findings.exclusive_removed(names, place)

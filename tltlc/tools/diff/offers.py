@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 def changed_offers(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
-    """Yield the changes of params, and then the other changes in the order of the old declarations.
+    """Yield a diagnostic for each changed or removed declaration.
 
-    New declarations break nothing, so they are left out. A changed declaration is reported only for
-    the file that declares it, not for files that import it.
+    Those about params come first, and then the others in the order of the old declarations. New
+    declarations break nothing, so they are left out. A changed declaration is reported only for the
+    file that declares it, not for files that import it.
     """
     yield from _param_changes(old, new)
     for name, before in old.items():
@@ -50,7 +51,7 @@ def _param_changes(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName
 
 
 def _declaration_changes(before: OfferedName, after: OfferedName) -> Iterator[Diagnostic]:
-    """Yield the changes of a signal, predicate or let."""
+    """Yield diagnostics for the changes between two versions of a signal, predicate or let."""
     why = _why_uses_break(before, after)
     if why:
         yield findings.parameters_changed(after.kind, after.name, after.place, why)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @record
 class SpecPair:
-    """A spec of A, a spec of B, and the differences between them."""
+    """A spec ``a`` of file A, a spec ``b`` of file B, and the differences between the two."""
 
     a: Fspa
     b: Fspa
@@ -71,7 +71,7 @@ def diff_files(
     of A. With ``one_each``, only the first spec of A is compared with the first of B, whatever their
     names. With ``by_name``, atoms with the same name always count as the same atom. ``declared`` has
     for each file the ``exclusive`` groups that it declares, also those that no spec uses; None for
-    an artefact.
+    an artefact, that is, a compiled spec.
 
     Errors: TLT0750 if a comparison takes more than ``work`` steps.
     """

@@ -27,7 +27,7 @@ OF_B: Final = " of B"
 
 @record
 class ExclusiveGroup:
-    """Atoms of which at most one holds at a time, and whether A and B declare this."""
+    """Atoms of which at most one holds at a time, and whether spec A and spec B declare this."""
 
     names: tuple[str, ...]
     in_a: bool
@@ -36,7 +36,7 @@ class ExclusiveGroup:
 
 @record
 class Comparison:
-    """How B relates to A.
+    """How spec B relates to spec A: the result of :func:`compare`.
 
     ``stricter`` means that A accepts every trace that B accepts, but not vice versa; ``looser`` is
     the opposite. ``incomparable`` means that each accepts a trace that the other does not.
@@ -73,11 +73,13 @@ def compare(
 ) -> Comparison:
     """Return how the traces that B accepts relate to the traces that A accepts.
 
-    Traces are over the atoms of both. Two atoms with the same name are the same atom if their
-    expressions are equal, and the search finds no sample in the ranges of both at which only one of
-    them holds. With ``by_name``, atoms with the same name are always the same atom. With
-    ``feasible_only``, a trace counts only if the search finds samples for it: ``fuel > 30`` does not
-    hold without ``fuel > 20``. ``exclusive`` are groups in addition to those of the automata.
+    Traces are over the atoms of both automata. Two atoms with the same name count as one atom if
+    their expressions are equal, and if a search finds no sample at which only one of them holds.
+    With ``by_name``, two atoms with the same name always count as one.
+
+    With ``feasible_only``, a trace counts only if samples of its signals can be found. For example,
+    no sample makes ``fuel > 30`` true and ``fuel > 20`` false. ``exclusive`` has further groups of
+    exclusive atoms, in addition to those of the automata.
 
     Raises:
         OutOfWork: the comparison takes more than ``work`` steps in one direction.
@@ -127,9 +129,10 @@ def _own_groups(a: Fspa, b: Fspa) -> list[ExclusiveGroup]:
 
 
 def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups, reduced to these atoms. Duplicates and groups of one atom are left out.
+    """Return the groups without atoms that are not in ``atoms``.
 
-    A reduced group counts as declared in A, or B, if a group that contains it is declared there.
+    Duplicates, and groups of which at most one atom is left, are left out. A reduced group counts
+    as declared in A if A declares a group that contains it. The same goes for B.
     """
     restricted = [replace(group, names=tuple(name for name in group.names if name in atoms)) for group in groups]
     merged: dict[frozenset[str], ExclusiveGroup] = {}
@@ -142,7 +145,10 @@ def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[Exclusive
 
 
 def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[Literals]:
-    """Yield the pairs of atoms of each group that is not part of a group in ``own_groups``."""
+    """Yield each pair of exclusive atoms, as two literals that cannot both be true.
+
+    Groups that are part of a group in ``own_groups`` are left out.
+    """
     own = [set(group.names) for group in own_groups]
     for group in groups:
         if not any(own_group.issuperset(group.names) for own_group in own):
@@ -165,7 +171,7 @@ def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ..
 
 
 def _with_suffix(fspa: Fspa, names: tuple[str, ...], suffix: str) -> Fspa:
-    """Return the automaton with a suffix added to the names of these atoms."""
+    """Return the automaton with ``suffix`` added to the names of the atoms in ``names``."""
     if not names:
         return fspa
     atoms = [

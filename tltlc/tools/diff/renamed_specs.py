@@ -23,7 +23,7 @@ _MOST_RENAMED: Final = 6
 class _SpecInChange:
     """A spec that is in only one version of a file.
 
-    ``number`` is the index of the file's change in the list of changes.
+    ``number`` is the index of the file in the list of changed files.
     """
 
     number: int
@@ -89,7 +89,12 @@ def _with_moves(
     matches: Sequence[tuple[_SpecInChange, _SpecInChange]],
     changes: Sequence[FileChange],
 ) -> FileChange:
-    """Return a file's change without the specs that moved; those that moved here become moves."""
+    """Return ``change``, the change of one file, with moved specs listed as moves.
+
+    ``matches`` has the old and the new form of each spec that moved or was renamed, and ``number``
+    is the index of ``change`` in ``changes``. The old form of such a spec is no longer
+    listed as removed from its file. The new form is listed as a move, and no longer as added.
+    """
     moved_away = [old.fspa for old, _ in matches if old.number == number]
     moved_here = [(old, new) for old, new in matches if new.number == number]
     moves = (

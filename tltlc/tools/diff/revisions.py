@@ -63,10 +63,10 @@ class EarlierTree:
     def with_current_labels(
         self, diagnostics: Iterable[Diagnostic], path: str, before: str | None
     ) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the labels on old files moved to the current files.
+        """Return the diagnostics, with labels on old versions of files moved to the current ones.
 
         Tools that know only the current files need this, such as the review page of a pull request.
-        ``before`` is the old version of ``path``.
+        ``before`` is the path of the old version of ``path``, or None.
         """
         return tuple(
             replace(

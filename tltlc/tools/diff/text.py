@@ -48,7 +48,7 @@ _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
 
 
 def text(report: FileDiff) -> str:
-    """Return the whole report, with a newline at the end."""
+    """Return the differences between two files in words, with a newline at the end."""
     paragraphs = [f"A is {report.a}\nB is {report.b}"]
     paragraphs += ["\n\n".join(_pair(pair)) for pair in report.pairs]
     for side, names in (("A", report.only_a), ("B", report.only_b)):

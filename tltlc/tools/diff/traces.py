@@ -59,9 +59,10 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
 
 
 def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
-    """Return the atoms of a letter that belong to one spec, under the names that the spec uses.
+    """Return the atoms of a letter that belong to the spec ``fspa``, as that spec names them.
 
-    In the letter, ``suffix`` follows the names in ``split_names`` that belong to this spec.
+    For a name in ``split_names``, both specs have an atom, but with different meanings. In the
+    letter, ``suffix`` follows such a name if it means the atom of this spec.
     """
     own_names = {name + suffix: name for name in split_names}
     common = {atom.name for atom in fspa.atoms} - set(split_names)

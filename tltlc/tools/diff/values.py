@@ -105,10 +105,11 @@ def value_difference(one: Meaning, other: Meaning) -> ValueDifference | None:
 
 
 def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, float]], frozenset[Variable]]:
-    """Return the interval of each signal to search, and the signals that are bools.
+    """Return, for each signal, the interval in which to search its values; and the bool signals.
 
-    The interval is the intersection of the two ranges. If the ranges do not overlap, it is the gap
-    between them: there, each atom clamps the value to an end of its own range.
+    If both atoms read a signal, the interval is the intersection of the ranges that they declare
+    for it. If these ranges do not overlap, the interval is the gap between them: there, each atom
+    clamps the value to an end of its own range.
     """
     ends: dict[SignalNode, list[tuple[float, float]]] = {}
     numbers: set[SignalNode] = set()
@@ -127,9 +128,10 @@ def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[floa
 
 
 def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
-    """Return a difference at a sample whose values have fewer digits.
+    """Return a difference between two atoms at a sample whose values have few digits.
 
-    Its ``differs_in_truth`` is that of ``difference``. Return ``difference`` if none is found.
+    It has the same ``differs_in_truth`` as ``difference``. If rounding the values of
+    ``difference.sample`` gives no such sample in ``box``, return ``difference`` itself.
     """
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}

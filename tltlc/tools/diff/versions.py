@@ -20,7 +20,10 @@ def version_of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Versi
 
 
 def version_of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
-    """Return the spec of an artefact as a :class:`Version`. Its label is on the name of the spec."""
+    """Return the spec of an artefact, that is, a compiled spec, as a :class:`Version`.
+
+    Labels for this spec point to its name in the artefact.
+    """
     from tltlc.artefact.locations import span_of
 
     source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
