@@ -38,7 +38,8 @@ class NextStep:
 class StateRow:
     """A state of the automaton. ``remains`` says what remains to be satisfied.
 
-    ``distance`` is None in a trap. ``leads`` has the edges that make progress towards the goal;
+    ``distance`` is the least number of steps to an accepting state; it is None in a trap. ``leads``
+    has the edges that make progress towards the goal;
     :func:`~tltlc.tools.explain.next_steps.edges_leading_on` says which edges do.
     """
 
@@ -169,13 +170,13 @@ def _formula(fspa: Fspa, guard: Guard) -> Formula:
 
 
 def _literals(fspa: Fspa, implicant: Implicant) -> Formula:
-    """Return the conjunction of literals; ``true`` if there are none."""
+    """Return the literals of an implicant as a conjunction; ``true`` if there are none."""
     literals = [(atom(fspa.atoms[index].name), holds) for index, holds in implicant]
     return and_(*(literal if holds else not_(literal) for literal, holds in literals))
 
 
 def _condition_text(state: Formula) -> str:
-    """Return the condition of a step in words."""
+    """Return a formula about one step in words, such as the guard of an edge."""
     return ANYTHING if state is TRUE else phrase(_positive_first(state))
 
 

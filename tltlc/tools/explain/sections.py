@@ -37,7 +37,7 @@ class SectionTable:
 
 @record
 class Section:
-    """Blocks under a heading. A block that is a string is a paragraph."""
+    """A heading, and the paragraphs (strings), lists and tables under it, called ``blocks``."""
 
     heading: str
     blocks: tuple[str | SectionList | SectionTable, ...]
@@ -85,9 +85,9 @@ def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
 
 
 def failure_texts(explanation: Explanation) -> tuple[str, ...]:
-    """Return what breaks the spec for good, and in which states.
+    """Return texts about the conditions that break the spec for good: what, and in which states.
 
-    If there are more than ``_MOST_FAILURES`` failures, the last text says how many are left out.
+    If there are more than ``_MOST_FAILURES``, the last text says how many are left out.
     """
     texts = [_failure_text(failure) for failure in explanation.failures[:_MOST_FAILURES]]
     rest = len(explanation.failures) - len(texts)
