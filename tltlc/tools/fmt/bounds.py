@@ -1,4 +1,4 @@
-"""Convert a bound from words to brackets, or back, if both forms mean exactly the same."""
+"""Convert the bound of an operator from words to brackets, or back, if both mean the same."""
 
 from __future__ import annotations
 

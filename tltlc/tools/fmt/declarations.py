@@ -97,9 +97,9 @@ class DeclarationPrinter:
         interval: tree.Interval | None,
         end: int,
     ) -> None:
-        """Write ``keyword NAME(parameters): type in [low, high]``.
+        """Write the head of a declaration: ``keyword NAME(parameters): type in [low, high]``.
 
-        If there is no range, comments before the offset ``end`` belong to the head.
+        If there is a type but no range, comments before the offset ``end`` are written in the head.
         """
         self._put_words(keyword, node.name, node.name_span.end)
         rest = (f": {type_}" if type_ else "") + (f" {self._range(interval)}" if interval else "")

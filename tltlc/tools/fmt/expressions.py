@@ -19,7 +19,7 @@ _ENDLESS: Final = 1 << 30
 
 
 class Item(NamedTuple):
-    """An element of a list: the text ``head``, and then the value if there is one."""
+    """An element of a list: the text ``head``, then the expression ``value`` if it is not None."""
 
     head: str
     value: Expr | None
@@ -154,9 +154,10 @@ class Expressions:
                 self._page.put(self._one_line.text(node, _ENDLESS) or "")
 
     def _put_chain(self, node: tree.BinaryExpr, indent: int, reserved: int) -> None:
-        """Write each operand on a line that begins with its operator.
+        """Write the operands of a chain such as ``a and b and c``, each on its own line.
 
-        A comment between operator and operand moves before the operator.
+        Each line but the first begins with the operator before its operand. A comment between an
+        operator and its operand moves before the operator.
         """
         operands = [*chain(node)]
         for place, (operator, operand) in enumerate(operands):
@@ -168,7 +169,10 @@ class Expressions:
             self.put(operand, indent + STEP, operand_reserved)
 
     def _put_when(self, node: tree.WhenExpr, indent: int) -> None:
-        """Write each case on a line, with all values in one column if they fit there."""
+        """Write each case ``when CONDITION: VALUE`` on a line, then ``otherwise: VALUE``.
+
+        If all of these lines fit, their values begin in one column.
+        """
         column = self._value_column(node, indent)
         for case in node.cases:
             self._page.put_comments(case.span.start, indent)
@@ -184,9 +188,9 @@ class Expressions:
         self.put_value(node.otherwise, indent + STEP)
 
     def _value_column(self, node: tree.WhenExpr, indent: int) -> int:
-        """Return the column after the colon of the widest condition; the values go behind it.
+        """Return the column after the colon of the widest condition; all values begin behind it.
 
-        Return 0 if a condition or a value does not fit on its line then.
+        Return 0 if a line would then be too long.
         """
         heads = [self._one_line.text(case.condition, WIDTH) for case in node.cases]
         values = [self._one_line.text(value, WIDTH) for value in (*(case.value for case in node.cases), node.otherwise)]
@@ -197,14 +201,17 @@ class Expressions:
     # --- items of lists -------------------------------------------------------------------------
 
     def _put_lines(self, items: Sequence[Item], indent: int) -> None:
-        """Write each item on a line. Indent its further lines, unless it is the only item."""
+        """Begin each item on a new line. If there are several, indent the further lines of each."""
         for place, item in enumerate(items):
             self._page.put_comments(item.span.start, indent)
             self._page.end_line(indent)
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write the items one after another. Break the only large item inside its brackets."""
+        """Write the items one after another, and break the large one inside its brackets.
+
+        :meth:`_is_hugged` says which item is large.
+        """
         for place, item in enumerate(items):
             comma = ", " if place < len(items) - 1 else ""
             # Reserve a whole line, so that the large item is broken even if it fits.
@@ -240,7 +247,7 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether just one item is large, and the line has room for its opening bracket.
+        """Whether just one item is large, and the current line has room up to its opening bracket.
 
         An example is ``clamp(min(``. An item is large if it is more than a name, a number or a
         constant. The small items must fit on the line, too.

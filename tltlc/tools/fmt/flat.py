@@ -73,7 +73,7 @@ class OneLinePrinter:
         return Number(digits.rstrip(), source_text[len(digits) :])
 
     def prefix(self, node: tree.Unary) -> str:
-        """Return an operator before its operand, with its bound and a space if it needs one."""
+        """Return the text of a prefix operator with its bound, and a space after it if needed."""
         return self._style.prefix_text(node, bound_forms(node, self.number))
 
     def infix(self, op: str) -> str:
@@ -107,7 +107,10 @@ class OneLinePrinter:
         return "".join(texts)
 
     def _speed(self, node: Expr, room: int) -> str | None:
-        """Return a speed: ``20 m/s``, or None if it takes more than ``room`` columns."""
+        """Return the text of a quotient with units such as ``20 m/s``.
+
+        Returns None if the text takes more than ``room`` columns.
+        """
         assert isinstance(node, tree.BinaryExpr)
         denominator = self.text(node.right, room)
         return None if denominator is None else f"{self.text(node.left)}/{denominator}"

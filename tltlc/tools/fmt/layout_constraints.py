@@ -32,12 +32,14 @@ NO_CONSTRAINTS: Final = LayoutConstraints(frozenset(), frozenset())
 
 
 def required_constraints(module: Module, text: str, constraints: LayoutConstraints) -> LayoutConstraints:
-    """Return ``constraints``, extended if they let a comment apply to other statements than before.
+    """Return ``constraints``, extended if an ``allow`` comment would apply to other statements.
 
-    ``text`` is the layout of the module under ``constraints``. Call the function again with each
-    new layout, until the result equals ``constraints``. For the statements of an ``allow`` comment
-    whose scope has changed, it first adds joints, so that they stay on their lines. If that was not
-    enough, it adds their declarations, which are then copied from the source.
+    ``text`` is the layout of the module under ``constraints``. The function compares the statements
+    to which each ``allow`` comment applies in ``text`` and in the source. If they differ, it adds
+    joints, which keep these statements on their lines. If the joints are there already, it adds the
+    declarations that contain the statements; these are then copied from the source.
+
+    Call the function again with each new layout, until the result equals ``constraints``.
     """
     before = commented_spans(module)
     lists = [

@@ -58,7 +58,10 @@ class Page:
         self._indent = min(indent, _DEEPEST)
 
     def begin(self, joined: bool, indent: int) -> None:
-        """End the line; or write a space, if ``joined`` and the line has not ended yet."""
+        """Begin a new line, or with ``joined``, write a space and continue the current line.
+
+        If the current line has already ended, this always begins a new line.
+        """
         if joined and not self._at_line_start:
             self.put(" ")
         else:
@@ -90,7 +93,7 @@ class Page:
 
     @property
     def indent(self) -> int:
-        """The column where the line begins."""
+        """The column at which the text of the current line begins."""
         if self._at_line_start:
             return self._indent
         line = self._lines[-1]
@@ -119,7 +122,7 @@ class Page:
         return place
 
     def put_comments(self, end: int, indent: int, *, gaps: bool = False) -> None:
-        """Write the comments before the offset ``end``.
+        """Write the comments that precede the offset ``end`` in the source and are not written yet.
 
         Comments on lines of their own, and the text after a comment, begin at the column ``indent``.
         With ``gaps``, an empty line before a comment is kept.
@@ -157,9 +160,10 @@ class Page:
         return "".join(f"{line}\n" for line in lines)
 
     def _align(self, lines: list[str], group: list[int]) -> None:
-        """Append the comments of a group of lines to these lines.
+        """Append to each line of a group the comment that belongs after it.
 
-        The comments begin in one column, unless one of them would then end beyond ``WIDTH``.
+        ``group`` has the indices of the lines in ``lines``, which is changed in place. The comments
+        begin in one column, unless one of them would then end beyond ``WIDTH``.
         """
         widest = max((len(lines[place]) for place in group), default=0)
         if any(widest + _GAP + len(self._line_comments[place]) > WIDTH for place in group):

@@ -1,4 +1,4 @@
-"""The four styles, each with a spelling for every operator."""
+"""The four styles of the formatter, each with a spelling for every operator."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Style:
     ``constants`` has the spellings of ``true`` and ``false``. ``space_before_bracket`` says whether
     a space separates a prefix operator from an operand in brackets.
 
-    ``letters`` has the prefixes for bounds that words cannot express. It is None for styles that do
-    not write bounds in words.
+    ``letters`` spells the prefix operators as letters, for bounds that words cannot express, as in
+    ``F[2,3]``. It is None for styles that do not write bounds in words.
     """
 
     prefix: Mapping[str, str]
@@ -32,9 +32,10 @@ class Style:
     letters: Mapping[str, str] | None
 
     def prefix_text(self, node: tree.Unary, bound: Mapping[str, str]) -> str:
-        """Return an operator before its operand, with its bound and the space after it.
+        """Return the text of a prefix operator, with its bound and the space after it.
 
-        ``bound`` has the forms of the bound, from :func:`tltlc.tools.fmt.bounds.bound_forms`.
+        ``bound`` has the forms in which the bound can be written, as
+        :func:`tltlc.tools.fmt.bounds.bound_forms` returns them.
         """
         if "words" in bound and (self.letters or "brackets" not in bound):
             return f"{self.prefix[node.op].rstrip()} {bound['words']} "
@@ -52,7 +53,11 @@ class Style:
 def _style(
     notation: Spelling, extra_infix: Mapping[str, str] = EMPTY, letters: Mapping[str, str] | None = None
 ) -> Style:
-    """Return the style of a notation; ``extra_infix`` has further spellings of infix operators."""
+    """Return a style with the spellings of ``notation``.
+
+    ``extra_infix`` adds or replaces spellings of infix operators. ``letters`` is that of
+    :class:`Style`.
+    """
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
     return Style(
         {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **extra_infix}, constants, notation.space_before_bracket, letters
