@@ -82,10 +82,11 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
 
 
 def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
-    """Return a diagnostic with its labels moved to the proposition in the file, and help for it.
+    """Return a diagnostic about a proposition, with labels that point into the HOA file.
 
-    ``starts`` maps the name of the source of each proposition to the offset in the file at which the
-    proposition begins. A diagnostic about anything else is returned unchanged.
+    Each proposition was parsed as a source of its own. ``starts`` maps the name of that source to
+    the offset at which the proposition begins in the HOA file, which is ``source``. The help of the
+    result mentions ``--atom``. A diagnostic about anything else is returned unchanged.
     """
     if not message.labels or message.labels[0].source.name not in starts:
         return message

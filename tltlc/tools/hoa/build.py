@@ -84,7 +84,7 @@ def automaton_of(
 
 
 def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
-    """Return the moves of all reachable states.
+    """Return the moves of all reachable states: a target and acceptance sets for each letter.
 
     Raises:
         TltlError: at most ``_MOST_PROBLEMS`` errors, with the codes TLT0651, TLT0653 and TLT0654 as
@@ -159,9 +159,10 @@ def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple
 
 
 def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent:
-    """Return the component with Rabin pairs for its clauses.
+    """Return a component whose acceptance condition is converted from clauses to Rabin pairs.
 
-    If the clauses are pairs already, keep them, unless the conversion needs fewer pairs.
+    If the clauses already have the form of Rabin pairs, they are kept, unless the conversion finds
+    fewer pairs.
     """
     best, unchanged = with_pairs(letters, component, letters.work), clauses_as_pairs(letters, component)
     return unchanged if unchanged is not None and unchanged.pairs <= best.pairs else best

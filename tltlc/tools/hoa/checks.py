@@ -112,7 +112,7 @@ def _check_condition(hoa: Hoa, condition: HoaExpression) -> None:
 
 
 def _check_set(hoa: Hoa, number: int, span: Span) -> None:
-    """Raise TltlError, TLT0651, if there is no set with this number."""
+    """Raise TltlError, TLT0651, if the file has no acceptance set with this number."""
     if number >= hoa.sets:
         title = f"set {number} does not exist: `Acceptance:` declares {hoa.sets}, counted from 0"
         raise format_error(hoa.source, span, title, "use one of those, or declare more")

@@ -157,7 +157,10 @@ def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
 
 
 def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
-    """Return a name as a formula if that formula is printed exactly like the name, else as text."""
+    """Return the name of a state as a formula if possible, else as text.
+
+    The name is a formula if it parses as one, and if the formula is printed exactly like the name.
+    """
     expression, _ = parse_formula(SourceFile("<name>", name))
     formula = None if expression is None else formula_of(expression)
     # Compare, because the tool that wrote the name may give its operators other precedences.

@@ -179,7 +179,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """The offset in the file at which the parsed text begins: 0, except while a label is parsed."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
-        """Build the whole automaton. Raises TltlError, TLT0651, if the header is wrong."""
+        """Build the whole :class:`Hoa`. Raises TltlError, TLT0651, if the header is wrong."""
         if version != "v1":
             help_ = "tltlc reads version 1 of the format, `HOA: v1`"
             raise format_error(

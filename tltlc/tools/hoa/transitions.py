@@ -25,11 +25,12 @@ NOT_ALLOWED: Final = None
 
 
 class HoaTransitions:
-    """The moves of the states of a file, as functions from letters over ``atoms``.
+    """Computes what each state of a HOA file does on each letter over ``atoms``.
 
-    A function is the number of its node in the decision diagrams ``letters``. ``allowed`` is a
-    function from letters to :data:`YES` or :data:`NO`. For a letter that is not allowed, the move
-    is :data:`NOT_ALLOWED`, whatever edges take the letter.
+    A :data:`Move` is a target state with the acceptance sets of the edge and of its source. The
+    result for a state is a function from letters to moves. Each function is the number of a node in
+    the decision diagrams ``letters``. ``allowed`` is a function from letters to :data:`YES` or
+    :data:`NO`. The move for a letter that is not allowed is :data:`NOT_ALLOWED`.
 
     Raises TltlError, TLT0651, if an alias is wrong.
     """
@@ -67,10 +68,11 @@ class HoaTransitions:
         return letters.map_leaves(move, step, {})
 
     def _labelled_edges(self, state: HoaState) -> int:
-        """Return a function from letters to the positions of the edges that they take.
+        """Return a function from each letter to the edges of the state that it takes.
 
-        Two positions show that the state is not deterministic, so no letter is mapped to more than
-        two. A duplicate of an edge does not count.
+        The edges are given by their positions in ``state.edges``, without duplicates of earlier
+        edges. At most two edges are listed for a letter, because two already show that the state is
+        not deterministic.
         """
         letters = self._letters
         edges = letters.leaf(())
@@ -170,7 +172,7 @@ class HoaTransitions:
     # --- letters with no edge or two --------------------------------------------------------------
 
     def _letter(self, step: int, taken: tuple[int, ...]) -> str:
-        """Return a letter on which ``step`` has the value ``taken``, as a conjunction of literals."""
+        """Return a letter that ``step`` maps to ``taken``, as a conjunction of literals."""
         present = self._letters.assignment_with(step, taken)
         names = [name if place in present else f"!{name}" for place, name in enumerate(self._atoms)]
         return " & ".join(names) or "true"

@@ -57,7 +57,7 @@ class HoaEdge:
 
 @record
 class HoaState:
-    """A state. ``span`` is the span of its number."""
+    """A state. ``span`` is where its number stands in the source."""
 
     number: int
     name: str | None
@@ -95,10 +95,10 @@ class Header:
 
 @record
 class Hoa:
-    """A HOA file. ``count`` is the number of states that it declares, or None.
+    """A HOA file.
 
-    ``starts`` are its initial states, ``sets`` is its number of acceptance sets, and ``condition`` its
-    acceptance condition.
+    ``count`` is the number of states that the file declares, or None. ``starts`` are the initial
+    states, ``sets`` is the number of acceptance sets, and ``condition`` the acceptance condition.
     """
 
     source: SourceFile
