@@ -73,14 +73,18 @@ def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_
 
 
 def _automaton(whole: Spec, formula: Formula, state_budget: int) -> Fspa | None:
-    """Return the automaton of the spec with another formula; None if it would be too large."""
+    """Return the automaton of the spec ``whole`` with ``formula`` in place of its own formula.
+
+    Returns None if the automaton would be too large.
+    """
     return build_spec(_with_formula(whole, formula), CompileOptions(state_budget=state_budget))[0]
 
 
 def _with_formula(whole: Spec, formula: Formula) -> Spec:
-    """Return the spec with another formula, and only the atoms and signals that this formula needs.
+    """Return the spec ``whole`` with another formula, and only the atoms and signals it needs.
 
-    It needs its own atoms, and all atoms of each ``exclusive`` group that has two of them.
+    A formula needs the atoms that occur in it, and all atoms of each ``exclusive`` group of which
+    at least two occur in it.
     """
     used = set(formula.atoms())
     groups = [{whole.atoms[index].name for index in group} for group in whole.exclusive]

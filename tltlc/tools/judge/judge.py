@@ -28,8 +28,9 @@ _MOST_JOINT: Final = 50
 class Judge:
     """Judges traces by a spec, one after the other.
 
-    ``fspa`` is the automaton of the spec. If a trace is not accepted, its cause names those of
-    ``clauses`` that the trace breaks or does not meet. Without ``clauses``, it names none. With
+    ``fspa`` is the automaton of the spec. If a trace is not accepted, the
+    :class:`~tltlc.tools.judge.verdict.Cause` in the result names those of ``clauses`` that the
+    trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
     ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
     limit do not count.
     """
@@ -138,9 +139,9 @@ class Judge:
     def _blocked(self, samples: Sequence[Sample]) -> list[int]:
         """Return the indices of the unmet clauses that can no longer be met together with the met ones.
 
-        The samples meet some clauses and not others. Each unmet clause is tested by itself: the
-        result has those that no continuation of the samples can meet without breaking a met clause.
-        It is empty if every unmet clause passes by itself, or if not all clauses are known.
+        A met clause accepts the samples as a whole trace; an unmet one does not. An unmet clause is
+        in the result if no continuation of the samples can meet it and all met clauses together.
+        The result is empty if not all clauses are known.
         """
         if self._clauses is None or not self._clauses.are_all:
             return []

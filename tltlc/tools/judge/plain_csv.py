@@ -64,7 +64,7 @@ def plain_columns(data: bytes, signals: Sequence[Signal]) -> tuple[list[Column],
 
 
 def _values(cells: Sequence[str], *, is_bool: bool) -> Column | None:
-    """Return the values of the cells of a column; None if a cell is not plain."""
+    """Return the cells of a column as numbers; None if a cell is unusual or not finite."""
     try:
         if not is_bool and _DECIMAL.fullmatch(",".join(cells)):
             values = list(map(float, cells))

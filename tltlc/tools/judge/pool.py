@@ -106,9 +106,10 @@ def _judge_in_workers(
 
 
 class _Worker:
-    """A process that judges traces, chunk by chunk.
+    """A process that judges traces, one chunk (a list of paths) after the other.
 
-    ``start`` is the index of the first trace of its chunk. ``is_busy`` is true while it has a chunk.
+    ``start`` is the index of the first trace of the current chunk. ``is_busy`` is true while the
+    process has a chunk.
     """
 
     def __init__(self, fspa: Fspa, clauses: Clauses, *, episodes: bool) -> None:
@@ -124,7 +125,10 @@ class _Worker:
         self._send((fspa, clauses, episodes))
 
     def give(self, chunk: tuple[int, Sequence[str]] | None) -> None:
-        """Give the worker the next chunk; None if there are no more."""
+        """Give the worker its next chunk: the index of its first trace, and the paths of all.
+
+        None means that there are no more chunks.
+        """
         self.is_busy = chunk is not None
         if chunk is not None:
             self.start = chunk[0]

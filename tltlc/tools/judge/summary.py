@@ -56,9 +56,9 @@ def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
 
 
 def unread_codes(traces: Iterable[JudgedTrace]) -> dict[str, int]:
-    """Return the number of traces that cannot be judged, by the code of the first error of each.
+    """Count the traces that cannot be judged, by the code of the first error of each trace.
 
-    The most frequent code comes first.
+    Return a dict from codes to counts, with the most frequent code first.
     """
     return dict(Counter(trace.diagnostics[0].code for trace in traces if trace.verdict is None).most_common())
 

@@ -60,10 +60,10 @@ class TraceRunner:
         self._samples = 0
 
     def run(self, samples: Sequence[Sample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
-        """Run the automaton over at least one sample.
+        """Run the automaton over ``samples``, of which there must be at least one.
 
-        Return the result, and warnings about clamped values. With ``cut_off``, the trace has more
-        samples than these, so an episode does not end with the last of them.
+        Return the result of the run, and warnings about clamped values. Pass ``cut_off`` if the
+        trace goes on after ``samples``; then an episode does not end just because they end.
 
         Raises:
             MonitorError: the errors of :meth:`~tltlc.monitor.monitor.Monitor.step`.
@@ -82,10 +82,10 @@ class TraceRunner:
         return self._slow_run(monitor, samples, cut_off=cut_off), tuple(monitor.notices)
 
     def _fast_run(self, steps: Sequence[Any]) -> TraceRun:
-        """Return the result of a run, given all steps of the generated monitor.
+        """Return the result of a run, given what the generated monitor reported at each step.
 
-        A verdict ``violated`` never changes again, and an episode that has ended stays ended. So the
-        search for the first such step is a bisection.
+        A verdict ``violated`` never changes again, and an episode that has ended stays ended. So
+        bisection finds the first step with this verdict, and the step at which the episode ends.
         """
         if self._episodes:
             steps = steps[: bisect_left(steps, True, key=attrgetter("done")) + 1]
