@@ -78,7 +78,7 @@ class _SettledSpecs:
         self._results: dict[int, bool] = {}
 
     def overlap(self, allowance: Allowance) -> bool:
-        """Whether the comment of an allowance applies to any of these specs or their clauses."""
+        """Whether the comment of an allowance applies to a settled spec or one of its clauses."""
         if allowance.statements is None:
             return bool(self._specs)
         # Comments that apply to the same line share one tuple of spans, so its identity can be the key.
@@ -104,7 +104,7 @@ def _unused_code(allowance: Allowance, fix: Fix | None) -> LintFinding:
 
 
 def _missing_code(comment: Comment, source: SourceFile) -> LintFinding:
-    """Return the finding for a comment that names no code."""
+    """Return the finding for an ``allow`` comment that names no code."""
     title, help_ = "this comment allows nothing", "write a code, e.g. `// tltlc: allow TLT0419`"
     return LintFinding(Diagnostic(CODE, title, (Label(source, comment.span),), help_, SEVERITY))
 

@@ -25,7 +25,7 @@ class FixedFile:
     """A text after all fixes.
 
     ``fixed`` are the diagnostics that were fixed. Their labels point into the text in which each was
-    found. ``remaining`` are the findings in ``source``.
+    found. ``remaining`` are the findings that are left in ``source``, the new text.
     """
 
     source: SourceFile
@@ -69,9 +69,10 @@ def fix(
 
 
 def _apply_once(module: Module, remaining: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
-    """Apply all fixes that neither overlap nor change what ``allow`` comments apply to.
+    """Apply the fixes of ``remaining`` to the text of a module.
 
-    Returns the new text and the diagnostics that were fixed.
+    Fixes that overlap with an earlier one are left out, and so are fixes that would change what
+    ``allow`` comments apply to. Returns the new text and the diagnostics that were fixed.
     """
     fixable = _without_overlaps([finding for finding in remaining if finding.fix])
     if not fixable:

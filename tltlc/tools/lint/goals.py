@@ -10,9 +10,11 @@ from tltlc.tools.lint.file_view import Expression, SpecView, without_brackets
 
 
 def goals(spec: SpecView) -> Iterator[Expression]:
-    """Yield each step of a ``reach`` clause or ``then`` chain, and each operand of ``eventually``.
+    """Yield the goals of a spec, which must hold at some step.
 
-    Expressions inside a negation, and the conditions of implications, are left out.
+    They are the operands of ``then`` chains and of ``eventually``, and the expressions of ``reach``
+    clauses without ``then``. Expressions inside a negation, and the conditions of implications, are
+    left out.
     """
     for clause, value in spec.clauses("reach", "keep", "require"):
         if clause.kind == "reach":

@@ -82,7 +82,10 @@ def names_used_elsewhere(path: str, files: Iterable[ImporterNames]) -> Container
 
 
 def _tokens(text: str) -> Iterator[tuple[str, str]]:
-    """Yield pairs of a quoted text and a name, in order; one of the two is empty."""
+    """Yield the quoted texts and the names in a source text, in order, without comments.
+
+    A quoted text comes as ``(text, "")``, and a name as ``("", name)``.
+    """
     for match in _TOKEN.finditer(text):
         if match.lastgroup:
             yield match["text"] or "", match["name"] or ""

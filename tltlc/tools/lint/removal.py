@@ -15,10 +15,10 @@ from tltlc.grammar.tree import Comment
 def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
     """Return the span to delete in order to remove a declaration, clause or comment.
 
-    The result covers ``span`` and the documentation above it. If the lines of these contain nothing
-    else, except for a comment at the end, the result covers the whole lines. If there is an empty
-    line above and below these lines, the result also covers the one below. ``comments`` are those
-    of the module.
+    The result covers ``span`` and the documentation above it. If nothing else stands on these
+    lines, except for a comment at the end, the result covers the whole lines. Then, if there is an
+    empty line both above and below them, the result also covers the one below. ``comments`` are
+    those of the module.
     """
     text = source.text
     start, end = documentation_start(source, span.start, comments), span.end

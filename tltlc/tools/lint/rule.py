@@ -29,7 +29,7 @@ class Remark:
 
 @record
 class LintRule:
-    """A lint rule. The page of its code says what it finds, what to write instead, and why.
+    """A lint rule. The documentation of its code says what it finds, and what to write instead.
 
     ``check`` is a pure function from a file to remarks. ``supersedes`` lists codes of less specific
     diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a

@@ -90,7 +90,10 @@ class _Offsets:
         return offset + self._shifts[bisect_right(self._ends, offset)]
 
     def starts(self, places: Iterable[Span] | None) -> frozenset[int] | None:
-        """Return the new offsets at which the kept statements begin; None for the whole file."""
+        """Return the new offset of the start of each place, unless an edit removes that start.
+
+        None, which stands for the whole file, stays None.
+        """
         if places is None:
             return None
         return frozenset(self.new_offset(place.start) for place in places if self.keeps(place))

@@ -32,7 +32,7 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
-    """Return how many steps a chain takes, and the expression at its end.
+    """Return how many steps a chain of `next` operators takes, and the operand of the last one.
 
     A `next` with a bound in seconds ends the chain. The ids of the nodes of the chain are added to
     ``inside``.

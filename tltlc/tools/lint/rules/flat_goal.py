@@ -32,12 +32,12 @@ def _is_flat(atom: Atom, fspa: Fspa) -> bool:
 
 
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
-    """Return the indices of the flat atoms that an edge towards the goal needs.
+    """Return the indices of the flat atoms that must begin to hold for some edge to the goal.
 
-    ``flat`` has the indices of the atoms whose value is never negative and can be 0. Atoms that the
-    self-loop of the edge's source needs, too, are left out. So are the atoms of an edge that always
-    needs an atom whose value can be negative as well: progress uses the least value, and the value
-    of that atom tells near from far.
+    ``flat`` has the indices of the atoms whose value is never negative and can be 0. An atom is
+    left out if the self-loop of the edge's source needs it, too. All atoms of an edge are left out
+    if an atom that is not flat must always begin to hold with them. Progress uses the least value
+    of the atoms, so the value of that other atom tells near from far.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

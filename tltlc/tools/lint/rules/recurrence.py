@@ -45,9 +45,10 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _remarks_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[Remark]:
-    """Yield remarks for each operator in an expression.
+    """Yield remarks for the operands of each unbounded `always` and `eventually` in an expression.
 
-    ``clause`` is the part of the expression, if any, that another clause can replace.
+    ``clause`` is ``tree`` without brackets if it is a whole clause, which another clause can
+    replace; else it is None.
     """
     for part in parts(tree):
         if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
@@ -57,10 +58,10 @@ def _remarks_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[Rem
 def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_clause: bool) -> Iterator[Remark]:
     """Yield remarks for the parts of an operand that constrain only the last step.
 
-    ``outer``, `F` or `G`, is the operator in front of the operand. If ``holds`` is false, the operand
-    is negated. `always` distributes over `and`, and `eventually` over `or`, so the operands of
-    these are checked, too. ``start`` is the offset at which the label of the whole operand begins.
-    ``is_clause`` says whether the operator and its operand are a whole clause.
+    ``tree`` is the operand, and ``outer``, `F` or `G`, the operator in front of it. If ``holds`` is
+    false, the operand is negated. `always` distributes over `and`, and `eventually` over `or`, so
+    the parts that these join are checked, too. ``start`` is the offset at which the label for the
+    whole operand begins. ``is_clause`` says whether ``outer`` and its operand are a whole clause.
     """
     whole = without_brackets(tree)
     pending = [(tree, holds)]
@@ -99,11 +100,12 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
 
 
 def _once(awaited: Expression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
-    """Return what to write if it is enough that ``awaited`` (not, if ``sign`` is false) holds once.
+    """Return advice on what to write if it is enough that ``awaited`` holds once.
 
-    ``word`` is the operator in front of ``awaited``, and ``outer`` the operator around that.
-    ``is_whole`` says whether nothing else is inside the outer operator. ``is_clause`` says whether
-    the outer operator and its operand are a whole clause.
+    If ``sign`` is false, the negation of ``awaited`` must hold instead. ``word`` is the operator in
+    front of ``awaited``, and ``outer`` the operator around that. ``is_whole`` says whether nothing
+    else is inside the outer operator. ``is_clause`` says whether the outer operator and its operand
+    are a whole clause.
     """
     if is_clause and (is_whole or outer == "G"):
         return f"write `reach {_goal(awaited, sign)}`"
@@ -119,7 +121,11 @@ def _goal(awaited: Expression, sign: bool) -> str:
 
 
 def _remark(place: Span, op: str, awaited: Expression, sign: bool, once: str) -> Remark:
-    """Return the remark. ``sign`` is false if the negation of ``awaited`` is required."""
+    """Return the remark that ``awaited``, under operators like `G F`, is only about the last step.
+
+    ``op``, `F` or `G`, is the inner operator, and ``place`` the span of the operators. ``sign`` is
+    false if the negation of ``awaited`` is required. ``once`` is the advice from :func:`_once`.
+    """
     label = Label(
         awaited.source, place, f"on a trace that ends, this only means `{_goal(awaited, sign)}` at the last step"
     )

@@ -37,7 +37,7 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """Return a key. Only automata with equal keys can count as the same.
+    """Return a key of an automaton. Two specs can count as the same only if their keys are equal.
 
     The key has the settings and ``spec_size`` of the automaton. Over finite traces, it also has the
     edges, so that automata with equal keys accept the same traces.

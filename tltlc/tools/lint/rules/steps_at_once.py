@@ -62,7 +62,7 @@ def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
 
 
 def _atom(part: Expression) -> str:
-    """Return the name of the atom, or an empty string if the expression is not an atom."""
+    """Return the name of an atom; an empty string if the expression is anything but an atom."""
     formula = part.formula()
     return formula.name if formula is not None and formula.op == "atom" else ""
 
@@ -119,9 +119,10 @@ def _same_predicate(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
 
 
 def _atoms_together(edge: Edge, group: set[int]) -> set[int]:
-    """Return the atoms of a group that hold together in the implicants of an edge.
+    """Return the atoms of a group that must hold together for an edge to be taken.
 
-    The set is empty if the edge can be taken with at most one atom of the group.
+    They are the union over all prime implicants of the guard. The set is empty if one of these
+    implicants needs at most one atom of the group.
     """
     together = [group.intersection(atom for atom, holds in prime if holds) for prime in edge.guard.primes]
     return set().union(*together) if all(len(atoms) > 1 for atoms in together) else set()
@@ -137,7 +138,7 @@ def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
 
 
 def _length(fspa: Fspa) -> tuple[int, int]:
-    """Return the distance of the initial state, and the greatest distance of any state.
+    """Return the distance from the initial state to the goal, and the greatest from any state.
 
     Both are 0 if no trace satisfies the spec.
     """

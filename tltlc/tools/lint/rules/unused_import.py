@@ -62,7 +62,7 @@ def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
 
 
 def _first(names: Sequence[str], start: str) -> str:
-    """Return the first name in sorted order that is not before ``start``, or an empty string."""
+    """Return the first of ``names``, which are sorted, that is not before ``start``; or ``""``."""
     place = bisect_left(names, start)
     return names[place] if place < len(names) else ""
 
