@@ -19,7 +19,9 @@ Verdicts = int
 
 
 class Bits:
-    """The traces of the evidence as masks; with ``backwards``, each trace is in reverse order.
+    """Recorded traces and counterexamples as bit masks.
+
+    With ``backwards``, the samples of each trace are in reverse order.
 
     ``all`` has all samples, and ``holds`` the samples at which each atom holds, by atom. The sets
     of traces are ``traces`` (to be accepted), ``counterexamples`` (to be rejected), and
@@ -102,9 +104,9 @@ class Bits:
         return self._low * ((1 << min(steps, width)) - 1)
 
     def _up_to_first(self, samples: Samples) -> Samples:
-        """Return the bits of each segment up to and including the first one in ``samples``.
+        """Return the bits of each trace up to and including its first sample in ``samples``.
 
-        Return all bits of a segment that has none in ``samples``.
+        For a trace without any of ``samples``, return all of its bits.
         """
         with_end = samples | self._top
         return with_end ^ (with_end - self._low)

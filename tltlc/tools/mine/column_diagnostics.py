@@ -54,11 +54,11 @@ class OddColumns:
 
 
 def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
-    """Return the columns that some traces lack, but at most half of them.
+    """Return the columns that at least one trace lacks, but at most half of the traces.
 
-    With ``truths``, also return the columns that all traces have, but that have values other than
-    `true` and `false` in some traces, fewer than half. Columns that are odd in the same traces, for
-    the same reason, are in one group.
+    With ``truths``, also return columns that no trace lacks, but that have values other than `true`
+    and `false` in at least one trace and in fewer than half. Columns that are odd in the same
+    traces, for the same reason, are in one group.
     """
     groups: dict[tuple[tuple[str, ...], bool], list[str]] = {}
     for name in dict.fromkeys(name for trace in traces for name in trace.columns):

@@ -23,8 +23,8 @@ def conjunctions(
 ) -> Iterator[list[Conjunction]]:
     """Yield conjunctions of two or more clauses, in portions.
 
-    Many portions are empty: each takes a short time, so that the caller can soon stop the search.
-    At least ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms.
+    Many portions are empty; they only give the caller a chance to stop the search. At least
+    ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]

@@ -45,6 +45,6 @@ class Support:
 
 
 def figures(bits: Bits, accepted: Verdicts) -> Support:
-    """Return the figures of a proposal that accepts the traces in ``accepted``."""
+    """Return the support and separation of a proposal that accepts the traces in ``accepted``."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
     return Support(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

@@ -163,10 +163,10 @@ class _Sequences:
 
 
 def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedClause], None, list[SequenceStep]]:
-    """Return the steps of one atom that some trace meets, then the best steps of two atoms.
+    """Yield empty lists while searching, then return steps of one atom and of two atoms.
 
-    The best steps of two atoms are those that the most traces meet. The function yields empty
-    portions meanwhile, so that the caller can stop.
+    The yields let the caller stop the search. A step of one atom is left out if no trace meets it.
+    Of the steps of two atoms, only those that the most traces meet are returned.
     """
     single = [SequenceStep(atom_operand(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.traces_with(step.samples) & bits.traces]

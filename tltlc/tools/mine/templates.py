@@ -43,7 +43,7 @@ def template_clause(kind: str, text: str, atoms: int, accepts: int, not_vacuous:
 
 
 def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield all instances, in portions of one atom or one pair of atoms."""
+    """Yield all instances of the templates, in portions of one atom or one pair of atoms."""
     occurs = {name: forwards.traces_with(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
         every = forwards.all_traces
@@ -83,10 +83,10 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield the bounded response with the smallest bound that at least ``least`` traces meet.
+    """Yield ``require always (FIRST implies eventually within N steps SECOND)``, or nothing.
 
-    Nothing is yielded if the bound is 0 or above ``LONGEST_BOUND``, or if too few traces trigger the
-    response.
+    N is the smallest bound with which at least ``least`` traces satisfy the clause. Nothing is
+    yielded if N is 0 or above ``LONGEST_BOUND``, or if ``first`` holds in too few traces.
     """
     a_samples, b_samples = bits.holds[first], bits.holds[second]
 

@@ -245,7 +245,10 @@ def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
 def _readable_atoms(
     module: Module, texts: Sequence[str], columns: Collection[str], options: ResolveOptions | None = None
 ) -> Vocabulary | None:
-    """Return the atoms of these texts whose signals are all columns; None if no atom is left."""
+    """Return the atoms among ``texts``, such as `near(s1)`, that read no signals but columns.
+
+    Returns None if no atom is left.
+    """
     resolved = _resolve(module, texts, options)
     if resolved is None:
         return None
@@ -260,7 +263,7 @@ def _readable_atoms(
 
 
 def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
-    """Return the atoms of these texts.
+    """Return the atoms that ``texts`` such as `near(s1)` denote in a module.
 
     Texts that are not atoms or that repeat an atom are left out. None if no text is left.
     """
