@@ -138,7 +138,7 @@ class BlockWriter:
 
 
 class _MonitoredStep(NamedTuple):
-    """A step of the last trace: the letter, the output of the monitor, and the monitor after it."""
+    """A step of the last trace: its letter, and the output and the monitor after this step."""
 
     letter: Letter
     result: Step

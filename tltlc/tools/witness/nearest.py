@@ -55,8 +55,8 @@ class NearestEdges:
     def take(self, start: int) -> tuple[int, ...]:
         """Return the edges of a path from a state to the nearest wanted edge.
 
-        The path ends with that edge, which is then no longer wanted. It is empty if no wanted edge
-        can be reached.
+        The path ends with that edge, which is then no longer wanted. The path is empty if no wanted
+        edge can be reached.
         """
         if not self._is_live(start):
             return ()

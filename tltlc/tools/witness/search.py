@@ -70,10 +70,10 @@ class AtomGroup:
         return self._cache[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """Return the best of ``_candidates`` at which the literals are true.
+        """Return a point at which the literals are true, or None if none is found.
 
-        Without one, return the point at which a climb ends, else the best far candidate. Return
-        None if the literals are true at none of these.
+        Try the points in ``_candidates`` first, then hill climbing from the best of them, and then
+        the points in ``_far_candidates``.
         """
         inside = self._best(self._candidates, literals)
         if inside is not None:
@@ -223,10 +223,10 @@ class AtomGroup:
             return inf
 
     def _sign_functions(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
-        """Return the functions that decide whether a literal is true.
+        """Return functions of the signals that together decide whether a literal is true.
 
-        Each comes with whether it must be positive. Unlike the value of the atom, they are not
-        clamped, so they have no plateaus on which a climb would not know where to go.
+        Each comes with a bool: whether its value must be positive. Unlike the value of the atom,
+        the values are not clamped, so there are no plateaus on which hill climbing gets stuck.
         """
         if literal not in self._goals:
             atom, holds = literal
@@ -247,7 +247,8 @@ def _middle(low: float, high: float) -> float:
 def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
     """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with whether it must be positive. ``holds`` is whether the whole expression must be.
+    Each comes with a bool: whether its value must be positive. ``holds`` says whether the value of
+    the whole expression must be positive.
     """
     stack = [(expression, holds)]
     while stack:

@@ -87,7 +87,7 @@ def _shortest_to(moves: Moves, kind: Kind, is_target: list[bool]) -> Witness | N
 
 
 def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
-    """Return a trace that ends in a trap, with a loop in the trap as its cycle.
+    """Return an infinite trace: ``trace``, which ends in a trap, and then a loop in the trap.
 
     Return None if no samples are found for a loop.
     """
