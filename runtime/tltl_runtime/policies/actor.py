@@ -16,12 +16,10 @@ from numpy.typing import NDArray
 
 from tltl_runtime.policies.network import Activation, Network, Shapes
 
-Array = NDArray[np.float32]
-WeightShapes = dict[str, tuple[int, ...]]
-"""The shape of each weight by its name."""
+_Array = NDArray[np.float32]
 
 
-def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> WeightShapes:
+def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> dict[str, tuple[int, ...]]:
     """Return the shapes of the weights of a policy's network, by name.
 
     ``shapes`` are the shapes in the observation. ``branches`` are the numbers of choices in the
@@ -30,7 +28,7 @@ def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> 
     Raises:
         ValueError: the convolutions do not fit a map.
     """
-    weights: WeightShapes = {}
+    weights: dict[str, tuple[int, ...]] = {}
     width = sum(shape[0] for shape in shapes.values() if len(shape) == 1)
     for key, (planes, *size) in _maps(shapes):
         for index, channels in enumerate(network.channels):
@@ -68,7 +66,7 @@ class Actor:
         self._layers = [_layer(weights, f"mlp.{2 * index}") for index in range(len(network.hidden) + 1)]
         self._activate = ACTIVATIONS[network.activation]
 
-    def logits(self, observation: Mapping[str, NDArray[Any]]) -> Array:
+    def logits(self, observation: Mapping[str, NDArray[Any]]) -> _Array:
         """Return the logits [sum(branches)] for the observation of one environment."""
         # Infinite values give NaN in some operations. The caller checks the result, so no warning is needed.
         with np.errstate(all="ignore"):
@@ -82,7 +80,7 @@ class Actor:
             for weight, bias in self._layers[:-1]:
                 values = self._activate(weight @ values + bias)
             weight, bias = self._layers[-1]
-            logits: Array = weight @ values + bias
+            logits: _Array = weight @ values + bias
             return logits
 
 
@@ -90,7 +88,7 @@ def _maps(shapes: Shapes) -> list[tuple[str, tuple[int, ...]]]:
     return [(key, shape) for key, shape in shapes.items() if len(shape) == 3]
 
 
-def _layer(weights: Mapping[str, NDArray[Any]], name: str) -> tuple[Array, Array]:
+def _layer(weights: Mapping[str, NDArray[Any]], name: str) -> tuple[_Array, _Array]:
     return weights[f"{name}.weight"].astype(np.float32), weights[f"{name}.bias"].astype(np.float32)
 
 
@@ -128,7 +126,7 @@ def _convolutions(
 class _Convolution:
     """A convolution of a map [channels, height, width] as one matrix product."""
 
-    def __init__(self, layer: tuple[Array, Array], size: Sequence[int], network: Network) -> None:
+    def __init__(self, layer: tuple[_Array, _Array], size: Sequence[int], network: Network) -> None:
         weight, bias = layer
         self._weight = weight.reshape(len(weight), -1)
         self._bias = bias[:, None]
@@ -138,14 +136,14 @@ class _Convolution:
         self._output = [_output_size(cells, network) for cells in size]
         self._kernel, self._stride = network.kernel, network.stride
 
-    def __call__(self, planes: Array) -> Array:
+    def __call__(self, planes: _Array) -> _Array:
         stride, kernel = self._stride, self._kernel
         padded = np.zeros((len(planes), *self._padded), np.float32)
         padded[self._inside] = planes
         windows = np.lib.stride_tricks.sliding_window_view(padded, (kernel, kernel), (1, 2))[:, ::stride, ::stride]
         # The order of a weight [outputs, channels, kernel, kernel], then one column per cell of the result.
         columns = windows.transpose(0, 3, 4, 1, 2).reshape(self._weight.shape[1], -1)
-        result: Array = (self._weight @ columns + self._bias).reshape(-1, *self._output)
+        result: _Array = (self._weight @ columns + self._bias).reshape(-1, *self._output)
         return result
 
 
@@ -159,39 +157,55 @@ _ROOT_OF_TWO: Final = np.float32(math.sqrt(2))
 _erf = np.frompyfunc(math.erf, 1, 1)
 
 
-def _elu(values: Array) -> Array:
+def _elu(values: _Array) -> _Array:
     return np.where(values > 0, values, np.expm1(np.minimum(values, 0)))
 
 
-def _selu(values: Array) -> Array:
-    result: Array = _SELU_SCALE * np.where(values > 0, values, _SELU_ALPHA * np.expm1(np.minimum(values, 0)))
+def _selu(values: _Array) -> _Array:
+    result: _Array = _SELU_SCALE * np.where(values > 0, values, _SELU_ALPHA * np.expm1(np.minimum(values, 0)))
     return result
 
 
-def _sigmoid(values: Array) -> Array:
-    result: Array = np.reciprocal(1 + np.exp(-values))
+def _sigmoid(values: _Array) -> _Array:
+    result: _Array = np.reciprocal(1 + np.exp(-values))
     return result
 
 
-def _softplus(values: Array) -> Array:
+def _softplus(values: _Array) -> _Array:
     return np.maximum(values, 0) + np.log1p(np.exp(-np.abs(values)))
 
 
-def _gelu(values: Array) -> Array:
-    result: Array = values * _HALF * (1 + _erf(values / _ROOT_OF_TWO).astype(np.float32))
+def _gelu(values: _Array) -> _Array:
+    result: _Array = values * _HALF * (1 + _erf(values / _ROOT_OF_TWO).astype(np.float32))
     return result
 
 
-ACTIVATIONS: Final[Mapping[Activation, Callable[[Array], Array]]] = {
+def _relu(values: _Array) -> _Array:
+    return np.maximum(values, 0)
+
+
+def _leaky_relu(values: _Array) -> _Array:
+    return np.where(values > 0, values, _LEAK * values)
+
+
+def _swish(values: _Array) -> _Array:
+    return values * _sigmoid(values)
+
+
+def _mish(values: _Array) -> _Array:
+    return values * np.tanh(_softplus(values))
+
+
+ACTIVATIONS: Final[Mapping[Activation, Callable[[_Array], _Array]]] = {
     "elu": _elu,
     "selu": _selu,
-    "relu": lambda values: np.maximum(values, 0),
-    "lrelu": lambda values: np.where(values > 0, values, _LEAK * values),
+    "relu": _relu,
+    "lrelu": _leaky_relu,
     "tanh": np.tanh,
     "sigmoid": _sigmoid,
     "softplus": _softplus,
     "gelu": _gelu,
-    "swish": lambda values: values * _sigmoid(values),
-    "mish": lambda values: values * np.tanh(_softplus(values)),
+    "swish": _swish,
+    "mish": _mish,
 }
 """The functions between layers, by the name that rsl_rl gives them (D.-A. Clevert et al., ICLR 2016, for ELU)."""

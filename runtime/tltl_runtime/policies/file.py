@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+from collections.abc import Collection
 from math import prod
 from pathlib import Path
 from typing import Any, Final
@@ -91,10 +92,12 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     """
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
+    observation, branches = _observation_shapes(fspa, sensors), registered_game().branches
     try:
-        shapes = weight_shapes(network, _observation_shapes(fspa, sensors), registered_game().branches)
+        shapes = weight_shapes(network, observation, branches)
     except ValueError as error:
-        raise TltlError([Diagnostic("TLT0862", f"`network`: {error}", help="give a smaller `stride`")]) from None
+        help_ = "give a smaller `stride` or a larger `kernel`"
+        raise TltlError([Diagnostic("TLT0862", f"`network`: {error}", help=help_)]) from None
     size = 2 * sum(map(prod, shapes.values())) + len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
         raise _too_large(size)
@@ -170,11 +173,16 @@ def _fault(card: Card) -> str | None:
     """Return what is wrong with a card whose fields have the right types; None if it is valid."""
     shapes = dict(card.shapes)
     expected = _observation_shapes(card.fspa, card.sensors)
-    if len(shapes) < len(card.shapes) or shapes != expected or max(map(prod, shapes.values())) > MAX_BYTES:
+    if len(shapes) < len(card.shapes) or shapes != expected or not _are_sizes(shapes.values()):
         return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
         return "`card.branches` are not the branches of an action"
     return None if _HASH.match(card.level_hash) else "`card.level_hash` is not a hash"
+
+
+def _are_sizes(shapes: Collection[tuple[int, ...]]) -> bool:
+    """Whether every dimension of the shapes is at least 1, and no part of an observation is too large."""
+    return min(map(min, shapes)) >= 1 and max(map(prod, shapes)) <= MAX_BYTES
 
 
 def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
@@ -197,7 +205,7 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     try:
         shapes = weight_shapes(card.network, dict(card.shapes), card.branches)
     except ValueError as error:
-        raise _ERRORS.broken_error(name, f"its card does not describe a network: {error!s:.80}") from None
+        raise _ERRORS.broken_error(name, f"its card does not describe a network: {error}") from None
     expected = {f"{_PREFIX}{key}": list(shape) for key, shape in shapes.items()}
     stored = {key: entry for key, entry in header.items() if key != "__metadata__"}
     for key in sorted(expected.keys() | stored.keys()):

@@ -36,7 +36,7 @@ def summary(policy: Policy) -> dict[str, Any]:
         "sensors": to_json(card.sensors),
         "branches": card.branches,
         "network": to_json(card.network),
-        "weights": sum(weight.size for weight in policy.weights().values()),
+        "weights": policy.weight_count(),
         "reward": to_json(card.reward),
         "versions": dict(card.versions),
         "training": to_json(card.training),

@@ -14,8 +14,8 @@ def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext
     On Linux it is a fork server, which loads the modules ``preloaded`` once for all workers of this
     process. A call after the first workers have started cannot change the modules any more. In
     general, a forked process may hang, because it inherits the locks of all threads, but not the
-    threads. Here, forking is safe: the fork server computes nothing, so torch starts no threads in
-    it, and OpenBLAS ends its threads before a fork. Workers have the environment variables with
+    threads. Here, forking is safe: the fork server computes nothing, and OpenBLAS ends its threads
+    before a fork. Workers have the environment variables with
     which the fork server started.
     """
     if sys.platform != "linux":

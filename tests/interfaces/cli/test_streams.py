@@ -132,8 +132,8 @@ def _inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(name="recorded", scope="module")
 def _inputs_with_recording(inputs: Path) -> Path:
     """The inputs, and a recording of an episode."""
-    if find_spec("pybullet") is None or find_spec("torch") is None:
-        pytest.skip("needs the extra rl")
+    if find_spec("pybullet") is None or find_spec("safetensors") is None:
+        pytest.skip("needs the extra game")
     demonstration = _run(inputs, ("demonstrate", "cover_and_hide", "-o", "demo"), "")
     assert demonstration.status == 0, demonstration.err
     return inputs

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import pickle
-from typing import Any, get_args
+import sys
+from typing import get_args
 
 import numpy as np
 import pytest
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
+from rsl_rl.utils import resolve_nn_activation
 from tensordict import TensorDict
+from threadpoolctl import threadpool_info
 
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
-from tltl_runtime.policies.actor import Actor, weight_shapes
-from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.actor import ACTIVATIONS, Actor, weight_shapes
+from tltl_runtime.policies.blas_threads import blas_threads
 from tltl_runtime.policies.network import Activation, Network
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.torch_actor import arrays, new_actor, torch_actor
@@ -43,42 +45,76 @@ def test_the_logits_equal_the_logits_of_rsl_rl(policy: Policy) -> None:
         assert policy.choose(observation).tolist() == action[0].tolist()
 
 
+@pytest.mark.parametrize("activation", get_args(Activation))
+def test_activations_equal_those_of_torch(activation: Activation) -> None:
+    sizes = np.concatenate([np.geomspace(1e-6, 120, 200), 20 + np.linspace(-0.01, 0.01, 21), [0, np.inf]])
+    values = np.concatenate([-sizes, sizes, [np.nan]]).astype(np.float32)
+    with np.errstate(all="ignore"):
+        computed = ACTIVATIONS[activation](values)
+    expected = resolve_nn_activation(activation)(torch.from_numpy(values)).numpy()
+    # Torch's gelu of infinity is NaN.
+    compared = np.isfinite(values) if activation == "gelu" else np.full(len(values), True)
+    assert computed.dtype == np.float32
+    np.testing.assert_allclose(computed[compared], expected[compared], rtol=1e-6, atol=1e-6)
+
+
 @pytest.mark.hypothesis
+@pytest.mark.parametrize("activation", get_args(Activation))
 @given(data=st.data())
-def test_any_network_computes_what_rsl_rl_computes(data: st.DataObject) -> None:
-    network = data.draw(networks())
-    shapes: dict[str, tuple[int, ...]] = {"automaton": (data.draw(st.integers(1, 9)),), "progress": (1,)}
-    for key in data.draw(st.sampled_from([(), ("map",), ("map", "plan")])):
-        shapes[key] = (data.draw(st.integers(1, 4)), data.draw(st.integers(1, 12)), data.draw(st.integers(1, 12)))
-    card = replace(EXAMPLE, network=network, shapes=tuple(shapes.items()), branches=(3, 2))
-    batch = {key: torch.from_numpy(values).float()[None] for key, values in draw_observation(card, data).items()}
-    try:
-        torch.manual_seed(0)
-        actor = new_actor(card)
-        for weight in actor.state_dict().values():
-            weight.uniform_(-1, 1)
-        expected = actor.mlp(actor.get_latent(batch))[0].detach().double().numpy()
-    except (RuntimeError, ValueError):
-        with pytest.raises(ValueError, match="do not fit a map"):
-            weight_shapes(network, shapes, card.branches)
-        return
-    weights = arrays(actor.state_dict())
-    assert {name: weight.shape for name, weight in weights.items()} == weight_shapes(network, shapes, card.branches)
-    logits = Actor(network, shapes, card.branches, weights).logits(
-        {key: part[0].numpy() for key, part in batch.items()}
+def test_any_network_computes_what_rsl_rl_computes(activation: Activation, data: st.DataObject) -> None:
+    kernel = data.draw(st.integers(1, 6))
+    widths = st.lists(st.integers(1, 8), min_size=1, max_size=3).map(tuple)
+    network = Network(
+        data.draw(widths), activation, data.draw(widths), kernel, data.draw(st.integers(1, min(kernel, 3)))
     )
+    shapes: dict[str, tuple[int, ...]] = {"automaton": (data.draw(st.integers(1, 9)),), "progress": (1,)}
+    for key in data.draw(st.sampled_from([("map",), ("map", "plan"), ()])):
+        shapes[key] = (data.draw(st.integers(1, 4)), data.draw(st.integers(5, 12)), data.draw(st.integers(5, 12)))
+    compare_with_rsl_rl(network, shapes, data.draw(st.integers(0, 2**32 - 1)))
+
+
+def test_the_padding_of_rows_may_differ_from_that_of_columns() -> None:
+    compare_with_rsl_rl(Network((4,), "elu", (3,), kernel=3, stride=2), {"progress": (1,), "map": (2, 4, 9)}, 0)
+
+
+def compare_with_rsl_rl(network: Network, shapes: dict[str, tuple[int, ...]], seed: int) -> None:
+    """Compare a network with random weights, and the names and shapes of the weights, with rsl_rl's."""
+    card = replace(EXAMPLE, network=network, shapes=tuple(shapes.items()), branches=(3, 2))
+    observation = observation_of(card, np.random.default_rng(seed))
+    batch = {key: torch.from_numpy(values).float()[None] for key, values in observation.items()}
+    try:
+        expected_shapes = weight_shapes(network, shapes, card.branches)
+    except ValueError:
+        with pytest.raises((RuntimeError, ValueError)):
+            actor = new_actor(card)
+            actor.get_latent(batch)
+        return
+    actor = new_actor(card)
+    torch.manual_seed(seed)
+    for weight in actor.state_dict().values():
+        weight.uniform_(-1, 1)
+    weights = arrays(actor.state_dict())
+    assert {name: weight.shape for name, weight in weights.items()} == expected_shapes
+    expected = actor.mlp(actor.get_latent(batch))[0].detach().double().numpy()
+    logits = Actor(network, shapes, card.branches, weights).logits(observation)
     np.testing.assert_allclose(logits, expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())
 
 
-@st.composite
-def networks(draw: st.DrawFn) -> Network:
-    widths = st.lists(st.integers(1, 8), min_size=1, max_size=3).map(tuple)
-    activation = draw(st.sampled_from(get_args(Activation)))
-    return Network(draw(widths), activation, draw(widths), draw(st.integers(1, 6)), draw(st.integers(1, 6)))
+@pytest.mark.parametrize(("kernel", "stride"), [(1, 3), (2, 5), (3, 8)])
+def test_a_network_that_rsl_rl_cannot_compute_is_refused(kernel: int, stride: int) -> None:
+    network, shapes = Network(kernel=kernel, stride=stride), {"progress": (1,), "map": (1, 7, 7)}
+    with pytest.raises(ValueError, match=f"a kernel of {kernel} and a stride of {stride} do not fit a map"):
+        weight_shapes(network, shapes, (2,))
+    card = replace(EXAMPLE, network=network, shapes=tuple(shapes.items()))
+    with pytest.raises((RuntimeError, ValueError)):
+        new_actor(card).get_latent({key: torch.zeros(1, *shape) for key, shape in shapes.items()})
 
 
-def draw_observation(card: Card, data: st.DataObject) -> dict[str, NDArray[Any]]:
-    return observation_of(card, np.random.default_rng(data.draw(st.integers(0, 2**32 - 1))))
+@pytest.mark.skipif(sys.platform == "darwin", reason="NumPy may use Accelerate, which threadpoolctl does not know")
+def test_numpy_multiplies_in_one_thread() -> None:
+    with blas_threads(1):
+        pools = [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
+    assert pools and set(pools) == {1}
 
 
 def test_samples_have_the_frequencies_of_the_softmax(policy: Policy) -> None:
@@ -126,6 +162,14 @@ def test_choosing_has_no_side_effects(policy: Policy) -> None:
     again = pickle.loads(pickle.dumps(policy))
     assert again.logits(observation).tobytes() == logits.tobytes()
     assert again.card == policy.card
+
+
+@pytest.mark.parametrize("activation", get_args(Activation))
+def test_a_policy_can_be_pickled_with_any_activation(activation: Activation) -> None:
+    policy = policy_of(replace(EXAMPLE, network=replace(EXAMPLE.network, activation=activation)))
+    observation = observation_of(policy.card, np.random.default_rng(3))
+    again = pickle.loads(pickle.dumps(policy))
+    assert again.logits(observation).tobytes() == policy.logits(observation).tobytes()
 
 
 def test_the_memory_layout_of_weights_does_not_count() -> None:

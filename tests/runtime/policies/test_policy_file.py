@@ -186,6 +186,14 @@ def widen(card: dict[str, Any], extent: int) -> None:
     card["shapes"] = list(shapes.items())
 
 
+def without_types(card: dict[str, Any]) -> None:
+    """Let the map have no channels, consistently in sensors and shapes."""
+    card["sensors"]["map"]["types"] = []
+    shapes = dict(card["shapes"])
+    shapes["map"][0] = 0
+    card["shapes"] = list(shapes.items())
+
+
 def tensor(name: str, change: Callable[[torch.Tensor], torch.Tensor]) -> Change:
     return lambda tensors, _: tensors.update({name: change(tensors[name])})
 
@@ -234,7 +242,9 @@ BIAS = "actor.mlp.0.bias"
         (lambda _, card: card["shapes"].append(["progress", [1]]), "TLT0842.*`card.shapes`"),
         (lambda _, card: card["sensors"]["map"].update(extent=10**9), "TLT0842.*`card.shapes`"),
         (lambda _, card: widen(card, 10**9), "TLT0842.*`card.shapes`"),
-        (lambda _, card: widen(card, -1), "TLT0842"),
+        (lambda _, card: widen(card, -1), "TLT0842.*`card.shapes`"),
+        (lambda _, card: widen(card, 0), "TLT0842.*`card.shapes`"),
+        (lambda _, card: without_types(card), "TLT0842.*`card.shapes`"),
         (network(hidden=[]), "TLT0842.*`card.network`: hidden must be 1 to 16 layers"),
         (network(hidden=[10**9]), "TLT0842.*`card.network`: hidden"),
         (network(hidden=[1] * 10**5), "TLT0842.*`card.network`: hidden"),

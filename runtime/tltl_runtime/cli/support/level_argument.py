@@ -34,7 +34,7 @@ def check_spelling(text: str) -> None:
 
 
 def check_named(policy: Path | None, level: str | None) -> None:
-    """Check that the policy and the level exist, before the import of torch, which takes seconds.
+    """Check that the policy and the level exist, before the slow imports of what plays and trains.
 
     Raises:
         TltlError: the same error as reading the policy or the level would raise.

@@ -8,7 +8,7 @@ from tltlc.api import fileio
 
 
 def check_suite_exists(suite: Path | None) -> None:
-    """Check that the suite exists, before the import of torch, which takes seconds.
+    """Check that the suite exists, before the slow imports of what plays.
 
     Raises:
         TltlError: TLT0001, the same error as reading the suite would raise.
