@@ -1,4 +1,8 @@
-"""Find files that have changed since the baseline, though the user did not name them."""
+"""Find changed level files of the cases that a regression run with ``--changed`` leaves out.
+
+With ``--changed FILE``, a run plays only the cases that depend on FILE. If the user forgot to name
+a changed file, the run leaves out cases that it should play.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +20,10 @@ from tltl_runtime.regression.verdict.level_texts import current_text
 def unnamed_changes(
     suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]
 ) -> dict[str, tuple[str, ...]]:
-    """Return the files of ``left_out`` cases that differ from the baseline, each with its cases.
+    """Return the changed level files of the cases ``left_out``, each with the cases that use it.
 
-    The keys are the names of the files in the baseline. The values are the names of the cases that
-    use the file. Only the files of levels are compared.
+    A file has changed if its SHA-256 differs from the one in ``references``, the baseline's
+    episodes. The keys are the names of the files there, the values the names of the cases.
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:
@@ -29,7 +33,7 @@ def unnamed_changes(
 
 
 def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
-    """Yield the names of the files of a case whose SHA-256 differs from the baseline."""
+    """Yield the names of a case's level files whose SHA-256 differs from that in the baseline."""
     identity = (registered_game().level_files.path(case.level).stem, variant_text(case.reference), case.place)
     files = next((reference.played.files for reference in references if _identity(reference) == identity), ())
     # Files that only the reference variant uses are no dependencies of the case.
@@ -43,5 +47,5 @@ def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) ->
 
 
 def _identity(reference: Reference) -> tuple[str, str, str]:
-    """Return the level, variant and place of a reference."""
+    """Return which level a reference's episodes were played on: its name, variant and place."""
     return reference.played.level, reference.played.variant, reference.played.place

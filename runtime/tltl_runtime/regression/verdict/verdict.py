@@ -1,7 +1,8 @@
-"""The verdict of a case, by sequential statistics that are evaluated after every episode.
+"""Judge a case of a regression suite by statistics that are evaluated after every episode.
 
-The first of these rules that applies decides. In the text below, e is the case's share of the
-suite's ``error``: the error divided by the number of cases.
+In a case, a policy plays a level, and its episodes are compared with those of a baseline. The pass
+rate is the share of successful episodes. In the text below, e is the case's share of the suite's
+``error``: the error divided by the number of cases. The first of these rules that applies decides:
 
 1. There is no verdict before 25 episodes.
 2. ``fail`` if the pass rate is certainly below ``thresholds.fail_rate``.
@@ -20,10 +21,11 @@ whose error over all evaluations is e
 (:func:`~tltl_runtime.regression.verdict.confidence.rate_interval`). A figure (progress or reward)
 has certainly changed if both of these hold:
 
-- Its means over the seeds that both sides have played differ by its threshold at least.
-- A test refutes that the policy's mean is within the threshold of the mean of all episodes of the
-  baseline. Its p-value is e/4 at most, over all evaluations
-  (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).
+- Over the seeds that were played both now and in the baseline, its two means differ by at least
+  its threshold.
+- A test refutes the hypothesis that the policy's true mean differs from the mean of all episodes of
+  the baseline by at most the threshold. The p-value of the test is at most e/4, over all
+  evaluations (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).
 
 Each end of the interval has the error e/2, and each of the two figures e/4. So the probability that
 a certain verdict is wrong is e at most, whatever the pass rate is.
@@ -56,9 +58,10 @@ _EQUAL_SHARE: Final = 0.5
 
 @record
 class FigureChange:
-    """A certain change of a figure: its mean in the baseline, its mean now, and the p-value.
+    """A certain change of progress or reward: the mean in the baseline, the mean now, a p-value.
 
-    The p-value is that of the hypothesis that the mean is within the threshold of the baseline's mean.
+    The p-value is that of the hypothesis that the policy's true mean differs from the baseline's
+    mean by at most the threshold.
     """
 
     figure: str
@@ -114,9 +117,10 @@ def judge(
 def differing_figures(
     now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Return the figures whose means over the common seeds differ by at least their thresholds.
+    """Return which of progress and reward differ from the baseline by at least their thresholds.
 
-    The differences may be due to chance.
+    The means over the seeds that occur both in ``now`` and in ``before`` are compared. The
+    differences may be due to chance.
     """
     return _differing_figures(_differences(now, before), thresholds)
 
@@ -126,9 +130,9 @@ def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds)
 
 
 def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
-    """Return the absolute differences between the means of each figure now and before.
+    """Return the absolute difference of the means now and before, for progress and for reward.
 
-    The means are over the seeds with which both sides have played.
+    The means are over the seeds that occur both in ``now`` and in ``before``.
     """
     count = min(len(now), len(before))
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
@@ -142,7 +146,7 @@ def _changes(
     thresholds: Thresholds,
     error: float,
 ) -> Iterator[FigureChange]:
-    """Yield the change of each of ``figures`` that has certainly changed."""
+    """Yield a FigureChange for each of ``figures`` whose mean has certainly changed."""
     for figure in figures:
         values, old, threshold = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
         p_value = mean_p_value(values, old - threshold, old + threshold, *FIGURES[figure])
