@@ -20,14 +20,13 @@ class EpisodeSummary:
 
     ``index`` numbers the episodes of an evaluation or a training, from 0. ``seed`` is the seed of
     the environment's reset, or None if the episode continued the environment's random stream.
-    ``progress`` is the best value, in [0, 1]. ``reward`` is the sum of the rewards of the
+    ``progress`` is the best progress, in [0, 1]. ``reward`` is the sum of the rewards of the
     ``steps``. Training may use other rewards, so it computes this sum by :func:`progress_return`.
     ``unmet`` is the automaton state at the end, or the state before a violation.
 
     ``verdict`` is the verdict of the last step. ``seconds`` is the game time. ``state`` is the
     automaton state at the end. ``label`` says in English what remained to be done in the state
-    ``unmet``. These four are None in training and regression, because their files do not contain
-    them.
+    ``unmet``. These four are None in training and regression, whose files do not contain them.
     """
 
     index: int
@@ -52,10 +51,11 @@ def settled_end(success: bool, verdict: str) -> End:
 
 
 def progress_return(success: bool, progress: float, steps: int, limit_steps: int | None) -> float:
-    """Return the sum of the rewards in mode ``progress`` with the undiscounted terminal penalty.
+    """Return the sum of an episode's rewards in the reward mode ``progress``.
 
-    ``limit_steps`` is the spec's limit; None if it has no limit. See ``docs/semantics.md``, section
-    4.
+    The terminal penalty is undiscounted. ``progress`` is the best progress of the episode.
+    ``limit_steps`` is the spec's limit; None if the spec has no limit. See ``docs/semantics.md``,
+    section 4.
     """
     if limit_steps is None:
         return progress

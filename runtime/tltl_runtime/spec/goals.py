@@ -15,9 +15,12 @@ def next_goals(
 
     The player may approach any one of them. Entities that lead nearer to acceptance come first.
     Only entities in ``places`` are returned. If the state is accepting or a trap, the result is
-    empty. An implicant of a guard counts only if its atoms that do not depend on the distance to
-    one of these entities already have, in ``sample``, the truth values that it requires. ``sample``
-    and ``params`` are in SI units.
+    empty.
+
+    The entities come from the prime implicants of the guards of edges towards acceptance. Some
+    atoms of an implicant may not depend on the distance to an entity in ``places``. The implicant
+    counts only if ``sample`` already gives these atoms the truth values that it requires.
+    ``sample`` and ``params`` are in SI units.
     """
     current = fspa.states[state].distance
     if not current:
@@ -42,11 +45,11 @@ def next_goals(
 
 
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
-    """Return the entities that an implicant requires to be near.
+    """Return the entities that the player must be near to make an implicant true.
 
     ``entities`` has, for each atom, the entity on whose distance it depends; None if it depends on
     no distance. ``settled`` says, for each atom without an entity, whether it holds now. The list
-    is empty if such an atom does not have the truth value that the implicant requires.
+    is empty if an atom without an entity does not have the truth value that the implicant requires.
     """
     goals = []
     for atom, holds in implicant:
@@ -70,7 +73,7 @@ def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
 
 
 def distance_signals(fspa: Fspa) -> dict[str, str]:
-    """Return the entities of the signals ``distance(ENTITY)``, by the full names of the signals."""
+    """Return the ENTITY of each signal ``distance(ENTITY)``, by the full name of the signal."""
     return {
         signal.name: signal.arguments[0]
         for signal in fspa.signals

@@ -37,7 +37,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     Observation: a Dict space gains two keys, both float32. ``automaton`` is the state as a one-hot
     vector, shape (states,). ``progress`` is the best progress so far, shape (1,), in [0, 1]. An
-    observation of any other space becomes the key ``observation`` beside them.
+    observation of any other space becomes the key ``observation`` beside these two.
 
     Reward: the reward in the mode that ``reward`` names; the environment's own reward is
     ``info["env_reward"]``. The episode is ``terminated`` by success, by violation and by the
@@ -53,8 +53,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     - ``unmet``: the state whose label names what was not met. After a violation this is the state
       before the step, otherwise the current one;
     - ``success``: whether the episode ended with this step, in success;
-    - ``limiting``: the name of the atom that bounds the nearest edge towards the goal; None after a
-      reset, if the state changed, and if no edge leads nearer to the goal;
+    - ``limiting``: the name of the atom that most hinders the automaton from getting nearer to
+      acceptance; None after a reset, if the state changed, and if no edge leads nearer;
     - ``atoms``: the values of the atoms by name, empty after a reset;
     - ``env_reward``: 0 after a reset.
 
@@ -223,7 +223,7 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
 
 
 def _missing_signals(missing: list[str], returned: list[str], when: str) -> Diagnostic:
-    """Return TLT0611 for ``missing`` signals, with a list of those that the function returned."""
+    """Return TLT0611 for ``missing`` signals; it lists those that ``signals`` ``returned``."""
     names = ", ".join(f"`{name}`" for name in missing)
     listed = ", ".join(f"`{name}`" for name in returned[:_MOST_LISTED]) + (
         ", …" if len(returned) > _MOST_LISTED else ""

@@ -1,6 +1,7 @@
 """Run many copies of one automaton at once, as torch tensors.
 
-Begin with :class:`BatchMonitor`. Tests check that its results equal those of :mod:`tltlc.monitor`.
+Begin with :class:`BatchMonitor`. Tests check that the batch monitor gives the same results as
+:mod:`tltlc.monitor`, which runs one automaton.
 """
 
 from __future__ import annotations

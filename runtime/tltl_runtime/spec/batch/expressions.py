@@ -1,8 +1,8 @@
 """Compile expressions to torch code that computes each subexpression once, for N environments.
 
-The values are those of :func:`tltlc.expression.evaluate.evaluate`. For an environment in which that
-function raises an error, the value here is arbitrary, and the environment is marked as failed. A
-case of a ``when`` expression fails only in environments that take it.
+The values equal those of :func:`tltlc.expression.evaluate.evaluate`. For an environment in which
+that function raises an error, the value here is arbitrary, and the environment is marked as failed.
+An error in one case of a ``when`` expression counts only in the environments that take this case.
 
 On a CPU in float64 the values are equal to the last bit, except for the sign of zeros, and except
 for ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from
@@ -23,10 +23,11 @@ from tltlc.api import expressions
 
 
 class TensorExpressions:
-    """Expressions, compiled to one function of the signals of N environments, [signals, N].
+    """Expressions, compiled to one Python function that evaluates all of them in N environments.
 
-    ``signals`` are the names of the signals, in the order of the rows of that array. ``params`` are
-    in SI units. ``source`` is the Python text of the function.
+    The function takes the values of the signals, a tensor [signals, N]. ``signals`` are the names
+    of its rows. ``params`` are the values of the params in the expressions, in SI units. ``source``
+    is the Python text of the function.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class TensorExpressions:
 
 
 def _release_tensors(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
-    """Return the lines with a ``del`` for each tensor after its last use.
+    """Return lines of code with a ``del`` added for each tensor after its last use.
 
     So torch can use the memory of these tensors again. The tensors in ``outputs`` are kept.
     """

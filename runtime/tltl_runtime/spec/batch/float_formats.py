@@ -9,15 +9,15 @@ from torch import Tensor
 
 
 def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
-    """Whether each number is 0 or a normal number of the format: finite, and not subnormal."""
+    """Whether each number is 0 or in the range of the normal numbers of ``dtype``."""
     format_ = torch.finfo(dtype)
     return all(number == 0.0 or format_.tiny <= abs(number) <= format_.max for number in numbers)
 
 
 def narrow(values: Tensor, dtype: torch.dtype) -> Tensor:
-    """Convert values to a format.
+    """Convert values to ``dtype``, without losing their signs.
 
-    A value that would round to 0 becomes the smallest normal number with its sign.
+    A value that would round to 0 becomes the smallest normal number with the same sign.
     """
     if values.dtype == dtype:
         return values

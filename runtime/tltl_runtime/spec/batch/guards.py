@@ -1,4 +1,4 @@
-"""Compute the robustness of guards and the edges that are taken, for N environments at once."""
+"""Compute how robustly guards hold, and which edges automata take, for N environments at once."""
 
 from __future__ import annotations
 
@@ -70,9 +70,9 @@ class PrimeSets:
         return atoms.gather(0, (best * self._width + least)[None])[0]
 
     def _distinct_robustness(self, values: Tensor) -> Tensor:
-        """Return the robustness of each distinct set, [distinct, N].
+        """Return the robustness of each set, with equal sets only once, [distinct, N].
 
-        Primes that several sets share are computed once.
+        The robustness of a prime that several sets share is also computed once.
         """
         negated = -values if self._negates else values
         robustness_of: dict[Implicant, Tensor] = {}
@@ -89,28 +89,31 @@ class PrimeSets:
         return torch.stack(results) if results else values.new_empty((0, values.shape[1]))
 
     def _literals_of(self, rows: Tensor, values: Tensor) -> Tensor:
-        """Return the values of the literals of the chosen sets, shape [primes, literals, N]."""
+        """Return the values of all literals in one set per environment: [primes, literals, N].
+
+        ``rows`` [N] has the index of each environment's set among the distinct sets.
+        """
         ones, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
         signed = torch.cat([values, -values, ones, empty])
         literals = signed.gather(0, self._literals.index_select(1, rows))
         return literals.view(self._depth, self._width, values.shape[1])
 
     def _table(self, cells: Callable[[Primes], list[int]]) -> Tensor:
-        """Return a table, int64 [primes * literals, distinct].
+        """Return a table with a column for each distinct set, int64 [primes * literals, distinct].
 
-        Each distinct set of primes has a column, with the numbers that ``cells`` returns for it.
+        A column has the numbers that ``cells`` returns for the set.
         """
         rows = [cells(primes) for primes in self._distinct]
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
 
     def _literal_rows(self, primes: Primes) -> list[int]:
-        """Return, for each literal of a set, the row of its values in a stack of arrays.
+        """Return, for each literal of a set, the row in which :meth:`_literals_of` finds its value.
 
-        The stack consists of the values of the atoms, the negated values, a row of 1, and a row of
-        ``empty``.
+        That method stacks these rows: the values of the atoms, the negated values, a row of 1, and
+        a row of ``empty``.
 
-        All sets have the same number of rows: padding repeats the first literal or prime, which
-        changes no minimum or maximum.
+        The result has the same length for all sets: padding repeats the first literal or prime,
+        which changes no minimum or maximum.
         """
         if not primes:
             return [2 * self._atoms + 1] * (self._depth * self._width)
@@ -129,8 +132,8 @@ class Transitions:
     """Finds the edges that N automata take.
 
     Exactly one of the edges that leave a state has a true guard, unless atoms that the spec
-    declares ``exclusive`` hold at once. If ``checked``, that is an error; otherwise, some edge of
-    the state is taken.
+    declares ``exclusive`` hold at once. If ``checked``, that is an error; otherwise, the automaton
+    takes any edge that leaves the state.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
@@ -189,8 +192,8 @@ class Transitions:
     def _edge_table(self) -> Tensor:
         """Return the edge for each state and letter, int64 [states * letters].
 
-        Bit i of a letter says whether atom i holds. If checked, the edge is -1 for letters in which
-        exclusive atoms hold at once.
+        Bit i of a letter says whether atom i holds. If ``checked``, the edge is -1 for letters in
+        which exclusive atoms hold at once.
         """
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)

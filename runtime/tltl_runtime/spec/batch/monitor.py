@@ -51,7 +51,7 @@ class BatchStep:
 
     @cached_property
     def accepting(self) -> Tensor:
-        """Whether the prefix so far is accepted, bool."""
+        """Whether the automaton accepts the trace so far, bool."""
         return self._monitor.accepting_states.index_select(0, self.state)
 
     @cached_property
@@ -61,19 +61,24 @@ class BatchStep:
 
     @cached_property
     def verdict(self) -> Tensor:
-        """The verdict of the prefix so far, int64: an index into ``VERDICTS``."""
+        """The verdict on the trace so far, int64.
+
+        It is an index into :data:`~tltl_runtime.spec.batch.progress_and_reward.VERDICTS`.
+        """
         return self._monitor.state_verdicts.index_select(0, self.state)
 
     @cached_property
     def robustness(self) -> Tensor:
-        """The robustness of the edge taken, in [-1, 1]."""
+        """The robustness of the guard of the edge taken, in [-1, 1]."""
         return self._monitor.guards.robustness_of(self.edge, self.values) + 0.0
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The index of the atom that bounds the nearest edge towards acceptance, int64.
+        """The index of the atom that most hinders the automaton from getting nearer to acceptance.
 
-        It is -1 if the state changed, or if no edge leads to a state nearer to acceptance.
+        This is the atom of the least robust literal in the most robust prime implicant of the edges
+        towards acceptance. The index, int64, is -1 if the state changed, or if no edge leads to a
+        state nearer to acceptance.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
@@ -85,10 +90,10 @@ class BatchMonitor:
     :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 they are equal to the last bit,
     except for the sign of zeros, and except for operations that torch and the C library round
     differently (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty).
-    These agree within 1e-12. An atom whose value is that close to 0, or to a border between cases,
-    may be true in one monitor and false in the other. In float32 all results agree within 1e-6. If
-    a number of the spec, such as the end of a range, is too large or too small for ``dtype``, atoms
-    are computed in float64.
+    Results of these agree within 1e-12. An atom whose value is that close to 0, or to a border
+    between cases, may be true in one monitor and false in the other. In float32 all results agree
+    within 1e-6. If a number of the spec, such as the end of a range, is too large or too small for
+    ``dtype``, atoms are computed in float64.
 
     After the end of an episode, the automaton of its environment continues with reward 0 until it
     is reset, as in the scalar monitor.
@@ -97,11 +102,12 @@ class BatchMonitor:
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
     the order of signals in a tensor.
 
-    Checking samples waits for the device a few times per step. With ``checked=False`` a step waits
-    only in a reward mode without tensors (:class:`~tltl_runtime.spec.batch.reward_modes.RowByRow`).
-    An unchecked step clamps values out of range without counting them. A NaN makes its atoms false
-    and may appear in progress and reward. If exclusive atoms hold at once, some edge of the state
-    is taken.
+    To check samples, a step waits for the torch device a few times. With ``checked=False`` a step
+    waits only if the reward mode is not computed with tensors
+    (:class:`~tltl_runtime.spec.batch.reward_modes.RowByRow`). An unchecked step clamps values out
+    of range without counting them. A NaN makes the atoms that use it false, and may appear in
+    progress and reward. If exclusive atoms hold at once, the automaton takes any edge that leaves
+    the state.
 
     Raises:
         MonitorError: TLT0307 and TLT0308, a param has an invalid value or does not exist.
@@ -184,7 +190,7 @@ class BatchMonitor:
         return self._take(rows.to(self.device, self.dtype).t().contiguous())
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
-        """Return the states as one-hot rows, shape [N, states]."""
+        """Return the current states of the automata as one-hot rows, shape [N, states]."""
         rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
         return rows.scatter_(1, self.state[:, None], 1.0)
 
@@ -213,9 +219,9 @@ class BatchMonitor:
         return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
 
     def _start(self) -> tuple[Tensor, ...]:
-        """Return the values before the first sample.
+        """Return what describes an episode in each environment before its first sample.
 
-        They are state, steps, progress, done, success and the memory of the reward mode.
+        The tensors are state, steps, progress, done, success and the memory of the reward mode.
         """
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)

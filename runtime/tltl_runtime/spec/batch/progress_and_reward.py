@@ -97,10 +97,10 @@ class Outcomes:
         return reward.sub_(self._penalty(steps).mul_(violated))
 
     def _penalty(self, steps: Tensor) -> Tensor:
-        """Return the sum of the penalties of the remaining steps, which a violation would save.
+        """Return the terminal penalty: the sum of the step penalties of all steps that remain.
 
-        It is ``(T - t) / T``, or the discounted sum. T is the spec's limit, and t are the ``steps``
-        so far.
+        Without it, a violation would save these penalties. It is ``(T - t) / T``, or the discounted
+        sum. T is the spec's limit, and t are the ``steps`` so far.
         """
         assert self._limit is not None
         remaining = self._limit - steps
@@ -111,8 +111,9 @@ class Outcomes:
 
 
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
-    """Return what line 14 of Algorithm 1 adds, ``(1 + min(0, nearest)) / S``.
+    """Return what line 14 of Algorithm 1 adds to the progress, ``(1 + min(0, nearest)) / S``.
 
-    ``nearest`` is modified in place. ``size`` is S, the size of the spec.
+    ``nearest`` is the robustness of the most robust edge towards acceptance; it is modified in
+    place. ``size`` is S, the ``spec_size`` of the automaton.
     """
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)

@@ -19,9 +19,9 @@ _NAMED = 5
 class BatchSamples:
     """Computes the values of the atoms, shape [atoms, N], from the signals of N environments.
 
-    ``clamped`` counts the clamped values by the name of the signal or atom, as the notices of the
-    scalar monitor do. The value of an atom counts only if it is more than 1e-9 outside [-1, 1]. If
-    values are not ``checked``, they are clamped without counts or errors.
+    ``clamped`` counts the values that were clamped, by the name of the signal or atom. The value of
+    an atom counts only if it is more than 1e-9 outside [-1, 1]. If values are not ``checked``, they
+    are clamped without counts or errors.
 
     If a number of the automaton is too large or too small for ``dtype``, atoms are computed in
     float64.
@@ -56,7 +56,7 @@ class BatchSamples:
     def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """Return the values of the atoms, each in [-1, 1], shape [atoms, N].
 
-        A value keeps its sign when it is converted to a smaller format.
+        A value keeps its sign when it is converted from float64 to a smaller ``dtype``.
 
         ``signals`` is an array [N] for each name (names that no atom uses are ignored), or one
         array [N, signals] in the order of ``names``.
@@ -111,7 +111,7 @@ class BatchSamples:
         return torch.stack(rows)
 
     def _in_range(self, columns: Tensor) -> bool:
-        """Whether no signal has to be clamped.
+        """Whether all signals are in their ranges, so that none has to be clamped.
 
         A NaN makes both extremes of its row NaN, so that the comparison fails.
         """
@@ -154,9 +154,10 @@ class BatchSamples:
                 self.clamped[name] = self.clamped.get(name, 0) + int(outside)
 
     def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
-        """Return the error of an atom in the environments ``indices``.
+        """Return the error that says why an atom has no value in the environments ``indices``.
 
-        The scalar monitor finds the reason, at the sample of the first of these environments.
+        It is the error of the monitor for one automaton at the sample of the first of these
+        environments.
         """
         sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
         try:
@@ -168,7 +169,11 @@ class BatchSamples:
 
 
 def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield the numbers in atoms' expressions, the ends of signals' ranges, and the params."""
+    """Yield all numbers that atoms are computed with, except the values of signals.
+
+    They are the constants in expressions, the ends of the signals' ranges, and the values of the
+    params.
+    """
     for atom in fspa.atoms:
         yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
     for signal in fspa.signals:
@@ -198,7 +203,7 @@ def _indices(mask: Tensor) -> list[int]:
 
 
 def _environments(indices: Sequence[int]) -> str:
-    """Name environments: ``environment 3`` or ``environments 0, 1, 2, 3, 4 and 12 more``."""
+    """Return a text such as ``environment 3`` or ``environments 0, 1, 2, 3, 4 and 12 more``."""
     if len(indices) == 1:
         return f"environment {indices[0]}"
     left_out = len(indices) - _NAMED

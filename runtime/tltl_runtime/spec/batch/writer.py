@@ -19,7 +19,7 @@ class TensorTerm:
 
     ``name`` is the name of a tensor or the text of a constant. ``constant`` is the value of the
     constant, a number or a truth value; None for a tensor. ``fails`` is the name of a mask of the
-    environments in which the expression has no value; None if it always has one.
+    environments in which the expression has no value; None if the expression always has a value.
     """
 
     name: str
@@ -48,7 +48,7 @@ class TensorWriter:
         return self._line(f"columns.new_full((columns.shape[1],), {self._constant_tensor(constant)}.item())")
 
     def number(self, node: expressions.Expression) -> TensorTerm:
-        """Write the lines that compute an expression, and return its term."""
+        """Write the lines that compute an expression, and return the term for its value."""
         if isinstance(node, expressions.Const):
             return self._constant(node.value)
         if isinstance(node, expressions.ParamValue):
@@ -120,7 +120,10 @@ class TensorWriter:
         return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
-        """Return the term of ``min`` or ``max`` as in Python: of two equal terms, the first."""
+        """Write ``min`` or ``max`` of two terms, and return the term for the result.
+
+        As in Python, the result is the first of two equal values.
+        """
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
@@ -160,10 +163,10 @@ class TensorWriter:
         return TensorTerm(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
     def _connective(self, node: expressions.Condition) -> TensorTerm:
-        """Return the term of ``and`` or ``or``, built from the last part to the first.
+        """Write ``and`` or ``or`` from its last part to its first, and return the result's term.
 
-        As in Python, a part is not evaluated if an earlier part decides the result. So its failure
-        counts only where the parts before it leave the result open.
+        As in Python, a part is not evaluated if an earlier part decides the result. So a failure of
+        a part counts only where the parts before it leave the result open.
         """
         sign = "&" if node.op == "and" else "|"
         result = self._condition(node.args[-1])
@@ -176,7 +179,7 @@ class TensorWriter:
         return result
 
     def _fold_constants(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
-        """Return the term of an operation on constants, which is computed now."""
+        """Compute an operation on constants now, and return its result as a constant term."""
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
         parts = tuple(expressions.Const(term.constant if term.constant is not None else math.nan) for term in args)
@@ -204,9 +207,9 @@ class TensorWriter:
         return (f"({text})" if text.startswith("-") else text), value
 
     def _operand(self, term: TensorTerm) -> str:
-        """Return the name of the term's tensor.
+        """Return the name of a tensor with the value of the term.
 
-        Constants are tensors, too: torch is slower with numbers, and divides by numbers less
+        A constant gets a tensor, too: torch is slower with numbers, and divides by numbers less
         exactly.
         """
         return term.name if term.constant is None else self._constant_tensor(term.constant)

@@ -2,7 +2,7 @@
 
 A module has the name of its mode and defines a class ``Reward``, which is a :class:`RewardMode`.
 The module of that name in :mod:`tltlc.monitor.reward_modes` gives equal rewards, for one automaton.
-If a mode has no module here, :class:`RowByRow` calls that module for each environment.
+If a mode has no module here, :class:`RowByRow` calls the function there for each environment.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ class BatchTransition(NamedTuple):
 
 
 class RewardMode(Protocol):
-    """A reward of N environments.
+    """A way to reward N environments.
 
-    The memory of a mode is what it keeps from step to step: a tensor whose last dimension has size
+    Its memory is what it needs to know from earlier steps: a tensor whose last dimension has size
     N.
     """
 
@@ -57,10 +57,10 @@ class RewardMode(Protocol):
 
 
 def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
-    """Return the mode that the options name.
+    """Return the reward mode with the name ``options.mode``.
 
-    Mode ``progress`` has no module: :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes`
-    computes it.
+    The mode ``progress`` has no module:
+    :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes` computes its rewards.
     """
     if importlib.util.find_spec(f"{__name__}.{options.mode}") is None:
         return RowByRow(fspa, options, device, dtype)
@@ -69,12 +69,13 @@ def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype:
 
 
 class RowByRow:
-    """A reward mode that calls the scalar function of the mode for each environment, on the CPU.
+    """A reward mode that calls the mode's function for one automaton, once for each environment.
 
-    Each step reads its tensors, so it waits for the device. The memory, int64 [N], has an index for
-    each environment into a list of the values that the function remembers. After the end of an
-    episode the index is -1, and the function is not called. Each step makes a new list, so only the
-    memory of the last step is valid.
+    The function is in :mod:`tltlc.monitor.reward_modes` and runs on the CPU, so each step waits for
+    the torch device. The memory, int64 [N], has an index for each environment into a list of the
+    values that the function remembers. After the end of an episode the index is -1, and the
+    function is not called. Each step makes a new list, so only the memory of the last step is
+    valid.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -83,7 +84,7 @@ class RowByRow:
         self._remembered: list[Any] = [None]
 
     def start(self, count: int) -> Tensor:
-        """Return 0 for each environment, the index of None: the function remembers nothing yet."""
+        """Return 0 for each environment: the index of None, as nothing is remembered yet."""
         return torch.zeros(count, dtype=torch.int64, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:

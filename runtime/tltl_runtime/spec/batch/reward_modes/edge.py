@@ -1,4 +1,4 @@
-"""Reward the robustness of leaving the state, at every step.
+"""Reward, at every step, how near the automaton is to leaving its state.
 
 See :mod:`tltlc.monitor.reward_modes.edge`.
 """
@@ -14,9 +14,9 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class Reward:
-    """The greatest robustness of the edges that lead to another state that is not a trap.
+    """Rewards each step with the robustness of the most robust edge that leaves the state.
 
-    It is 0 if there is no such edge.
+    Edges into traps do not count. The reward is 0 if there is no other edge that leaves the state.
     """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:

@@ -32,13 +32,13 @@ class Reward:
         self._dtype = dtype
 
     def start(self, count: int) -> Tensor:
-        """Return the widths before the first sample."""
+        """Return the width of the widest run to each state before the first sample, [states, N]."""
         widths = torch.full((len(self._incoming), count), -2.0, dtype=self._dtype, device=self._sources.device)
         widths[0] = 1.0
         return widths
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward, in [-1, 1], and the widths after the step."""
+        """Return the reward, in [-1, 1], and the width of the widest run to each state."""
         widths_through_edges = torch.minimum(
             memory.index_select(0, self._sources), self._guards.all_robustness(step.values)
         )
