@@ -17,10 +17,10 @@ def next_goals(
     Only entities in ``places`` are returned. If the state is accepting or a trap, the result is
     empty.
 
-    The entities come from the prime implicants of the guards of edges towards acceptance. Some
-    atoms of an implicant may not depend on the distance to an entity in ``places``. The implicant
-    counts only if ``sample`` already gives these atoms the truth values that it requires.
-    ``sample`` and ``params`` are in SI units.
+    The entities come from the prime implicants of the guards of edges towards acceptance. In an
+    implicant, some atoms depend on the distance to an entity in ``places``. All others must already
+    have the required truth values in ``sample``, otherwise the implicant does not count. ``sample``
+    and ``params`` are in SI units.
     """
     current = fspa.states[state].distance
     if not current:

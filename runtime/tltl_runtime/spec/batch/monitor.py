@@ -96,7 +96,7 @@ class BatchMonitor:
     ``dtype``, atoms are computed in float64.
 
     After the end of an episode, the automaton of its environment continues with reward 0 until it
-    is reset, as in the scalar monitor.
+    is reset, as in :class:`tltlc.monitor.Monitor`.
 
     ``state`` int64 [N], ``steps`` [N] and ``progress`` [N] are the values after the last step.
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is

@@ -99,8 +99,8 @@ class Outcomes:
     def _penalty(self, steps: Tensor) -> Tensor:
         """Return the terminal penalty: the sum of the step penalties of all steps that remain.
 
-        Without it, a violation would save these penalties. It is ``(T - t) / T``, or the discounted
-        sum. T is the spec's limit, and t are the ``steps`` so far.
+        Without it, a violation would save these penalties. The sum is ``(T - t) / T``, or the
+        discounted sum. T is the spec's limit, and t are the ``steps`` so far.
         """
         assert self._limit is not None
         remaining = self._limit - steps

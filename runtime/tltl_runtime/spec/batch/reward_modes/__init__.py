@@ -38,8 +38,8 @@ class BatchTransition(NamedTuple):
 class RewardMode(Protocol):
     """A way to reward N environments.
 
-    Its memory is what it needs to know from earlier steps: a tensor whose last dimension has size
-    N.
+    The memory of a mode is what the mode keeps from step to step: a tensor whose last dimension has
+    size N.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
