@@ -24,8 +24,8 @@ _ARTICLE: Final = {"angle": "an angle"}
 def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return diagnostics for everything that a spec uses and a level does not supply.
 
-    ``fspa`` is the automaton of the spec. ``places`` finds the labels of the diagnostics in its
-    source.
+    ``fspa`` is the automaton of the spec. ``places`` finds the places in the spec's source that
+    the diagnostics point to.
 
     - TLT0810, error: the level has no such entity.
     - TLT0811, error: the level has no such signal.
@@ -64,7 +64,10 @@ def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
 
 
 def used_entities(level: StealthLevel, fspa: Fspa) -> tuple[str, ...]:
-    """Return the names of the level's entities in a spec's signals, in the order of the signals."""
+    """Return the entities of a level that a spec's signals mention, such as E in ``distance(E)``.
+
+    The names are in the order of the signals.
+    """
     entities = entity_names(level)
     return tuple(dict.fromkeys(name for signal in fspa.signals for name in signal.arguments if name in entities))
 

@@ -81,7 +81,7 @@ def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
 
 
 def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozenset[int]:
-    """Return the indices of the atoms that hold at no reachable place.
+    """Return the indices of the atoms that cannot hold at any place that a player can reach.
 
     The result may miss some of these atoms, but contains no others.
     """
@@ -143,10 +143,10 @@ def _may_accept(fspa: Fspa, impossible: frozenset[int]) -> bool:
 
 
 class _ObstacleSearch:
-    """Finds the obstacle that keeps the player from an entity.
+    """Finds the solid or barrier that keeps the player from an entity.
 
-    The search removes an obstacle, or lets the player jump higher, and checks whether the player
-    then reaches the entity.
+    The search removes an obstacle from the level, or lets the player jump higher, and checks
+    whether the player then reaches the entity.
     """
 
     def __init__(self, level: StealthLevel, reach: Reach) -> None:
@@ -167,9 +167,9 @@ class _ObstacleSearch:
             return nearest
 
     def _describe_barrier(self, entity: str) -> str:
-        """Describe the barrier that blocks the way, and why it stays shut.
+        """Describe the barrier that blocks the way to ``entity``, and why it stays shut.
 
-        Return an empty text if no barrier does.
+        Return an empty text if no barrier blocks the way.
         """
         shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
         unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
@@ -182,7 +182,7 @@ class _ObstacleSearch:
         return ""
 
     def _describe_high_solid(self, entity: str) -> str:
-        """Describe the solid that blocks the way because it is too high to jump onto.
+        """Describe the solid that blocks the way to ``entity`` because it is too high to jump onto.
 
         The search tries ever higher jumps. Return an empty text if there is no such solid.
         """

@@ -5,17 +5,17 @@ The result may contain places that no player reaches, but it misses none that a 
 :class:`~tltl_runtime.stealth.world.player.PlayerKind` err on the side of reaching too much (tests
 check some of them in the physics):
 
-- The body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
+- The player's body is always crouched, 0.9 m high, and extends 0.25 m to each side, not 0.3 m.
 - The top of any box is ground. So is the space up to 0.28 m beside the top and 0.16 m below it,
   where contact with the edge of the box counts as ground.
-- From ground, the feet can get to tops that are at most 1.27 m higher. A jump lifts them by 0.97 m,
-  computed in steps of 1/60 s. The round end of the body then slides up the last 0.3 m of an edge; a
-  higher edge hits the side of the body. (In tests, the player reaches a top of 1.1 m nearly always,
-  a top of 1.2 m in one of a hundred tries, and a top of 1.24 m never.)
+- From ground, the feet can get to tops that are at most 1.27 m higher. A jump lifts the feet by
+  0.97 m, computed in steps of 1/60 s. The round end of the body then slides up the last 0.3 m of an
+  edge; a higher edge hits the side of the body. (In tests, the player reaches a top of 1.1 m nearly
+  always, a top of 1.2 m in one of a hundred tries, and a top of 1.24 m never.)
 - In the air, the player moves at most at the speed of a sprint, 5 m/s, whatever the stamina. A fall
   gets no faster than 8 m/s, so it lasts longer than in the physics.
-- Movers block nothing. Their tops are ground along their whole path, and they throw a player who
-  stands on them upwards with their own speed plus 3 m/s.
+- Movers, boxes that move along a path, block nothing. The top of a mover is ground along its whole
+  path. A mover throws a player who stands on it upwards with the mover's speed plus 3 m/s.
 - Lasers and enemies stop nobody. Barriers are shut until their switches have been reached. If a
   switch opens one of several barriers at random, it opens all of them here.
 """
@@ -65,11 +65,12 @@ class Reach:
 
     - ``switches``: the switches that can be reached.
     - ``barriers``: the barriers that these switches open.
-    - ``distances``: by entity, the least distance from the feet to it, in metres; 0 for enemies and
-      movers.
-    - ``ground`` [rows, columns]: the cells with ground to stand on. They are ``cell`` metres wide
-      and start at ``origin`` (west, south). Rows go north.
-    - ``highest``: the height of the highest ground, in metres.
+    - ``distances``: by entity, the least distance from the player's feet to the entity, in metres;
+      0 for enemies and movers.
+    - ``ground`` [rows, columns]: a mask of the cells in which the player can stand. Cells are
+      squares of the ground plan, ``cell`` metres wide, and start at ``origin`` (west, south). Rows
+      go north.
+    - ``highest``: the height of the highest ground that can be reached, in metres.
     """
 
     switches: tuple[str, ...]
@@ -142,9 +143,10 @@ def _compute_reach(level: StealthLevel, lift: float | None, without: Collection[
 
 
 def highest_lift(kind: PlayerKind) -> float:
-    """Return the greatest rise from ground to ground, in metres.
+    """Return how much higher than the present ground a player can get in one jump, in metres.
 
-    It is a jump plus the radius of the capsule's round end, which slides up an edge.
+    It is the height of the jump plus the radius of the round end of the player's body, a capsule
+    that slides up an edge.
     """
     return highest_jump(kind) + kind.radius
 
@@ -159,7 +161,10 @@ def highest_jump(kind: PlayerKind) -> float:
 
 
 class _Search:
-    """The state of a search: the ground reached so far, by height, and where the feet can be."""
+    """A search for all places of a level that a player can reach.
+
+    Its state is the ground reached so far, by height, and the space where the feet can be.
+    """
 
     def __init__(
         self, level: StealthLevel, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget
@@ -191,7 +196,7 @@ class _Search:
         self._space: Space = np.zeros(self.grid.shape, dtype=np.bool_)
 
     def ground(self) -> Field:
-        """Return the cells with reached ground."""
+        """Return a mask of the cells in which the search has reached ground at any height."""
         ground: Field = np.logical_or.reduce(list(self._ground.values()))
         return ground
 
@@ -202,7 +207,7 @@ class _Search:
     def spread(self, opened: Collection[str]) -> Space:
         """Extend the reached ground as far as possible while the barriers ``opened`` are open.
 
-        Return the space in which the feet can be.
+        Return the space in which the player's feet can be.
         """
         shut = [box for name, box in self._barriers.items() if name not in opened]
         free = self.grid.free_space([*self._solids, *shut])
@@ -225,17 +230,20 @@ class _Search:
         return self._space
 
     def _walk(self, free: Space, height: float, fresh: Field) -> None:
-        """Add to the ``fresh`` ground all ground at its height that is connected with it."""
+        """Add to the newly reached ground ``fresh`` all ground that can be walked to from there.
+
+        ``fresh`` is a mask of cells, modified in place. All this ground is at ``height``.
+        """
         same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
         same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
         fresh |= flood((same | fresh)[None], fresh[None], self.grid.budget)[0] & ~self._ground[height]
         self._ground[height] |= fresh
 
     def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
-        """Return the part of the space that a flight from ``ground`` at ``height`` can reach.
+        """Return the space that a jump or a fall from ``ground`` at ``height`` can reach.
 
-        A flight is a jump, a leap or a fall. The result is a window of rows and columns, and the
-        space in this window. The space has the slabs from the lowest one up to the greatest height
+        It is a part of ``free``. The result is a window of rows and columns, and a mask of the
+        space in this window. The mask has the slabs from the lowest one up to the greatest height
         of a jump.
         """
         grid = self.grid
@@ -251,9 +259,9 @@ class _Search:
         return (rows, columns), flood(allowed, seeds, grid.budget)
 
     def _time(self, drop: float) -> float:
-        """Return the longest time, in seconds, of a flight from ground to ``drop`` metres below it.
+        """Return the longest time, in seconds, of a jump that ends ``drop`` metres below its start.
 
-        The flight starts with a jump that lifts the feet by the full lift.
+        The jump first lifts the feet by the greatest lift of this search.
         """
         speed, gravity, fastest = sqrt(2 * self._kind.gravity * self._lift), self._kind.gravity, self._kind.fall_speed
         until_fastest = (speed + fastest) / gravity
@@ -267,8 +275,8 @@ class _Search:
 class _Top:
     """The top of a box, on which a player can stand.
 
-    A mover carries or throws a player from ``lowest`` up to ``height``. For other boxes, both are
-    the height of the top.
+    If the box is a mover, it carries or throws a player from ``lowest`` up to ``height``. For other
+    boxes, both numbers are the height of the top.
     """
 
     box: Box

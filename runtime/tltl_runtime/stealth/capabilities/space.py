@@ -3,7 +3,8 @@
 The ground plan is cut into square cells, and the height into slabs. A slab ends at every height
 where an obstacle begins or ceases to be in the way, so heights are exact. A box of space is one
 cell in one slab. It counts as free unless the body certainly fits nowhere in it, so no free space
-is left out. The body is the crouched one, 5 cm narrower than in the game, with two round ends.
+is left out. The body is that of a crouched player, 5 cm narrower than in the game, with two round
+ends.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class SpaceBudgetError(Exception):
 class Budget:
     """Counts the cells of space that a search examines.
 
-    Raises SpaceBudgetError if there are more than ``most``.
+    :meth:`spend` raises SpaceBudgetError as soon as there are more than ``most``.
     """
 
     def __init__(self, most: int) -> None:
@@ -65,13 +66,14 @@ class Budget:
 
 
 class SpaceGrid:
-    """The cells and slabs of a level.
+    """Cuts a level into square cells of its ground plan and into slabs of height.
 
-    Slabs end where ``boxes`` begin or cease to block the body of ``kind``, and at the heights
-    ``cuts``. ``origin`` is the south-west corner, ``cell`` the side of a cell. ``west`` [columns]
-    and ``south`` [rows] are the west and south edges of the cells, ``lows`` and ``highs`` [slabs]
-    the ends of the slabs, upwards. All are in metres. ``shape`` is the shape of a space: slabs,
-    rows, columns. ``budget`` counts the cells that each method examines.
+    Slabs end where ``boxes`` begin or cease to block the body of a player of ``kind``, and at the
+    heights ``cuts``. ``origin`` is the south-west corner of the level, ``cell`` the side of a cell.
+    ``west`` [columns] and ``south`` [rows] are the west and south edges of the cells, ``lows`` and
+    ``highs`` [slabs] the ends of the slabs, upwards. All are in metres. ``shape`` is the shape of a
+    mask of the whole space: slabs, rows, columns. ``budget`` counts the cells that each method
+    examines.
     """
 
     def __init__(
@@ -94,7 +96,7 @@ class SpaceGrid:
         self.shape = (len(self.lows), len(self.south), len(self.west))
 
     def free_space(self, boxes: Iterable[Box]) -> Space:
-        """Return the space where the player's feet can be if ``boxes`` stop the body."""
+        """Return a mask of the space where the player's feet can be if ``boxes`` stop the body."""
         self.budget.spend(prod(self.shape))
         free: Space = np.ones(self.shape, dtype=np.bool_)
         for box in boxes:
@@ -114,7 +116,7 @@ class SpaceGrid:
     def cells_near(self, box: Box, reach: float) -> Field:
         """Return a mask of the cells that have a point within ``reach`` metres of a box.
 
-        Heights do not count.
+        Only horizontal distances count.
         """
         self.budget.spend(self.shape[1] * self.shape[2])
         dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
@@ -128,9 +130,9 @@ class SpaceGrid:
         return overlapping
 
     def distance(self, space: Space, point: Point, most: float = inf) -> float:
-        """Return the least distance from a space to a point, in metres.
+        """Return the least distance from the space in the mask ``space`` to a point, in metres.
 
-        Return infinity if it is more than ``most``.
+        Return infinity if the distance is more than ``most``.
         """
         offsets_by_axis = [
             _interval_distances(lows, highs, value)
@@ -151,15 +153,15 @@ class SpaceGrid:
             radius = min(4 * radius, most)
 
     def _ends(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """Return the low and high ends of slabs, rows and columns, in metres."""
+        """Return the low and high ends of all slabs, of all rows and of all columns, in metres."""
         rows, columns = (self.south, self.south + self.cell), (self.west, self.west + self.cell)
         return [(self.lows, self.highs), rows, columns]
 
     def _blocked_heights(self, box: Box, shorter: float) -> tuple[float, float]:
-        """Return the least and greatest height of the feet at which ``box`` blocks the body.
+        """Return the least and the greatest height of the feet at which ``box`` blocks the body.
 
-        This is for a box so near to the body's axis that it is in the way. Each end of the body is
-        shorter there by ``shorter`` metres.
+        The ends of the body are round. At the distance of the box from the body's axis, each end is
+        shorter by ``shorter`` metres than at the axis.
         """
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
@@ -171,9 +173,10 @@ def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], v
 
 
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
-    """Return the part of ``free`` that is connected with ``seeds`` through shared faces.
+    """Return the part of ``free`` that is connected with ``seeds`` through faces of its boxes.
 
-    Each round spreads along whole lines of each axis in turn, so even many corners take few rounds.
+    Each round of the search spreads along whole lines of each axis in turn, so even a way around
+    many corners takes few rounds.
     """
     budget.spend(3 * free.size)
     reached: Space = seeds & free
@@ -190,9 +193,9 @@ def flood(free: Space, seeds: Space, budget: Budget) -> Space:
 
 
 def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
-    """Number the runs of free boxes along the last axis: neighbours in a run have the same number.
+    """Number the runs of free boxes along the last axis; a run is a row without a gap.
 
-    Return the numbers, in the shape of ``free``, and their count.
+    Return an array that has the number of its run for each free box, and the count of numbers.
     """
     starts = ~free
     starts[..., 0] = True
@@ -201,7 +204,7 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
 
 
 def distances(field: Field, most: int) -> NDArray[np.float64]:
-    """Return the distance, in cells, from each cell to the nearest cell of a field.
+    """Return the distance, in cells, from each cell to the nearest true cell of the mask ``field``.
 
     It is the distance between the nearest points of the two cells. The result is infinite where the
     distance is ``most`` or more.

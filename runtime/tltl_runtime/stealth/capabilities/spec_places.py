@@ -1,4 +1,4 @@
-"""Find where a spec mentions an entity, a signal, its level or its clock."""
+"""Find where a spec's source text mentions an entity, a signal, the spec's level or its clock."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from tltlc.api import Label, Span, Spec, expressions, syntax
 
 
 class SpecPlaces:
-    """Finds the labels of entities, signals and clauses in the source of a spec, for diagnostics.
+    """Finds places in the source text of a spec, for diagnostics that point to them.
 
-    Each method returns a tuple with one label. If the source does not contain what it looks for,
-    the label is that of the spec's name. If ``spec`` is None, all methods return an empty tuple: an
-    artefact has no source.
+    A label is such a place, with the source. Each method returns a tuple with one label. If the
+    source does not contain what the method looks for, the label is that of the spec's name. If
+    ``spec`` is None, all methods return an empty tuple: an artefact has no source.
     """
 
     def __init__(self, spec: Spec | None) -> None:
@@ -25,9 +25,9 @@ class SpecPlaces:
         ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
-        """Return the first use of an entity in the spec, else its first use anywhere in the file.
+        """Return the label of the first use of an entity in the spec, else anywhere in the file.
 
-        If nothing uses the entity, return its declaration.
+        If nothing uses the entity, return the label of its declaration.
         """
         declared = (
             entity
@@ -42,29 +42,29 @@ class SpecPlaces:
         )
 
     def signal(self, name: str) -> tuple[Label, ...]:
-        """Return the first use of a signal in the spec, directly or through an atom.
+        """Return the label of the first use of a signal in the spec, directly or through an atom.
 
-        If the spec does not use the signal, return the declaration of the signal.
+        If the spec does not use the signal, return the label of the signal's declaration.
         """
         users = [self._base_name(name), *self._atoms_of(name)]
         spans = (_first_use(self._declarations_of_spec, user) for user in users)
         return self._label(self._text_span(name) or next(filter(None, spans), None) or self._declaration_span(name))
 
     def declaration(self, signal: str) -> tuple[Label, ...]:
-        """Return the declaration of a signal.
+        """Return the label of the declaration of a signal.
 
-        If it is in another file, return the first use of the signal instead.
+        If the declaration is in another file, return the label of the signal's first use instead.
         """
         place = self._declaration_span(signal)
         return self._label(place) if place else self.signal(signal)
 
     def level(self) -> tuple[Label, ...]:
-        """Return the clause that names the spec's level."""
+        """Return the label of the clause that names the spec's level."""
         clauses = (clause for declaration in self._declarations_of_spec for clause in declaration.clauses)
         return self._label(_first(clause.span for clause in clauses if clause.kind == "level"))
 
     def clock(self) -> tuple[Label, ...]:
-        """Return the declaration of the clock."""
+        """Return the label of the declaration of the spec's clock."""
         return self._label(
             _first(declaration.span for declaration in self._declarations if isinstance(declaration, syntax.ClockDecl))
         )
@@ -75,7 +75,7 @@ class SpecPlaces:
         return [atom.base for atom in atoms if expressions.SignalValue(signal) in expressions.nodes(atom.expression)]
 
     def _base_name(self, signal: str) -> str:
-        """Return the name of a signal without its arguments."""
+        """Return the name of a signal without its arguments, such as ``distance``."""
         signals = self._spec.signals if self._spec else ()
         return next((declared.base for declared in signals if declared.name == signal), signal)
 
@@ -104,7 +104,10 @@ class SpecPlaces:
 
 
 def _first_use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
-    """Return the span of the first use of a name in declarations, alone or in a call; else None."""
+    """Return the span of the first use of a name in ``declarations``; None if there is no use.
+
+    A use is the name alone or with arguments.
+    """
     for part in _parts(declarations):
         if isinstance(part, syntax.CallExpr) and part.name == name:
             return part.name_span
