@@ -22,7 +22,7 @@ Node = Callable[[Any], int]
 def selector(*children: Node) -> Node:
     """Make a node that runs its children from the left, at each tick, until one does not fail.
 
-    It has the status of that child; it fails if all children fail.
+    The node's status is that of this child; the node fails if all children fail.
     """
 
     def tick(actor: Any) -> int:
@@ -38,7 +38,8 @@ def selector(*children: Node) -> Node:
 def sequence(*children: Node) -> Node:
     """Make a node that runs its children from the left, at each tick, as long as they succeed.
 
-    It has the status of the first child that does not succeed; it succeeds if all children succeed.
+    The node's status is that of the first child that does not succeed. The node succeeds if all
+    children succeed.
     """
 
     def tick(actor: Any) -> int:
@@ -63,7 +64,7 @@ def condition(test: Callable[[Any], bool]) -> Node:
 def action(act: Callable[[Any], bool]) -> Node:
     """Make a node that calls ``act`` at each tick and succeeds when ``act`` returns True.
 
-    Until then, its status is RUNNING.
+    Until then, the node's status is RUNNING.
     """
 
     def tick(actor: Any) -> int:

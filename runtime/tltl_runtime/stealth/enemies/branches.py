@@ -25,9 +25,10 @@ So a player who walks away stays in reach.
 
 @record
 class Branch:
-    """A branch of the behaviour tree.
+    """A branch of the enemies' behaviour tree.
 
-    Of the branches that can run, the one with the lowest ``rank`` runs.
+    At each tick of the tree, some branches can run; of these, the one with the lowest ``rank``
+    does.
     """
 
     name: str
@@ -41,9 +42,10 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 
 
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], Node]], Callable[[], Node]]:
-    """Return a decorator that adds a branch to the tree: decorate the function that makes its node.
+    """Return a decorator that registers a branch of the enemies' behaviour tree.
 
-    ``rank`` and ``added`` are those of :class:`Branch`. Raises ValueError if the name is taken.
+    The decorated function must make the node of the branch. ``rank`` and ``added`` are those of
+    :class:`Branch`. The decorator raises ValueError if the name is taken.
     """
 
     def register(make: Callable[[], Node]) -> Callable[[], Node]:
@@ -74,7 +76,10 @@ def tree(branches: tuple[str, ...]) -> Node:
 
 @branch("chase", rank=10)
 def chase() -> Node:
-    """While the guard knows the player's position, run to it, and stop within the attack range."""
+    """Make a node that runs to the player while the guard knows where the player is.
+
+    The guard stops within its attack range.
+    """
 
     def knows(guard: EnemyGuard) -> bool:
         return guard.knows
@@ -95,7 +100,7 @@ def chase() -> Node:
 
 @branch("search", rank=20)
 def search() -> Node:
-    """Go to the player's last known position, then look around there for some time."""
+    """Make a node that goes where the player was last seen, and looks around there for a while."""
 
     def lost(guard: EnemyGuard) -> bool:
         return guard.search_left > 0.0
@@ -127,7 +132,7 @@ def search() -> Node:
 
 @branch("return", rank=40)
 def return_to_route() -> Node:
-    """Walk back to the nearest point of the route."""
+    """Make a node that walks back to the nearest point of the guard's route."""
 
     def is_off(guard: EnemyGuard) -> bool:
         return guard.is_off_route
@@ -145,7 +150,7 @@ def return_to_route() -> Node:
 
 @branch("check_gaps", rank=50, added=True)
 def check_gaps() -> Node:
-    """After each leg of the patrol, run to a narrow place off the route.
+    """Make a node that runs to a narrow place off the route, after each leg of the guard's patrol.
 
     :meth:`~tltl_runtime.stealth.enemies.enemy.EnemyGuard.next_gap` chooses the place. The speed is
     the mean of the speeds of a walk and of a chase: at walking speed, the guard would leave its
@@ -168,7 +173,7 @@ def check_gaps() -> Node:
 
 @branch("patrol", rank=60)
 def patrol() -> Node:
-    """Walk the route in a loop."""
+    """Make a node that walks the guard's route in a loop."""
 
     def walk(guard: EnemyGuard) -> bool:
         guard.mode = "patrol"

@@ -73,7 +73,7 @@ class Enemies:
         self.damage = 0.0
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Open or shut the barrier with this index.
+        """Open or shut the barrier with the index ``barrier`` in the level.
 
         The caller must not shut a barrier in which an enemy stands.
         """
@@ -86,7 +86,10 @@ class Enemies:
             guard.forget_path()
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
-        """Advance by ``dt`` seconds. ``movers`` are the movers' current boxes; they block sight."""
+        """Advance all enemies by ``dt`` seconds.
+
+        ``movers`` are the current boxes of the level's movers, which block sight.
+        """
         self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
         for guard in self.guards:
@@ -104,7 +107,7 @@ class Enemies:
 
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """The enemies' current modes."""
+        """What each enemy is doing: its mode, such as ``patrol`` or ``chase``."""
         return tuple(guard.mode for guard in self.guards)
 
     @property
@@ -192,14 +195,14 @@ class EnemyGuard:
     def state(self) -> tuple[object, ...]:
         """The guard's pose and current task.
 
-        Guards in equal states move equally while they see no player. Guards that search, or that
-        have optional branches, are exceptions, because they draw random numbers.
+        Guards in equal states move equally while they see no player. Exceptions are guards that
+        search or that have optional branches, because these draw random numbers.
         """
         return (self.x, self.y, self.yaw, self.mode, self.leg, self.is_off_route, self.search_left > 0.0)
 
     @property
     def position(self) -> Point:
-        """The position of the feet."""
+        """The position of the guard's feet."""
         return (self.x, self.y, 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
@@ -224,7 +227,7 @@ class EnemyGuard:
         return self._next_waypoint() == (self.x, self.y)
 
     def nearest_leg(self) -> int:
-        """Return the index of the nearest point of the route."""
+        """Return the index of the point of the guard's route that is nearest to the guard."""
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
@@ -248,7 +251,7 @@ class EnemyGuard:
         return chosen
 
     def forget_path(self) -> None:
-        """Discard the path, because the floor has changed."""
+        """Discard the path to the current goal; call this when the floor has changed."""
         self._waypoint = None
 
     def _is_on_route(self, gap: Place) -> bool:
@@ -303,7 +306,7 @@ class EnemyGuard:
     def _move(self, dt: float) -> None:
         """Walk towards the goal for ``dt`` seconds, around corners.
 
-        If the way is still more than 45 degrees to the side after the turn, do not walk.
+        First turn towards the way. If it is still more than 45 degrees to the side, do not walk.
         """
         left = self._speed * dt
         turned = False

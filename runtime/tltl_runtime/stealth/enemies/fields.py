@@ -41,7 +41,7 @@ def steps_to(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
     ``neighbours`` is the result of :func:`neighbours`. The goals are the cells from number
     ``first`` on. The result is uint8 [512 or fewer, cells]; :data:`ARRIVED` explains the numbers.
     One breadth-first search runs from all goals at once, with one bit per goal. Among equally short
-    paths, it prefers straight moves.
+    paths, the search prefers straight moves to diagonal ones.
     """
     cells = neighbours.shape[1]
     goals = np.arange(first, min(first + GOALS, cells))

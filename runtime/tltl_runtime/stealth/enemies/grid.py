@@ -58,7 +58,7 @@ def is_too_large(bounds: Box) -> bool:
 
 
 class Grid:
-    """The floors of a level, one for each set of shut barriers."""
+    """The floors of a level, one for each set of shut barriers, and shortest paths on them."""
 
     def __init__(self, level: StealthLevel) -> None:
         self.level = level
@@ -172,7 +172,7 @@ class Floor:
         return [self.centres[cell] for cell in self._cell_path(entry, goal)]
 
     def entry(self, place: Place) -> int | None:
-        """Return the nearest cell whose centre can be reached from a place in a straight line.
+        """Return the number of the nearest cell to whose centre a straight walk from a place leads.
 
         The cell is at most two columns and two rows away. Return None if there is no such cell.
         """
@@ -191,9 +191,9 @@ class Floor:
         return next((cell for _, cell in near if self.is_clear(place, self.centres[cell])), None)
 
     def nearest(self, place: Place, area: int = 0) -> int:
-        """Return the cell of an area that is nearest to a place, approximately.
+        """Return the number of the cell in an area that is nearest to a place, approximately.
 
-        An area is a set of cells that are connected by steps.
+        An area is a set of cells that are connected by steps. ``area`` is its number.
         """
         column, row = self._cell(*place)
         return int(self._nearest[area][row, column])
@@ -215,9 +215,9 @@ class Floor:
             self._grid.steps_to_goals(self, chunk)
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
-        """Return the middles of the gaps in an area: passages at most 2 m wide.
+        """Return the middles of the gaps in an area; a gap is a passage at most 2 m wide.
 
-        These middles are at least 2 m apart.
+        An area is a set of connected cells. The middles are at least 2 m apart.
         """
         if area not in self._gaps:
             self._gaps[area] = self._find_gaps(area)
@@ -238,7 +238,10 @@ class Floor:
         return tuple(gaps)
 
     def area(self, place: Place) -> int:
-        """Return the number of the area that contains a place, or 0 if no area does."""
+        """Return the number of the area at a place; 0 if there is none.
+
+        An area is a set of cells that are connected by steps.
+        """
         entry = self.entry(place)
         return 0 if entry is None else self._area[entry]
 
@@ -295,9 +298,10 @@ class Floor:
         return free
 
     def _areas(self, free: NDArray[np.bool_], starts: Sequence[Place]) -> NDArray[np.int64]:
-        """Return the number of each cell's area, int64 [rows, columns].
+        """Return the number of the area of each cell, int64 [rows, columns].
 
-        It is -1 for a cell that no enemy can reach from its start.
+        An area is a set of connected cells. The number is -1 for a cell that cannot be reached from
+        any of ``starts``.
         """
         areas = np.full(free.shape, -1, dtype=np.int64)
         rows, columns = np.nonzero(free)
@@ -323,10 +327,10 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """Return for each cell whether no obstacle overlaps it, and then a last element, False.
+        """Return for each cell whether it is clear of obstacles, and then a last element, False.
 
         The index -1, which stands for "no cell", finds this last element. Cells of the last row and
-        column are also False: a position between them and the bounds counts as inside them.
+        column are also False: a position between such a cell and the bounds counts as in the cell.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)

@@ -19,12 +19,12 @@ Corners = tuple[float, float, float, float, float, float]
 
 
 def corners(box: Box) -> Corners:
-    """Return the six coordinates of a box."""
+    """Return the coordinates of the low and of the high corner of a box: x0, y0, z0, x1, y1, z1."""
     return (*box.low, *box.high)
 
 
 def crosses(ax: float, ay: float, bx: float, by: float, rectangles: Sequence[Rectangle]) -> bool:
-    """Whether the segment from a to b passes through the inside of a rectangle."""
+    """Whether the line segment from point a to point b passes through the inside of a rectangle."""
     west, east = (ax, bx) if ax < bx else (bx, ax)
     south, north = (ay, by) if ay < by else (by, ay)
     dx, dy = bx - ax, by - ay
@@ -39,7 +39,7 @@ def crosses(ax: float, ay: float, bx: float, by: float, rectangles: Sequence[Rec
 
 
 def is_blocked(a: Point, b: Point, boxes: Sequence[Corners]) -> bool:
-    """Whether the segment from a to b passes through the inside of a box."""
+    """Whether the line segment from ``a`` to ``b`` passes through the inside of a box."""
     ax, ay, az = a
     bx, by, bz = b
     west, east = (ax, bx) if ax < bx else (bx, ax)
@@ -58,7 +58,7 @@ def is_blocked(a: Point, b: Point, boxes: Sequence[Corners]) -> bool:
 
 
 def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
-    """Return the distance of a point from the segment from a to b, in metres."""
+    """Return the distance of the point ``p`` from the line segment ``a`` to ``b``, in metres."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = dx * dx + dy * dy
     part = 0.0 if length == 0.0 else min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length))
@@ -66,10 +66,10 @@ def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple
 
 
 def _overlap(start: float, delta: float, low: float, high: float, enter: float, leave: float) -> tuple[float, float]:
-    """Return the times at which ``start + time * delta`` is between low and high, as an interval.
+    """Return the interval of times at which ``start + time * delta`` is between low and high.
 
-    The times are limited to those from ``enter`` to ``leave``. If ``delta`` is 0, all of them
-    count: the callers have already excluded boxes beside the line.
+    Only times from ``enter`` to ``leave`` count. If ``delta`` is 0, return all of these: the
+    callers have already excluded boxes beside the line.
     """
     if delta > 0.0:
         return max(enter, (low - start) / delta), min(leave, (high - start) / delta)
