@@ -41,8 +41,8 @@ class Outlook:
     """The predictions of all models for one enemy.
 
     ``poses`` are float64 [models, decisions, 4]: x, y, yaw, and whether the enemy knows the
-    player's position (1 or 0). An enemy that knows it sees in all directions. ``shares`` [models]
-    are the probabilities of the models.
+    player's position (1 or 0). An enemy that knows the position sees in all directions. ``shares``
+    [models] are the probabilities of the models.
     """
 
     poses: NDArray[np.float64]
@@ -95,7 +95,10 @@ class Watch:
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """Predict each enemy for the next ``decisions``, as if no enemy saw the player in them."""
+        """Predict each enemy for the next ``decisions`` time steps.
+
+        The prediction is as if no enemy saw the player during these steps.
+        """
         x, y, _ = self._player
         unseen = PlayerView((x, y, _BURIED))
         return [self._outlook(models, decisions, unseen) for models in self.models]
@@ -144,7 +147,7 @@ class Watch:
         model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
 
     def _update_floor(self) -> Floor:
-        """Return the current floor, and update the boxes that block sight."""
+        """Return the floor that enemies can walk on now, and update the boxes that block sight."""
         level = self.level
         shut = [index for index, is_open in enumerate(self._open) if not is_open]
         self.boxes: list[Corners] = [corners(solid.box) for solid in level.solids if solid.box.high[2] > 0.0]

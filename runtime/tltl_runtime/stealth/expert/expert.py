@@ -106,7 +106,10 @@ class Expert:
 def expert_episodes(
     env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True
 ) -> Iterator[EpisodeT]:
-    """Yield an episode of the expert for each seed; ``careful`` is that of :class:`Expert`."""
+    """Play an episode with the expert for each seed, and yield its recording.
+
+    ``careful`` is an argument of :class:`Expert`.
+    """
     expert = Expert(env, careful)
     for seed in seeds:
         play_episode(env, expert, seed)

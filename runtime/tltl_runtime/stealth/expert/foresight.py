@@ -1,8 +1,9 @@
-"""Plan the next seconds: a beam search over decisions, with a prediction of the motion.
+"""Plan a player's next seconds: a beam search over actions, with a prediction of the motion.
 
-A *body* is a predicted state of the player. The search compares bodies that stand on the ground, by
-the time that has passed and the time that is left on their route. A jump or a fall is one move: the
-search simulates it until the body lands.
+A *body* is a predicted state of the player. A *decision* is a time step, for which an action is
+chosen. The search compares bodies that stand on the ground, by the time that has passed and the
+time that is left on their route. A jump or a fall is one move: the search simulates it until the
+body lands.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ _ARRIVED: Final = 0.1
 
 @record
 class HeldAction:
-    """An action that a body in the air repeats, for ``hold`` decisions in all.
+    """An action to play once and to repeat while in the air, at most ``hold`` times in all.
 
-    Afterwards the body falls straight down.
+    Afterwards the player falls straight down.
     """
 
     action: Action
@@ -51,7 +52,7 @@ class ActionPlan:
 
 @record
 class _Bodies:
-    """Bodies [n] that stand on the ground at the same time, and how they got there."""
+    """Bodies [n], predicted states of the player on the ground at one time, and their history."""
 
     poses: Poses
     costs: Floats
@@ -72,7 +73,10 @@ class _Bodies:
         return _Bodies(self.poses.take(indices), *(getattr(self, name)[indices] for name in _COLUMNS))
 
     def scores(self) -> Floats:
-        """Return the score of each body, in seconds; of bodies at the same time, less is better."""
+        """Return the score of each body, in seconds.
+
+        Of bodies at the same time, those with lower scores are better.
+        """
         return self.costs + self.left - _STAMINA * self.poses.stamina
 
 
@@ -80,11 +84,12 @@ _COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
-    """A search over the next ``ahead`` decisions.
+    """A search for the player's best actions in the next ``ahead`` decisions.
 
-    After each decision, the search continues from the ``kept`` best bodies. ``field`` has the
-    routes to the goal, ``moves`` are the moves to choose from. ``movers`` are the boxes that movers
-    sweep in each decision, for ``ahead + LONGEST_FALL`` decisions.
+    After each decision, the search continues from the ``kept`` best predicted states (bodies) of
+    the player. ``field`` has the routes to the goal, ``moves`` are the moves to choose from.
+    ``movers`` are the boxes that movers sweep in each decision, for ``ahead + LONGEST_FALL``
+    decisions.
     """
 
     def __init__(
@@ -103,7 +108,10 @@ class Foresight:
         self._ahead, self._kept = ahead, kept
 
     def plan(self, player: PlayerState) -> ActionPlan:
-        """Return the best plan; it is empty if no move leads to a place with a route."""
+        """Return the best plan.
+
+        The plan is empty if no move leads to a place from which a route leads to the goal.
+        """
         due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL)]
         due[0] = [_root_body(player)]
         passed: dict[int, _Bodies] = {}
@@ -122,10 +130,10 @@ class Foresight:
         return self._trace(passed, *end)
 
     def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
-        """Apply every move to every body, and return the bodies that land.
+        """Simulate every move from every body, and return the bodies that are then on the ground.
 
-        The bodies are in groups. Each group comes with the number of decisions until its bodies
-        land. ``time`` is when the moves begin, in decisions from now.
+        The result has groups of bodies that land at the same time, each after the number of
+        decisions until then. ``time`` is when the moves begin, in decisions from now.
         """
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
@@ -155,9 +163,9 @@ class Foresight:
         return landed
 
     def _best(self, bodies: _Bodies) -> _Bodies:
-        """Keep the best standing and crouching body in each cube, and of these the ``kept`` best.
+        """Return the ``kept`` best bodies, at most one standing and one crouching in each cube.
 
-        The sides of a cube are a quarter of a metre.
+        Cubes of space have sides of a quarter of a metre.
         """
         poses = bodies.poses
         order = bodies.scores().argsort(kind="stable")
@@ -166,7 +174,10 @@ class Foresight:
         return bodies.take(order[np.sort(first)[: self._kept]])
 
     def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> ActionPlan:
-        """Return the plan that leads to the body in this ``row`` of ``passed[time]``."""
+        """Return the plan that leads to the body in this ``row`` of ``passed[time]``.
+
+        ``passed`` has the bodies from which the search continued, by time.
+        """
         actions: list[Action] = []
         places: list[Point] = []
         while time:

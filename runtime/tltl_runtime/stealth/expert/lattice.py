@@ -2,7 +2,8 @@
 
 A place is a point of the floor where the player fits between the things that stand there.
 Neighbouring places are 0.4 m apart. An action moves the player by an exact displacement, which
-usually ends between places. The cost there is interpolated from the four places around.
+usually ends between places. The cost of the rest of the route from such a point is interpolated
+from the four places around the point.
 """
 
 from __future__ import annotations
@@ -63,9 +64,10 @@ def lattice_of(level: StealthLevel, shut: frozenset[int]) -> Lattice:
 
 
 class Lattice:
-    """The places of the floor of a level while the barriers with the indices ``shut`` are shut.
+    """A lattice of the places on a level's floor where the player fits.
 
-    ``places`` float64 [n, 2] are their x and y, in metres.
+    The barriers with the indices ``shut`` are shut. ``places`` float64 [n, 2] are the x and y of
+    the places, in metres.
     """
 
     def __init__(self, level: StealthLevel, shut: Collection[int]) -> None:
@@ -129,7 +131,7 @@ class Lattice:
         return least
 
     def decisions_to(self, goal: Point, within: float) -> Costs:
-        """Return how many decisions a walk from each place to the goal takes.
+        """Return how many decisions (time steps) a walk from each place to the goal takes.
 
         The walk ends at most ``within`` metres from the goal. The value is FAR where there is no
         path.
@@ -149,7 +151,8 @@ class Lattice:
     def _interpolation(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
         """Return the four places around each point [m, 2], and their weights, [m, 4] each.
 
-        The nearer a free place is, the greater is its weight. All other places have the weight 0.
+        The nearer a place of the lattice is, the greater is its weight. Where the player does not
+        fit, there is no place, and the weight is 0.
         """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)

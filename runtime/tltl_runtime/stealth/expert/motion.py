@@ -1,7 +1,8 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
-A body is a capsule, which boxes push out. Its motion agrees with the physics to within a few
-centimetres. A body touches a mover if the mover comes within 6 cm of it in the same decision.
+A body is a copy of the player: a capsule, which boxes push out. Its predicted motion agrees with
+the physics to within a few centimetres. A body touches a mover if the mover comes within 6 cm of it
+in the same decision (time step).
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _BERTH: Final = 0.06
 
 @record
 class Poses:
-    """The states of bodies [n].
+    """The states of n bodies, which are copies of the player; each field is an array [n].
 
     ``x``, ``y`` and ``z`` are the positions of the feet in metres, ``vz`` the upward speeds in m/s,
     ``stamina`` is in [0, 1].
@@ -44,7 +45,7 @@ class Poses:
     stamina: Floats
 
     def take(self, indices: Any) -> Poses:
-        """Return the bodies with these indices, which may be a mask."""
+        """Return the states of the bodies with these indices, which may be a mask."""
         return Poses(*(getattr(self, name)[indices] for name in _FIELDS))
 
 
@@ -52,14 +53,14 @@ _FIELDS: Final = ("x", "y", "z", "vz", "crouching", "grounded", "stamina")
 
 
 def poses_of(state: PlayerState) -> Poses:
-    """Return the player as a single body."""
+    """Return the player's ``state`` as the states of a single body."""
     x, y, z = state.position
     values = (x, y, z, state.velocity[2], state.crouching, state.grounded, state.stamina)
     return Poses(*(np.array([value]) for value in values))
 
 
 def concatenate(parts: Sequence[Poses]) -> Poses:
-    """Concatenate groups of bodies."""
+    """Return the states of the bodies of all ``parts``, in one record."""
     return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
 
 
@@ -72,7 +73,7 @@ class _Boxes:
 
 
 class Motion:
-    """Predicts the motion of bodies of this ``kind`` among ``boxes`` that stand still."""
+    """Predicts how copies of a player of this ``kind`` move among ``boxes`` that stand still."""
 
     def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
         self.kind = kind
@@ -80,9 +81,10 @@ class Motion:
         self._boxes = _Boxes(corners[:, :3].T, corners[:, 3:].T)
 
     def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
-        """Return the bodies after one decision, and which of them touched a mover.
+        """Return the states of the bodies one decision later, and which bodies touched a mover.
 
-        ``actions`` is [n, 5]. ``movers`` are the boxes that the movers sweep in this decision.
+        ``actions`` [n, 5] are the actions of the bodies. ``movers`` are the boxes that the movers
+        sweep in this decision.
         """
         kind = self.kind
         boxes = self._boxes_near(poses)
@@ -196,8 +198,8 @@ class Motion:
     def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
         """Return how far each capsule overlaps each box, and the unit vectors out of the boxes.
 
-        The overlap is in metres, negative if they are apart. The shapes are [n, boxes] and [3, n,
-        boxes].
+        The overlap is in metres, negative if capsule and box are apart. The shapes of the results
+        are [n, boxes] and [3, n, boxes].
         """
         radius = self.kind.radius
         low, high = boxes.low, boxes.high

@@ -17,7 +17,7 @@ _TOLERANCE: Final = 1e-6
 
 
 class Clocks:
-    """The clocks of the movers: how far each is in its cycle, in seconds.
+    """The clocks of a level's movers: how far each mover is in its cycle, in seconds.
 
     A clock stands still while the player blocks the mover.
     """

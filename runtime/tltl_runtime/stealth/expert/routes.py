@@ -65,9 +65,9 @@ class Field:
     kinds: NDArray[np.uint8]
 
     def legs(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
-        """Return the legs of the route from the place nearest to ``start``.
+        """Return the legs of the route from the place nearest to ``start`` to the goal.
 
-        Stop after about ``metres``.
+        Leave out what comes after about ``metres`` of the route.
         """
         place = self.surfaces.nearest(start)
         legs = []
@@ -207,7 +207,10 @@ class Routes:
         return sources, targets, np.where(roomy, seconds, seconds * _CLOSE_TO_WALL), kinds
 
     def _climbs(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Yield the edges of jumps up to a higher place, from at least two cells away."""
+        """Yield groups of edges for jumps from ``layer`` up to the higher layer ``target``.
+
+        A jump leads to a place at least two cells away.
+        """
         surfaces = self.surfaces
         begin = surfaces.places[layer] & surfaces.standing[layer] & surfaces.standing[target]
         for steps, length in _reaches(direction, 2, _CLIMB_REACH):
@@ -217,7 +220,10 @@ class Routes:
             )
 
     def _drops(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Yield the edges of steps off a ledge, down to a lower place."""
+        """Yield groups of edges for steps off a ledge in ``layer``, down to the layer ``target``.
+
+        Each group is for another distance.
+        """
         surfaces = self.surfaces
         fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
@@ -228,7 +234,10 @@ class Routes:
             yield self._edges_between(self._place_pairs(layer, target, direction, lands, steps), length, fall, "drop")
 
     def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
-        """Yield the edges of jumps across a gap, to a place that is not higher."""
+        """Yield groups of edges for jumps across a gap, to a ``target`` layer that is not higher.
+
+        Each group is for another distance.
+        """
         surfaces = self.surfaces
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.leaping[layer]
@@ -274,14 +283,14 @@ def routes_of(level: StealthLevel, shut: frozenset[int]) -> Routes:
 
 
 def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
-    """Return the indices of the barriers that are shut."""
+    """Return the indices of the barriers that are shut in a snapshot."""
     return frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield the numbers of steps in ``direction``, from ``least`` on, that are not too far.
+    """Yield each number of cells in ``direction`` whose length is at most ``reach`` metres.
 
-    Each comes with its length in metres, which is at most ``reach``.
+    The numbers begin with ``least``. Each comes with the length in metres.
     """
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):

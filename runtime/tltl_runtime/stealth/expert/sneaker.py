@@ -2,8 +2,9 @@
 
 Every few decisions, :mod:`~tltl_runtime.stealth.expert.enemy_prediction` predicts the poses of the
 enemies. Dynamic programming backwards from the end of the predicted time then gives the cost of the
-best route from each place: the number of decisions, plus a price for each decision in sight. The
-player takes the action whose exact displacement leads to the least remaining cost.
+best route from each place: the number of decisions (time steps), plus a price for each decision in
+sight of an enemy. The player takes the action whose exact displacement leads to the least remaining
+cost.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ class Sneaker:
         return self._choose(lattice, snapshot)
 
     def _choose(self, lattice: Lattice, snapshot: Snapshot) -> Action:
-        """Return the action that is best by the plan, from the player's exact position."""
+        """Return the best action at the player's exact position, by the current plan's costs."""
         player, kind = snapshot.player, PlayerKind()
         place = np.array([player.position[:2]])
         free = lattice.feasible(place)[:, 0]
@@ -95,10 +96,11 @@ class Sneaker:
         return ACTIONS[int(costs.argmin())]
 
     def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
-        """Return the costs of standing and of crouching at each place, at the end of each decision.
+        """Return a plan: for each decision, the costs of standing and of crouching at each place.
 
-        A cost includes that of the rest of the route. ``decisions`` is the length of the route from
-        each place if there were no enemies.
+        A cost is that of being at the place at the end of the decision, plus that of the rest of
+        the route. ``decisions`` is the length of the route from each place, in decisions, if there
+        were no enemies.
         """
         seen = self._sight_prices(lattice, lines, self._watch.outlook(_HORIZON))
         at_goal = decisions <= 0.0
@@ -111,9 +113,9 @@ class Sneaker:
         return plan[::-1]
 
     def _sight_prices(self, lattice: Lattice, lines: LinesOfSight, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
-        """Return the prices of standing and of crouching at each place at the end of each decision.
+        """Return the price of the risk of being seen at each place at the end of each decision.
 
-        The result is float32 [decisions, 2, places].
+        The result is float32 [decisions, 2, places], for a standing and for a crouched player.
         """
         price = np.zeros((_HORIZON, 2, len(lattice.places)), dtype=np.float32)
         x, y = lattice.places.T.astype(np.float32)

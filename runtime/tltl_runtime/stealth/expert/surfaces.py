@@ -91,8 +91,8 @@ class Surfaces:
     def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
         """Return a mask of the cells above which an upright cylinder of this ``height`` is free.
 
-        It is free if no box comes within ``margin`` of it. Boxes no higher than a stair do not
-        count.
+        The cylinder is free if no box comes within ``margin`` of it. Boxes no higher than a stair
+        do not count.
         """
         taken = self._no_cells()
         radius = self.kind.radius + margin

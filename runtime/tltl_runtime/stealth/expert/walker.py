@@ -2,7 +2,8 @@
 
 :mod:`~tltl_runtime.stealth.expert.routes` gives the whole route;
 :mod:`~tltl_runtime.stealth.expert.foresight` searches for the actions of the next seconds. Near
-jumps, drops and movers, the search looks further ahead and keeps more bodies.
+jumps, drops and movers, the search looks further ahead and keeps more predicted states of the
+player.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ class Walker:
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: Field, snapshot: Snapshot) -> list[HeldAction]:
-        """Return the moves that the player can choose from, for the next part of the route."""
+        """Return the moves that the search tries on the next part of the route."""
         player = snapshot.player
         legs = field.legs(player.position, _NEAR)
         movers = any(_horizontal_distance(box, player.position) <= _NEAR for box in self._clocks.swept_boxes(0, 8))
@@ -104,10 +105,10 @@ class Walker:
 
 
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
-    """Return the directions of actions that are within 45 degrees of a leg.
+    """Return the directions of actions that are within 45 degrees of a leg of a route.
 
-    The legs begin at ``start``. Each is a pair: whether the leg counts, and its end. The function
-    ignores legs that do not count.
+    The route begins at ``start``. Each of ``legs`` is a pair: whether the leg counts, and the point
+    where it ends. The function ignores legs that do not count.
     """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
