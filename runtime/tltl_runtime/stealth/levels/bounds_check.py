@@ -22,7 +22,8 @@ _Boxes = list[tuple[str, Box]]
 def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Diagnostic]:
     """Return TLT0806 for things outside the bounds, and TLT0807 for things inside an obstacle.
 
-    ``places`` has the labels of the things, and ``start`` is the label of the player's start.
+    Diagnostics point to places in the level's files: ``places`` has those of the things, and
+    ``start`` is that of the player's start.
     """
     solids = [(solid.name, solid.box) for solid in level.solids]
     barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
@@ -93,7 +94,7 @@ def _first_overlap(body: Box, solids: _Boxes) -> str | None:
 
 
 def _player_box(level: StealthLevel) -> Box:
-    """Return the space that the player may take at the start, including the spread."""
+    """Return the box that encloses the player at all possible starts of an episode."""
     return _body_box(level.start.position, _PLAYER.radius + level.start.spread)
 
 

@@ -34,7 +34,7 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
 
 
 def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0805 for each reference to something that the level does not have.
+    """Return TLT0805 for each name in the level's files that refers to nothing in the level.
 
     Also return TLT0805 for each barrier that nothing opens, or that more than one thing opens.
     """

@@ -1,4 +1,4 @@
-"""The files that a level depends on."""
+"""Find the files that a level depends on, and the paths at which they may be."""
 
 from __future__ import annotations
 
@@ -49,8 +49,9 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
 def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
     """Yield the paths at which one of a level's files may be.
 
-    ``name`` is the name of the file in the ``files`` of the level. It may be the level's own file,
-    a file beside it or in the package, or an overlay that ``variant`` adds.
+    ``level`` is the path of the level's own file. ``name`` is the name of the file in the field
+    ``files`` of the level. The file may be the level's own file, a file beside that or in the
+    package, or an overlay that ``variant`` adds.
     """
     if name == level.name:
         yield level
@@ -63,8 +64,8 @@ def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
 def _shared_files(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
     """Yield the files of the assets or overlays with these names.
 
-    ``folder`` is ``assets`` or ``overlays``; ``places`` are the folders that contain it. Unless
-    ``sure``, a name may be something else: then skip it if no file has that name.
+    ``folder`` is ``assets`` or ``overlays``; ``places`` are the paths that contain such a folder.
+    If not ``sure``, some of ``names`` may name something else: skip those without a file.
     """
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]

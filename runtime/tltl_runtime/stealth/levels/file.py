@@ -202,7 +202,7 @@ class _Loading:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, if a level has too many things and points of paths.
+        """Raise TltlError, TLT0006, if a level has too many things, counting the points of paths.
 
         The limit is :data:`tltlc.io.limits.LEVEL`.
         """
@@ -251,7 +251,7 @@ class _Loading:
         return box
 
     def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
-        """Return the level's uses of parts, and its assets by name.
+        """Return the ``[[use]]`` tables of the level's file, and the assets it uses, by name.
 
         The overlays of ``variant`` and the ``added`` ones are applied to the assets.
         """
@@ -286,7 +286,7 @@ class _Loading:
         return uses, assets
 
     def _tables_under(self, key: str) -> list[Entry]:
-        """Return the tables under a key, or an empty list."""
+        """Return the tables under a key of the level's file, or an empty list."""
         entry = self.root.value.get(key)
         items = entry.value if entry is not None and isinstance(entry.value, list) else []
         return [item for item in items if isinstance(item, Entry)]
@@ -301,9 +301,9 @@ class _Loading:
     def _find_shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
         """Find the file of an asset or overlay, beside the level or in the package.
 
-        If there is none, log an error and return None. The error is TLT0805 at ``label``, where a
-        file names the asset or overlay. Without a label, an argument names it, and the error is
-        TLT0800.
+        If there is no such file, log an error and return None. The error is TLT0805 at ``label``,
+        the place where a file names the asset or overlay. If ``label`` is None, an argument names
+        it, and the error is TLT0800.
         """
         for place in (self.path.parent / folder, LEVELS / folder):
             if fileio.is_file(path := place / f"{name}.toml") and path.parent == place:
@@ -317,7 +317,10 @@ class _Loading:
     def _read_parts(
         self, uses: list[CheckedTable], assets: dict[str, CheckedTable], kinds: dict[str, EnemyKind]
     ) -> tuple[list[Solid], list[Mover], list[Region]]:
-        """Return the solids, movers and regions of the parts that the level uses."""
+        """Return the solids, movers and regions of all parts that the level uses.
+
+        A part is an asset: a group of solids and movers that levels share.
+        """
         solids: list[Solid] = []
         prefixes: dict[str, CheckedTable] = {}
         movers: list[Mover] = []
@@ -362,9 +365,9 @@ class _Loading:
 
 
 def _first_line(source: SourceFile) -> Span:
-    """Return the span of the first line with content.
+    """Return the span of the first line of a file that has content.
 
-    Diagnostics about the whole file point to it.
+    Diagnostics about the whole file point to this line.
     """
     match = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
     return Span(*match.span()) if match else Span(0, 0)

@@ -17,7 +17,9 @@ _THINNEST: Final = 1e-3
 
 
 def fault(level: StealthLevel) -> str | None:
-    """Return a description of the first fault of a level, or None if it can be drawn and played.
+    """Return a description of the first fault that keeps a level from being drawn and played.
+
+    Return None if there is no fault.
 
     Invalid names, and things without enough room, are not faults here: only level files are
     checked for them.

@@ -19,8 +19,9 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
     - ``[change.ASSET.THING]`` replaces values of a thing in the asset.
     - ``[add.ASSET]`` appends to lists of the asset.
 
-    A key that the asset does not have adds TLT0808 to ``log``, so that a misspelled change cannot
-    pass unnoticed. An unknown key of the overlay itself adds TLT0802.
+    If an asset does not have a key that the overlay changes, TLT0808 is added to ``log``, so that a
+    misspelled change cannot pass unnoticed. For an unknown key of the overlay itself, it is
+    TLT0802.
     """
     changed = dict(assets)
     for key, entry in overlay.items():

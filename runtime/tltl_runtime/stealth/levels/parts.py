@@ -53,10 +53,10 @@ _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "s
 
 @record
 class NamedParts:
-    """The labels of things in the level's files, for later checks.
+    """Remembers where the level's files name things, so that later checks can point there.
 
-    ``names`` and ``positions`` map the name of each thing to the label of its name and to that of
-    its position.
+    A label is a place in a file. ``names`` and ``positions`` map the name of each thing to the
+    label of its name and to that of its position.
     """
 
     names: dict[str, Label]
@@ -99,7 +99,7 @@ def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.
     """Read the walls, low obstacles, platforms and stairs of a level or a part.
 
     ``shift`` is the position of a part in the level; ``prefix`` begins the names of the part's
-    things. The solids are added to ``places``.
+    things. ``places`` records where the file names the solids.
     """
     solids = []
     for kind in _SOLIDS:
@@ -119,7 +119,7 @@ def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.
 
 
 def box(table: CheckedTable, shift: Point = (0.0, 0.0, 0.0)) -> Box:
-    """Read a box from ``at``, the middle of its base, and ``size``."""
+    """Read a box from the keys ``at``, the middle of its base, and ``size`` of a table."""
     (x, y, z), (dx, dy, dz) = _shift(table.point("at"), shift), table.size()
     return Box(_round((x - dx / 2, y - dy / 2, z)), _round((x + dx / 2, y + dy / 2, z + dz)))
 

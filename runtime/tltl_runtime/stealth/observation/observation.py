@@ -102,7 +102,7 @@ class Observer:
 
 
 def _scaled_reader(signal: LevelSignal, level: StealthLevel) -> Reader:
-    """Return a reader that scales a signal to [-1, 1], as :class:`Observer` describes."""
+    """Return a function that reads a signal from a simulation, scaled as :class:`Observer` says."""
     low, high, read = level.bounds.low, level.bounds.high, signal.read
     if signal.base == "time":
         return lambda game: game.time / (game.time + _HALF_TIME_S)

@@ -51,12 +51,12 @@ class SemanticMap:
         self.reset()
 
     def reset(self) -> None:
-        """Shut all barriers."""
+        """Prepare the map for a new episode, in which all barriers are shut."""
         self._shut = set(range(self._barriers))
         self._layers = self.voxels.layers(self._shut)
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Open or shut the barrier with this index."""
+        """Show the barrier with this index as open or shut in the map."""
         (self._shut.discard if opened else self._shut.add)(barrier)
         self._layers = self.voxels.layers(self._shut)
 
@@ -108,8 +108,8 @@ class SemanticMap:
     def _stamp(self, ids: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
         """Write ``number`` into the cells that overlap a rectangle.
 
-        Its west, south, east and north sides are ``a``, ``b``, ``c`` and ``d``, in metres from the
-        map's south-west corner.
+        The rectangle's west, south, east and north sides are ``a``, ``b``, ``c`` and ``d``, in
+        metres from the map's south-west corner.
         """
         if a < self._side and b < self._side and c > 0.0 and d > 0.0:
             scale = self._per_metre

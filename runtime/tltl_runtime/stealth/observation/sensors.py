@@ -44,9 +44,9 @@ def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> S
 
 
 def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
-    """Yield the entities and signals that ``sensors`` names and a level does not have.
+    """Yield a text for each entity or signal that ``sensors`` names and a level does not have.
 
-    They are texts such as "the entity `exit`".
+    An example of such a text is "the entity `exit`".
     """
     entities, signals = entity_names(level), readers(level)
     yield from (f"the entity `{name}`" for name in sensors.entities if name not in entities)
@@ -54,7 +54,7 @@ def missing_sensors(level: StealthLevel, sensors: Sensors) -> Iterator[str]:
 
 
 def _read(level: StealthLevel, choice: Mapping[str, Any], log: list[Diagnostic]) -> Sensors:
-    """Build the record of the sensors from a mapping.
+    """Return the sensors that the mapping ``choice`` describes, as a record.
 
     If a value has a wrong type, an error is logged, and the level's own value takes its place.
     """

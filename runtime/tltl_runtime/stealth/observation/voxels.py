@@ -1,4 +1,4 @@
-"""The parts of semantic maps that stand still, as layers of cells.
+"""What stands still in a level, as layers of cells from which semantic maps are cut.
 
 A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is
 for a body whose feet are at its height. For each cell it says what the body would meet there, from
@@ -98,7 +98,7 @@ class Voxels:
         return self._layers[key]
 
     def _typed_boxes(self, shut: Collection[int]) -> Iterator[tuple[str, Box]]:
-        """Yield the types and the boxes of the objects that stand still."""
+        """Yield the cell type and the box of each object in the level that stands still."""
         yield from ((solid.kind, solid.box) for solid in self.level.solids)
         yield from (("switch", self._point_box(switch.position)) for switch in self.level.switches)
         yield from (("exit", self._point_box(exit_.position)) for exit_ in self.level.exits)
