@@ -122,7 +122,7 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
 
 
 def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
-    """Return the lengths of the axes, by name, for an episode of ``count`` decisions."""
+    """Return the lengths of the arrays' axes, by name, for an episode of ``count`` time steps."""
     return {
         "n": count,
         "n + 1": count + 1,
@@ -136,7 +136,7 @@ def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
 
 
 def shape_of(array: Array, known: Mapping[Size, int]) -> tuple[int, ...]:
-    """Return the shape of an array in numbers; ``known`` are the lengths of the axes, by name."""
+    """Return the shape of an array, with the lengths in ``known`` in place of the axes' names."""
     return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
 
 

@@ -21,7 +21,7 @@ _RECENT: Final = 3.0
 
 
 def cause(episode: Episode) -> Cause:
-    """Find the cause of the end of an episode."""
+    """Return why an episode ended, for example which enemy killed the player."""
     if not episode.success:
         death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
         if death is not None:
@@ -61,9 +61,9 @@ def _violation_cause(episode: Episode) -> Cause:
 def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
     """Return the atoms that caused a violation, with their truth values.
 
-    They form a prime implicant of the guard of the violating transition, one that was true at the
-    last step. If several were true and the player died, one with an atom that reads the health is
-    preferred.
+    The atoms form a prime implicant of the guard of the transition into the violation, one that was
+    true at the last step. If several implicants were true and the player died, one with an atom
+    that reads the health is preferred.
     """
     fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
@@ -86,7 +86,7 @@ def _reads_health(atom: Atom) -> bool:
 def _limit_cause(episode: Episode) -> Cause:
     """Return the cause of an episode that reached its limit.
 
-    If the player is the expert and had no route to its next goal, the cause says so.
+    If the player is the scripted expert and had no route to its next goal, the cause says so.
     """
     last, steps = episode.snapshots[-1], len(episode.actions)
     remaining = f"limit after {steps} steps, remaining: {_remaining_text(episode)}"
@@ -119,10 +119,10 @@ def _remaining_text(episode: Episode) -> str:
 
 
 def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dict[str, float]:
-    """Return the damage of each enemy and laser in one decision, in health per second, by name.
+    """Return the damage, in health per second, of each enemy and laser between two snapshots.
 
-    The computation is that of the game, but reads snapshots. In the game, enemies attack before
-    they move, and lasers burn before switches open them.
+    The result is by name. The computation is that of the game, but reads snapshots. In the game,
+    enemies attack before they move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
     height = kind.crouched_height if after.player.crouching else kind.height

@@ -15,9 +15,9 @@ _Difference = tuple[str, object, object]
 def check(episode: Episode) -> tuple[Diagnostic, ...]:
     """Run the spec's automaton again on the recorded signals, and compare the results.
 
-    Atoms, states, progress, rewards and the end must equal the recorded ones. Return TLT0823 for
-    the first step that differs, and an empty tuple if none does. If the monitor rejects the
-    signals, return its diagnostics.
+    Atoms, states, progress, rewards and the kind of end must equal the recorded ones. Return
+    TLT0823 for the first step that differs, and an empty tuple if none does. If the monitor rejects
+    the signals, return the monitor's diagnostics.
     """
     try:
         first = next(_differences(episode), None)
@@ -92,7 +92,7 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
 
 
 def _differences(episode: Episode) -> Iterator[tuple[int, _Difference]]:
-    """Yield the step and the difference where recorded and recomputed values differ.
+    """Yield each difference between recorded and recomputed values, after the number of its step.
 
     Step 0 is the moment of the reset.
     """

@@ -15,7 +15,7 @@ from tltlc.api import EMPTY, Fspa, RewardOptions, record
 
 @record
 class Episode:
-    """One episode of n decisions, with all data that is needed to draw it and to judge it again.
+    """One episode of n time steps, with all data that is needed to draw it and to judge it again.
 
     If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit
     for bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is ``limit`` if the
@@ -58,10 +58,10 @@ class Episode:
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """(n + 1,), seconds since the reset."""
+        """The times of the snapshots, (n + 1,), in seconds since the reset."""
         return np.array([shot.time for shot in self.snapshots], dtype=np.float64)
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """(n + 1, 3), the positions of the player's feet, in metres."""
+        """The positions of the player's feet in the snapshots, (n + 1, 3), in metres."""
         return np.array([shot.player.position for shot in self.snapshots], dtype=np.float64)

@@ -38,6 +38,6 @@ def was_chased(episode: Episode) -> bool:
 
 
 def opened_barriers(episode: Episode) -> tuple[str, ...]:
-    """Return the names of the barriers that were open at the end, in the order of the level."""
+    """Return the names of the barriers that were open at an episode's end, in the level's order."""
     barriers = zip(episode.level.barriers, episode.snapshots[-1].open, strict=True)
     return tuple(barrier.name for barrier, is_open in barriers if is_open)

@@ -40,7 +40,7 @@ _ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", ag
 
 @record
 class AxisNames:
-    """The names along the axes of the arrays, in order, for each axis that has names."""
+    """The names of the things along each axis of an episode's arrays, such as signals, in order."""
 
     signals: tuple[str, ...]
     atoms: tuple[str, ...]
@@ -54,7 +54,7 @@ class AxisNames:
 class Meta:
     """The content of the array ``meta``, which is JSON.
 
-    It has everything in an episode except the other arrays and the artefact of the spec.
+    It has everything in an episode that is neither in another array nor in the spec's artefact.
     """
 
     format: str
@@ -139,14 +139,14 @@ def from_bytes(data: bytes, name: str) -> Episode:
 
 @lru_cache(maxsize=8)
 def _artefact_text(fspa: Fspa) -> str:
-    """Return the artefact of an automaton. It is cached, because the episodes of a spec share it."""
+    """Return an automaton's artefact as text, cached because the episodes of a spec share it."""
     (artefact,) = compiler.emit("json", fspa).values()
     return str(artefact)
 
 
 @lru_cache(maxsize=8)
 def _automaton(artefact: str) -> Fspa:
-    """Return the automaton of an artefact. It is cached, because the episodes of a spec share it."""
+    """Return the automaton in an artefact, cached because the episodes of a spec share it."""
     return compiler.read_artefact(SourceFile("artefact", artefact))
 
 
@@ -183,7 +183,7 @@ def _names(level: StealthLevel, fspa: Fspa) -> AxisNames:
 
 
 def _read_archive(data: bytes, name: str) -> dict[str, bytes]:
-    """Return the bytes of the arrays in the archive, by the names of the arrays."""
+    """Return the bytes of each array in the file with the content ``data``, by the array's name."""
     if len(data) > MAX_BYTES:
         raise _ERRORS.unreadable_error(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     try:
@@ -235,7 +235,10 @@ def _read_text(members: Mapping[str, bytes], array: str, name: str) -> str:
 
 
 def _read_arrays(members: Mapping[str, bytes], level: StealthLevel, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
-    """Read the arrays and check their shapes and ranges."""
+    """Read the arrays of an episode's file, and check their shapes and ranges.
+
+    ``members`` has the bytes of the arrays by name; messages call the file ``name``.
+    """
     arrays = {array.name: _read_array(members, array.name, name) for array in ARRAYS}
     actions = arrays["actions"]
     known = sizes(level, fspa, actions.shape[0] if actions.ndim else 0)
@@ -245,7 +248,7 @@ def _read_arrays(members: Mapping[str, bytes], level: StealthLevel, fspa: Fspa, 
 
 
 def _read_array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
-    """Read an array of any shape."""
+    """Read the array with the name ``array``, which may have any shape, from ``members``."""
     if array not in members:
         raise _ERRORS.broken_error(name, f"the array `{array}` is missing")
     try:
@@ -270,7 +273,7 @@ def _check_array(values: NDArray[Any], array: Array, shape: tuple[int, ...], nam
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """Raise TLT0822 unless all indices are in range, and the names are those of level and spec."""
+    """Raise TLT0822 if an index is out of range, or if names do not fit the level and the spec."""
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

@@ -27,7 +27,7 @@ class ArchiveError(ValueError):
 
 
 def read_members(data: bytes, names: Collection[str], most: int) -> dict[str, bytes]:
-    """Return the bytes of the files ``NAME.npy`` in an archive, for those of ``names`` that it has.
+    """Return the bytes of the file ``NAME.npy`` for each of ``names`` that an archive contains.
 
     Raises:
         ArchiveError: the archive is damaged, or these files have more than ``most`` bytes in all.

@@ -88,7 +88,7 @@ def summary_text(values: dict[str, Any]) -> str:
 
 
 def monitor_command(episode: Episode, trace: str) -> str:
-    """Return the command that judges the file ``trace`` with the params of the episode."""
+    """Return the shell command that judges the trace file ``trace`` with the episode's params."""
     words = ["tltlc", "monitor", f"SPEC.tltl:{episode.fspa.name}", trace]
     for param in episode.fspa.params:
         if param.name in episode.params:
