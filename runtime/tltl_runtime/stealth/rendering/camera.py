@@ -60,7 +60,7 @@ class Camera:
 def camera(level: StealthLevel, view: View, player: Point, aspect: float) -> Camera:
     """Return the camera of a view.
 
-    ``aspect`` is the picture's width over its height, ``player`` the position of the feet.
+    ``aspect`` is the picture's width over its height, ``player`` the position of the player's feet.
     ``third_person`` follows the player from the south; ``top_down`` and ``overview`` (from the
     south, oblique) show the entire level.
     """
@@ -85,9 +85,9 @@ def check_size(size: object) -> tuple[int, int]:
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
-    """Return for each pixel the vector from the camera to the point that it shows.
+    """Return for each pixel the vector from the camera towards what the pixel shows.
 
-    The vector ends at a depth of one metre, along the direction of view. The result is (height,
+    The part of each vector along the direction of view is one metre long. The result is (height,
     width, 3).
     """
     ahead, right, up = _axes(camera)
@@ -115,7 +115,7 @@ def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int)
 
 
 def _top_down(level: StealthLevel, aspect: float) -> Camera:
-    """Return a camera above the middle, so high that the floor and the tops of the walls fit."""
+    """Return a camera above the level, so high that the floor and the tops of the walls fit."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     needed = max(high[1] - low[1], (high[0] - low[0]) / aspect) * _MARGIN

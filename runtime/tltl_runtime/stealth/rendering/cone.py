@@ -41,7 +41,7 @@ class SightField:
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
     def visibility(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the values (n,) at positions (n, 2), in [0, 1].
+        """Return how well the enemy would see players at positions (n, 2): (n,), in [0, 1].
 
         At the borders of what the enemy sees, the values are interpolated.
         """
@@ -57,7 +57,7 @@ class SightField:
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Return for each offset ``x``, ``y`` from the eyes whether they would see a head there.
+        """Return for each offset ``x``, ``y`` from the enemy's eyes whether it sees a head there.
 
         ``head`` is the height of the head, in metres; ``boxes`` block the sight.
         """
@@ -77,7 +77,7 @@ class SightField:
 def _interpolate(
     table: NDArray[np.float32], row: NDArray[np.float32], column: NDArray[np.float32]
 ) -> NDArray[np.float32]:
-    """Interpolate a table bilinearly, so that shadows have soft edges."""
+    """Interpolate a table bilinearly at fractional rows and columns, so that shadows are soft."""
     rows, columns = table.shape
     row, column = row.clip(0, rows - 1.001), column.clip(0, columns - 1.001)
     i, j = row.astype(np.int32), column.astype(np.int32)

@@ -68,7 +68,7 @@ def frames(
 
 
 def _moment(episode: Episode, time: float) -> Moment:
-    """Return the number of decisions that are over at a time, and the snapshot at that time."""
+    """Return the number of time steps that are over at ``time``, and the snapshot at that time."""
     shots = episode.snapshots
     row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
     since = time - shots[row].time
@@ -108,7 +108,11 @@ def _draw_plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, in
 
 
 def _populate(picture: Image.Image, pixel: Pixel, level: StealthLevel, shot: Snapshot, colour: str) -> None:
-    """Draw the shut barriers, the movers, the enemies, and the player in ``colour``."""
+    """Draw what can move on a picture of the level's plan; the player gets this ``colour``.
+
+    These are the shut barriers, the movers, the enemies and the player. ``pixel`` converts a
+    position in the level to a pixel.
+    """
     draw = ImageDraw.Draw(picture)
     metre = pixel((1.0, 0.0, 0.0))[0] - pixel((0.0, 0.0, 0.0))[0]
     for barrier, is_open in zip(level.barriers, shot.open, strict=True):
@@ -172,7 +176,7 @@ def _add_strip(
 
 
 def _break_lines(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
-    """Break a text into lines for the strip, ``width`` pixels wide; cut off what does not fit."""
+    """Break a text into lines of ``width`` pixels for a film's strip; cut off what does not fit."""
     lines: list[str] = []
     while text and len(lines) < len(_LINES):
         line = text

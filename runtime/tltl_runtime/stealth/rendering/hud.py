@@ -35,7 +35,7 @@ _MOST_LINES: Final = 10
 
 @record
 class Bar:
-    """A bar that shows a named number in [0, 1]."""
+    """A bar in the head-up display that shows a named number in [0, 1]."""
 
     name: str
     value: float
@@ -44,7 +44,7 @@ class Bar:
 
 @record
 class Line:
-    """A line of text."""
+    """A line of text in the head-up display."""
 
     text: str
     tone: Tone = "plain"
@@ -65,7 +65,10 @@ class Hud:
 
 
 def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
-    """Return the display during play; ``info`` is that of the environment's last step or reset."""
+    """Return the head-up display during play.
+
+    ``info`` is that of the environment's last step or reset.
+    """
     bars = (
         Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
         Bar("stamina", snapshot.player.stamina, "plain"),
@@ -96,7 +99,7 @@ def end_screen(display: Hud, cause_of_end: Cause, file: str) -> Hud:
 
 
 def _clock(seconds: float, fspa: Fspa) -> str:
-    """Return the time as text, with the time left if the spec has a limit."""
+    """Return the game time as text, with the time left if the spec has a limit."""
     if fspa.limit_steps is None:
         return f"{seconds:.1f} s"
     return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * DECISION - seconds):.0f} s left"

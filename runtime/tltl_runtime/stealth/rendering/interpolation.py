@@ -1,4 +1,4 @@
-"""Interpolate the game between two decisions, for smooth motion."""
+"""Interpolate between two snapshots of the game, for smooth motion."""
 
 from __future__ import annotations
 

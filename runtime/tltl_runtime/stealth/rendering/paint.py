@@ -67,7 +67,7 @@ class Canvas:
         self.picture[rows, columns] = _BEHIND + share * (_BEHIND_TOP - _BEHIND)
 
     def shadow(self, feet: Point, radius: float) -> None:
-        """Paint a soft round shadow on the surface below the feet."""
+        """Paint a soft round shadow on the surface below a body's feet."""
         x, y, z = feet
         window = self._window([(x + a, y + b, z) for a in (-radius, radius) for b in (-radius, radius)])
         places = self.places[window]
@@ -108,7 +108,7 @@ class Canvas:
         self.picture[window] = self.picture[window] * (1 - share) + colour * share
 
     def _window(self, points: Sequence[Point]) -> Window:
-        """Return the rows and columns of the picture in which these points can be seen."""
+        """Return the smallest window of the picture that shows all these points."""
         positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
         left, top = np.floor(positions.min(axis=0)).astype(int)
         right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1

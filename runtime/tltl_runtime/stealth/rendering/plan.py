@@ -1,4 +1,4 @@
-"""The plan of a level from above, with the path of an episode coloured by state."""
+"""The plan of a level from above, with an episode's path coloured by the automaton's state."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     """Draw the plan of an episode as a PNG.
 
     The PNG is ``size`` (width, height) pixels large. By default, the plan has its
-    :func:`natural_size`. It shows the player's path, where the state changed, and how the episode
-    ended. The legend says what remained to be satisfied in each state.
+    :func:`natural_size`. It shows the player's path, where the automaton's state changed, and how
+    the episode ended. The legend says what remained to be satisfied in each state.
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]
@@ -122,10 +122,10 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
 def backdrop(
     level: StealthLevel, size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Return the plan without moving parts, (height, width, 3), and a function for positions in it.
+    """Return a picture of a level's plan without what moves, and a function for positions in it.
 
-    The function converts a position in the level to a pixel of the plan: x and y from the upper
-    left.
+    The picture is (height, width, 3). The function converts a position in the level to a pixel of
+    the picture: x and y from the upper left.
     """
     figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
     axes = level_axes(figure, level, moving=False, start=False)
@@ -146,7 +146,7 @@ def state_colour(state: int) -> str:
 
 
 def _add_reach(axes: Any, reach: Reach) -> None:
-    """Paint all cells red in which no ground can be reached."""
+    """Paint red on a plan all cells in which no player can reach ground to stand on."""
     rows, columns = reach.ground.shape
     west, south = reach.origin
     red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
@@ -174,12 +174,12 @@ def _legend(level: StealthLevel) -> list[Any]:
 
 
 def exit_mark() -> Line2D:
-    """Return the star of an exit, for legends."""
+    """Return the entry for exits in legends, a star."""
     return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
 
 
 def natural_size(level: StealthLevel) -> tuple[float, float]:
-    """Return the natural width and height of a level's plan, in inches.
+    """Return the width and height, in inches, that a level's plan has by default.
 
     An inch shows two metres, unless the level is so large that it is scaled down. The height has
     0.4 inches more than the level needs.
@@ -191,16 +191,16 @@ def natural_size(level: StealthLevel) -> tuple[float, float]:
 
 
 def _text_scale(figure: Figure, level: StealthLevel) -> float:
-    """Return the size of text, relative to that in a plan of natural size, from 0.6 to 1.
+    """Return how large text in a figure is, compared with a plan of :func:`natural_size`.
 
-    Small plans have smaller text.
+    The result is from 0.6 to 1: small plans have smaller text.
     """
     roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
 def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: bool = True) -> Any:
-    """Add axes to a figure, draw the level in them, and return them. Their unit is the metre.
+    """Draw a level in new axes of a figure, with the metre as the unit, and return the axes.
 
     With ``moving``, the plan shows the beginning: barriers are drawn as shut, and movers and
     enemies are named at their initial positions. With ``start``, it shows the player's start. If
@@ -281,7 +281,7 @@ def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "engl
     """Return the label of a state in the legend.
 
     It has the state's number and what remains to be satisfied, cut to ``letters`` characters. In
-    notations other than English, a settled verdict follows.
+    notations other than English, the verdict follows if it is settled.
     """
     automaton_state = fspa.states[state]
     text = label_text(fspa, state, notation)

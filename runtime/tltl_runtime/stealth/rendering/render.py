@@ -108,7 +108,7 @@ class Renderer:
         ]
 
     def _draw_bodies(self, eye: Camera) -> Canvas:
-        """Draw the bodies, the pattern of the floor, and the background."""
+        """Draw the bodies, the pattern of the floor and the background from the camera ``eye``."""
         width, height = self.width * self.samples, self.height * self.samples
         _, _, colours, depths, bodies = pybullet.getCameraImage(
             width,

@@ -57,7 +57,10 @@ class Obstacle:
 
 
 class Scene:
-    """The bodies of a level in a client of their own; ``pose`` moves them to match a snapshot."""
+    """The bodies of a level in a pybullet client of their own.
+
+    ``pose`` moves them to match a snapshot.
+    """
 
     def __init__(self, level: StealthLevel) -> None:
         self.level = level

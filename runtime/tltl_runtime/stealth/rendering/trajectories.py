@@ -34,8 +34,8 @@ _FAINTEST: Final = 0.12
 def draw_trajectories(level: StealthLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
     """Draw trajectories on the plan of a level, coloured by the automaton's state, as a PNG.
 
-    Marks show where episodes ended; those of successes are small. The legend says what remained to
-    be satisfied in each state, how many episodes had each end, and which mark is an exit.
+    Marks show where episodes ended; the marks of successes are small. The legend says what remained
+    to be satisfied in each state, how many episodes ended in each way, and which mark is an exit.
     """
     visited = sorted({int(state) for trajectory in trajectories for state in trajectory.states[:-1]})[:MOST_LISTED]
     ends = Counter(trajectory.end for trajectory in trajectories)

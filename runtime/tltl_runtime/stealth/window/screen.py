@@ -43,8 +43,8 @@ class Screen:
         """Draw a snapshot. The mode decides what happens with the picture:
 
         - ``rgb_array``: return the picture, (height, width, 3).
-        - ``human``: show it in the window for the time of a decision, and return None. If no window
-          can be opened, warn once and show nothing.
+        - ``human``: show it in the window for the length of a time step, and return None. If no
+          window can be opened, warn once and show nothing.
         - None: return None.
 
         Raises:
@@ -80,7 +80,7 @@ class Screen:
             self._cannot_open = True
 
     def close(self) -> None:
-        """Close the window and release the bodies; a later ``render`` creates them again."""
+        """Close the window and release the renderer; a later ``render`` creates them again."""
         if self._renderer is not None:
             self._renderer.close()
         if self._window is not None:

@@ -164,7 +164,7 @@ class Window:
     # The head-up display
 
     def _draw_side(self, hud: Hud) -> None:
-        """Draw the bars and lines to the left of the picture."""
+        """Draw the bars and lines of the head-up display to the left of the picture."""
         step = _LINE_HEIGHT
         self._surface.fill(_PANEL, (0, 0, self._side, self.size[1]))
         rows = [self._bar(bar.name, bar.value, bar.tone, step) for bar in hud.bars]
@@ -173,7 +173,7 @@ class Window:
             self._surface.blit(row, (step, step + index * round(step * 1.3)))
 
     def _draw_title(self, hud: Hud) -> None:
-        """Draw the title and the lines below it in the middle of the picture."""
+        """Draw the title of a head-up display, and the lines below it, in mid-picture."""
         pygame, step = self._pygame, _LINE_HEIGHT + 4
         rows = [self._text(hud.title, hud.tone, step * 2), *(self._text(line, "plain", step) for line in hud.below)]
         width = max(row.get_width() for row in rows) + 2 * step
