@@ -24,7 +24,10 @@ UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
-    """Create one static body of at most 16 boxes, in the group of the world."""
+    """Create one static body of at most 16 boxes, and return its id.
+
+    Its collision group is ``WORLD``.
+    """
     if len(boxes) > COMPOUND:
         raise ValueError(f"a compound contains at most {COMPOUND} boxes, not {len(boxes)}")
     shape = pybullet.createCollisionShapeArray(
@@ -37,9 +40,9 @@ def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
 
 
 def static_box(client: int, size: Point, place: Point) -> int:
-    """Create a static body of one box centred at ``place``, in the group of the world.
+    """Create a static body of one box centred at ``place``, and return its id.
 
-    It can be moved later.
+    Its collision group is ``WORLD``. The body can be moved later.
     """
     half = [side / 2 for side in size]
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
@@ -47,9 +50,9 @@ def static_box(client: int, size: Point, place: Point) -> int:
 
 
 def capsule(client: int, radius: float, height: float, place: Point) -> int:
-    """Create a dynamic capsule of 1 kg at ``place``, without rotation and friction.
+    """Create a dynamic capsule of 1 kg at ``place``, without rotation and friction; return its id.
 
-    It collides with nothing until :func:`set_filter` changes that.
+    The capsule collides with nothing until :func:`set_filter` changes that.
     """
     shape = pybullet.createCollisionShape(
         pybullet.GEOM_CAPSULE, radius=radius, height=height - 2 * radius, physicsClientId=client

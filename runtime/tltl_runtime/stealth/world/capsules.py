@@ -17,10 +17,10 @@ _STILL = (0.0, 0.0, 0.0)
 
 
 class Capsules:
-    """The two capsules, created at ``parking``; the standing one is active at first.
+    """The player's two capsules, a standing and a crouched one, of which one is active.
 
-    ``body`` is the Bullet id of the active capsule; ``height`` and ``radius`` are its size.
-    Positions are those of its feet.
+    Both are created at ``parking``; the standing one is active at first. ``body`` is the Bullet id
+    of the active capsule; ``height`` and ``radius`` are its size. Positions are those of the feet.
     """
 
     def __init__(self, client: int, kind: PlayerKind, parking: Point) -> None:
@@ -31,7 +31,10 @@ class Capsules:
         self._activate(False)
 
     def put(self, crouching: bool, feet: Point, velocity: Point) -> bool:
-        """Move the player to a pose; return whether this made the other capsule active."""
+        """Move the player to ``feet``, standing or crouching, with this ``velocity``.
+
+        Return whether this made the other capsule active.
+        """
         changed = self.body != self._bodies[crouching]
         if changed:
             self._activate(crouching)
@@ -45,7 +48,7 @@ class Capsules:
         pybullet.resetBaseVelocity(self.body, velocity, _STILL, self._client)
 
     def feet(self) -> Point:
-        """Return the position of the feet."""
+        """Return the position of the player's feet."""
         (x, y, z), _ = pybullet.getBasePositionAndOrientation(self.body, self._client)
         return x, y, z - self.height / 2
 

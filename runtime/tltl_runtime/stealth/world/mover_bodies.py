@@ -27,9 +27,9 @@ _HARDEST_PUSH = 8.0
 
 
 class MoverBody:
-    """The body of a mover; ``place`` is its current centre, ``box`` has its corners.
+    """The body of a mover in the physics; ``place`` is its current centre, ``box`` has its corners.
 
-    At first, it is where the mover is ``offset`` seconds after the start of its cycle.
+    At first, the body is where the mover is ``offset`` seconds after the start of its cycle.
     """
 
     def __init__(self, client: int, mover: Mover) -> None:
@@ -45,7 +45,7 @@ class MoverBody:
         self._reach = (width / 2 + reach, depth / 2 + reach, rise / 2 + reach)
 
     def put(self, clock: float) -> None:
-        """Move to the position that the mover has after ``clock`` seconds of its own time."""
+        """Move the body to where the mover is ``clock`` seconds after the start of its cycle."""
         self.clock = clock
         place = self._path.position_at(clock)
         if place != self.place:
@@ -54,7 +54,7 @@ class MoverBody:
             pybullet.resetBasePositionAndOrientation(self._body, place, UPRIGHT, self._client)
 
     def is_near(self, feet: Point, height: float) -> bool:
-        """Whether a player of this height can touch the mover within the next decision."""
+        """Whether a player at ``feet`` can touch the mover within the next time step."""
         (x, y, z), (a, b, c), (along, across, up) = feet, self.place, self._reach
         return abs(x - a) <= along and abs(y - b) <= across and c - up - height <= z <= c + up
 
