@@ -98,7 +98,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return level_params(self.level)
 
     def tltl_signals(self) -> Signals:
-        """Return the current signals of the game."""
+        """Return the current values of the game that specs can read, by signal name."""
         return self.game.signals()
 
     def reset(
@@ -106,7 +106,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ) -> tuple[dict[str, Any], dict[str, Any]]:
         """Begin an episode.
 
-        Without a ``seed``, draw one from the random generator that the last ``seed`` began.
+        Without a ``seed``, draw one from a random generator. The last given seed determines it.
         """
         self._check_open()
         super().reset(seed=seed)
@@ -115,7 +115,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._observer.look(self.game), {"cell": self._cell()}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Play one decision. The reward is always 0, and the episode never ends."""
+        """Play ``action`` for one time step. The reward is always 0; the episode never ends."""
         self._check_open()
         self.action = _action_list(action)
         self.game.step(self.action)
@@ -162,9 +162,9 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
 
 def _action_list(action: Any) -> list[int]:
-    """Return an action as a list.
+    """Return an action as a list of five whole numbers.
 
-    Raises ValueError unless the action has a valid number for each branch.
+    Raises ValueError unless the action is an element of MultiDiscrete([3, 3, 2, 2, 2]).
     """
     array = np.asarray(action)
     numbers: list[int] = array.tolist()

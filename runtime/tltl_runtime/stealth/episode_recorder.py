@@ -22,7 +22,7 @@ from tltlc.api import Diagnostic, Step, TltlError, fileio
 
 
 class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
-    """Records the current episode. Observations, rewards and infos pass through unchanged.
+    """A wrapper that records the current episode and changes no observation, reward or info.
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
     player's name in the recording. If there is a ``folder``, each finished episode is written into
@@ -63,7 +63,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Play one decision; record it unless the episode was already over.
+        """Take a step in the environment; record it unless the episode was already over.
 
         Raises:
             RuntimeError: there was no reset before.
@@ -87,7 +87,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
 
 
 class _EpisodeRows:
-    """The data of an episode that is still being played, with a row for each decision.
+    """The data of an episode that is still being played, with a row for each time step.
 
     ``snapshots`` and ``signals`` have one more row: the first is for the moment of the reset.
     """
@@ -109,7 +109,7 @@ class _EpisodeRows:
         step: Step,
         success: bool,
     ) -> None:
-        """Append a decision: its ``action``, and the state of the game and of the spec after it."""
+        """Append a row: an ``action``, and the state of the game and of the spec after it."""
         self.actions.append(action)
         self.snapshots.append(snapshot)
         self.signals.append(signals)
@@ -118,7 +118,7 @@ class _EpisodeRows:
         self.success = success
 
     def episode(self, judge: TltlEnv, player: str) -> Episode:
-        """Return the episode so far."""
+        """Return the episode so far; ``judge`` is the wrapper with its spec."""
         fspa, steps, count = judge.task.fspa, self.steps, len(self.steps)
         return Episode(
             level=self.level,
@@ -156,7 +156,7 @@ def _unwrapped_game(env: gymnasium.Env[Any, Any]) -> GameEnv:
 
 
 def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
-    """Return the outermost wrapper with a spec; raises TypeError if there is none."""
+    """Return the outermost :class:`TltlEnv` in ``env``; raises TypeError if there is none."""
     layer: gymnasium.Env[Any, Any] = env
     while not isinstance(layer, TltlEnv):
         if not isinstance(layer, gymnasium.Wrapper):

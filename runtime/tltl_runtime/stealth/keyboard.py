@@ -41,8 +41,8 @@ _FRAME_TIME: Final = 1 / 60
 class KeyboardPlayer:
     """Lets a person play episodes of ``env`` in ``window``, and passes them to ``recordings``.
 
-    ``renderer`` draws the frames, from ``view`` at first. Play ends when the person stops, or when
-    ``enough()`` is true after an episode.
+    ``renderer`` draws the frames; ``view`` is the first camera view. Play ends when the person
+    stops, or when ``enough()`` is true after an episode.
 
     ``recordings.save`` gets each episode once: at its end, when the person restarts, or when play
     stops for any reason, including an exception such as KeyboardInterrupt. ``recordings.keep`` gets
@@ -141,7 +141,7 @@ class KeyboardPlayer:
         self._window.show(self._renderer.frame(snapshot, self._view), display, names)
 
     def _save(self) -> str | None:
-        """Save the episode and return the name of its file; None if it has no unsaved decisions."""
+        """Save the episode and return the name of its file; None if nothing new has been played."""
         if not self._unsaved:
             return None
         file = self._recordings.save(self._env.episode)

@@ -1,4 +1,4 @@
-"""The simulation of one level, decision by decision, without a spec, a reward or an end.
+"""The simulation of one level, step by step, without a spec, a reward or an end of the episode.
 
 The same level, seed and actions give the same episode, bit for bit.
 """
@@ -26,8 +26,8 @@ class Simulation:
     level. The simulation continues at zero health: the spec decides when an episode is over.
 
     Raises:
-        WorldError: the start leaves the player no room, or the bodies differ from the level; from
-            ``step``: the player leaves the level.
+        WorldError: the start leaves the player no room, or the bodies in the physics differ from
+            the level; from ``step``: the player leaves the level.
     """
 
     def __init__(self, level: StealthLevel) -> None:
@@ -57,7 +57,7 @@ class Simulation:
         self.open = [False] * len(self.level.barriers)
 
     def step(self, action: Sequence[int]) -> None:
-        """Play one decision, :data:`~tltl_runtime.stealth.world.player.DECISION` seconds long.
+        """Play ``action`` for :data:`~tltl_runtime.stealth.world.player.DECISION` seconds.
 
         For each branch of :data:`~tltl_runtime.stealth.snapshot.CHOICES`, ``action`` has the index
         of a choice.
@@ -70,11 +70,11 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Seconds since the reset."""
+        """The game time, in seconds since the reset."""
         return self.steps * DECISION
 
     def signals(self) -> Signals:
-        """Return the current signals, by name.
+        """Return the current signals, the values of the game that specs can read, by name.
 
         A signal is computed when it is read, so read it before the next step.
         """

@@ -77,7 +77,7 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
 
 
 class StealthGame(Game[StealthLevel, Episode]):
-    """The stealth game."""
+    """The stealth game, with the interface that all games of this package have."""
 
     choices = CHOICES
     clock_s = DECISION
@@ -106,7 +106,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         check_fit(level, fspa, spec)
 
     def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
-        """Yield the entities and signals that ``sensors`` names and the level does not have."""
+        """Yield a text for each entity or signal that ``sensors`` names and the level lacks."""
         return missing_sensors(level, sensors)
 
     def landmarks(self, level: StealthLevel) -> dict[str, Point]:
@@ -167,7 +167,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return expert_episodes(env, seeds, careful=careful)
 
     def read_episode(self, path: Path) -> Episode:
-        """Read a recorded episode."""
+        """Read a recorded episode from a file."""
         return read_episode(path)
 
     def episode_from_bytes(self, data: bytes, name: str) -> Episode:
@@ -183,7 +183,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return summary_of(episode, index)
 
     def cause(self, episode: Episode) -> Cause:
-        """Find the cause of the end of an episode."""
+        """Return why an episode ended, for example which enemy killed the player."""
         return cause(episode)
 
     def observers(self, episode: Episode, begin_s: float, end_s: float) -> tuple[str, ...]:
