@@ -1,4 +1,4 @@
-"""The files that a spec is made of."""
+"""Find the files that a spec is made of: its own file and those that it imports."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ class Task:
     reward: RewardOptions = RewardOptions()
 
     def monitor(self) -> Monitor:
-        """Return a new monitor, before its first sample."""
+        """Return a new monitor that judges by this task, before its first sample."""
         return Monitor(self.fspa, self.params, self.reward)
 
 

@@ -158,7 +158,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
         """Return the result of ``signals``, which must have every signal of the spec.
 
-        ``when`` is for messages, such as "step 3".
+        ``when`` says in messages when that was, such as "step 3".
         """
         sample = self._signals(self.env)
         if not isinstance(sample, Mapping):
@@ -196,10 +196,10 @@ def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
 
 
 def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
-    """Return the space with the keys ``automaton``, shape (states,), and ``progress``, shape (1,).
+    """Return an observation space with two more keys, ``automaton`` and ``progress``.
 
-    A space that is not a Dict becomes the key ``observation``. Raises ValueError if the space has
-    one of the keys already.
+    Their shapes are (states,) and (1,). A space that is not a Dict becomes the key ``observation``.
+    Raises ValueError if the space already has one of the two keys.
     """
     inner = dict(space.spaces) if isinstance(space, spaces.Dict) else {"observation": space}
     conflicts = {"automaton", "progress"} & inner.keys()

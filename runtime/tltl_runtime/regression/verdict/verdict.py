@@ -76,7 +76,7 @@ class Judgement:
 
     ``certain`` is False if the verdict was only given because all episodes were played.
     ``rate_interval`` is the confidence interval of the pass rate. ``changes`` are the certain
-    changes of figures.
+    changes of progress and reward.
     """
 
     verdict: Verdict
@@ -91,7 +91,8 @@ def judge(
     """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
     ``before`` are the baseline's episodes, with the same seeds in the same order. ``episodes`` is
-    the most that may be played. ``error`` is the case's share of the suite's error.
+    the most that may be played. ``error`` is the greatest probability that a certain verdict is
+    wrong.
     """
     if len(now) < LEAST_EPISODES:
         return None

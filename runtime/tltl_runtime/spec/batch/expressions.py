@@ -57,7 +57,7 @@ class TensorExpressions:
         self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
 
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
-        """Return the values [expressions, N], and for each expression a mask [N] of failures.
+        """Return the expressions' values, [expressions, N], and for each a mask [N] of failures.
 
         The mask says in which environments the expression has no value; it is None for an
         expression that cannot fail. ``columns`` are the values of the signals, [signals, N].

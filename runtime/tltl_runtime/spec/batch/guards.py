@@ -57,10 +57,10 @@ class PrimeSets:
         return self._literals_of(rows, values).amin(1).amax(0)
 
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the number of the atom that bounds the robustness of the chosen sets, int64 [N].
+        """Return the number of the atom that decides how robust the chosen set is, int64 [N].
 
         It is the atom of the least literal in the most robust prime of the set; on ties, the first
-        one. It is -1 if the set has no primes, or if this prime has no literals.
+        one. The number is -1 if the set has no primes, or if this prime has no literals.
         """
         rows = self._rows.index_select(0, choice)
         literals = self._literals_of(rows, values)
@@ -147,7 +147,7 @@ class Transitions:
         self._guards = None if fits else PrimeSets([e.guard.primes for e in fspa.edges], self._atoms, device, -1.0)
 
     def edge(self, state: Tensor, truth: Tensor) -> Tensor:
-        """Return the numbers of the edges that are taken, int64 [N].
+        """Return the numbers of the edges that the N automata take, int64 [N].
 
         ``state`` has the states, int64 [N]; ``truth`` says which atoms hold, bool [atoms, N].
 
@@ -181,7 +181,7 @@ class Transitions:
     def _leaving_table(self) -> Tensor:
         """Return the edges that leave each state, int64 [most edges, states].
 
-        If a state has fewer edges, its first edge fills the remaining cells.
+        If a state has fewer edges than another one, its first edge fills the remaining cells.
         """
         leaving: list[list[int]] = [[] for _ in self._fspa.states]
         for number, edge in enumerate(self._fspa.edges):

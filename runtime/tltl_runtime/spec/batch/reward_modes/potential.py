@@ -29,7 +29,7 @@ class Reward:
         self._gamma = options.gamma
 
     def start(self, count: int) -> Tensor:
-        """Return the potential before the first sample."""
+        """Return the potential in each environment before its first sample."""
         return self._base[:1].repeat(count)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
