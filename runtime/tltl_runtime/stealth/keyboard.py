@@ -97,10 +97,10 @@ class KeyboardPlayer:
         return keys.restart and not keys.stop
 
     def _animate(self, before: Snapshot, after: Snapshot, display: Hud, start: float) -> Keys:
-        """Draw the motion between two snapshots until the current decision is over.
+        """Draw the motion between two snapshots until the current time step is over.
 
-        The decision started at ``start``, a time of ``monotonic()``. Draw at least one frame, even
-        if the decision is over by then. Return the keys that the person holds at the end.
+        The step started at ``start``, a time of ``monotonic()``. Draw at least one frame, even if
+        the step is over by then. Return the keys that the person holds at the end.
         """
         while True:
             self._show(interpolate(before, after, min(1.0, (monotonic() - start) / DECISION)), display)

@@ -133,7 +133,7 @@ class Exit:
 class Start:
     """The player's start pose; ``position`` is at the feet.
 
-    ``spread`` is the greatest distance by which an episode moves the start.
+    ``spread`` is the greatest distance by which an episode moves the start at random.
     """
 
     position: Point

@@ -61,7 +61,7 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         return file.shared_names(file.level_path(name), "overlays")
 
     def load_with_changes(self, name: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
-        """Load a level; return it with the descriptions of the variant's overlays."""
+        """Load a level in a variant; return it with the descriptions of the variant's overlays."""
         return file.level_and_changes(name, variant)
 
     def dependencies(self, name: str, variant: str) -> Iterator[Path]:

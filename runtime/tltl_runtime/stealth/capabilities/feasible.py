@@ -22,8 +22,8 @@ _LIFT_STEP: Final = 0.25
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return TLT0814 for each entity of a spec that no player can reach.
 
-    All of them are errors if nobody can meet the spec without these entities, else warnings. The
-    level must supply everything that the spec uses.
+    The diagnostics are errors if nobody can meet the spec without these entities, else warnings.
+    The level must supply everything that the spec uses.
     """
     unreachable = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
     if not unreachable:

@@ -91,7 +91,7 @@ def compute_reach(
 ) -> Reach:
     """Compute everything that a player may reach from any start of an episode.
 
-    ``lift`` is the greatest rise from one ground to the next, in metres, by default
+    ``lift`` says how much higher the player can get in one jump, in metres, by default
     :func:`highest_lift`. ``without`` names solids and barriers that are removed before the search.
 
     Raises:
@@ -285,7 +285,7 @@ class _Top:
 
 
 def _mover_top(mover: Mover, gravity: float) -> _Top:
-    """Return the top of a mover for all positions on its path."""
+    """Return where a player can stand on a mover, for all positions of the mover on its path."""
     lows = [min(point[axis] for point in mover.path) - mover.size[axis] / 2 for axis in range(3)]
     highs = [max(point[axis] for point in mover.path) + mover.size[axis] / 2 for axis in range(3)]
     swept = Box((lows[0], lows[1], lows[2]), (highs[0], highs[1], highs[2]))

@@ -29,7 +29,7 @@ def offered_signals(level: StealthLevel) -> dict[str, OfferedSignal]:
 def params(level: StealthLevel) -> dict[str, float]:
     """Return the values that a level defines for params of specs, by name.
 
-    There is one, ``level_size``: the length of the diagonal of the bounds, in metres.
+    There is one, ``level_size``: the length of the diagonal of the level's bounds, in metres.
     """
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 

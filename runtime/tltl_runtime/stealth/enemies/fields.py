@@ -1,4 +1,7 @@
-"""Arrays over all cells of a floor: neighbours, shortest paths, nearest cells, narrow places."""
+"""Arrays over the cells of a floor that enemies walk on.
+
+They tell neighbours, first moves of shortest paths, nearest cells, and narrow places.
+"""
 
 from __future__ import annotations
 

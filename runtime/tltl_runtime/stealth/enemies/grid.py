@@ -199,7 +199,7 @@ class Floor:
         return int(self._nearest[area][row, column])
 
     def standing_place(self, place: Place) -> Place:
-        """Return the place if an enemy can stand and move there, else the nearest cell's centre.
+        """Return ``place`` if an enemy can stand and move there, else the nearest cell's centre.
 
         Raises ValueError if the floor has no cell.
         """

@@ -1,7 +1,7 @@
 """Predict what the enemies will do, from what a player can see of them.
 
 There is a set of models for each enemy. A model is one of the game's own guards with the enemy's
-route and parameters, but with other random numbers. After each decision, only the models that did
+route and parameters, but with other random numbers. After each time step, only the models that did
 what the enemy did are kept, and copies of them replace the others. If no model did, all models are
 moved to the enemy's pose, and new goals are guessed for them.
 """

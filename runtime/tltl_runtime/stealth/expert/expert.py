@@ -29,10 +29,10 @@ class Expert:
     """A scripted player of ``env``, which is a TltlEnv over a GameEnv, or wrappers around one.
 
     Call ``reset`` after each reset of the environment, then ``act`` for each action. The expert
-    reads its goal from the automaton, and finds its route with the level and the snapshot. If a
-    shut barrier is in the way, the expert goes to a switch first. A ``careful`` expert avoids the
-    sight of enemies while its route is on the floor and passes no mover; elsewhere it ignores
-    enemies.
+    reads its goal from the automaton, and finds its route from the level and the visible state of
+    the game. If a shut barrier is in the way, the expert goes to a switch first. A ``careful``
+    expert avoids the sight of enemies while its route is on the floor and passes no mover;
+    elsewhere it ignores enemies.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:

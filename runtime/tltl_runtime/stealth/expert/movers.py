@@ -29,7 +29,7 @@ class Clocks:
         self._time = 0.0
 
     def see(self, snapshot: Snapshot) -> None:
-        """Update the clocks from a snapshot; call this after each decision."""
+        """Update the clocks from a snapshot; call this after each time step."""
         passed = snapshot.time - self._time
         self._time = snapshot.time
         for index, (path, place) in enumerate(zip(self._paths, snapshot.movers, strict=True)):
@@ -40,9 +40,9 @@ class Clocks:
             self._clocks[index] += elapsed
 
     def swept_boxes(self, first: int, last: int | None = None) -> list[Box]:
-        """Return the box that each mover sweeps from decision ``first`` to the end of ``last``.
+        """Return the box that each mover sweeps in the time steps ``first`` to ``last``.
 
-        Decisions are counted from now. By default, ``last`` is ``first``.
+        Time steps are counted from now. By default, ``last`` is ``first``.
         """
         boxes = []
         for mover, path, clock in zip(self._movers, self._paths, self._clocks, strict=True):

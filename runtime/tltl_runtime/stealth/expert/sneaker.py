@@ -133,7 +133,7 @@ class Sneaker:
         return price
 
     def _decisions_to(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
-        """Return how many decisions a walk from each place to the goal takes, ignoring enemies."""
+        """Return how many time steps a walk from each place to the goal takes, ignoring enemies."""
         key = (shut, goal)
         if key not in self._decisions_to_goals:
             if len(self._decisions_to_goals) >= _MOST_CACHED:

@@ -79,7 +79,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedPa
 
 
 def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each point of an enemy's route at which a solid leaves it no room."""
+    """Yield TLT0807 for each point of an enemy's route where a solid leaves the enemy no room."""
     for enemy in level.enemies:
         for point in enemy.route:
             if name := _first_overlap(_body_box(point, RADIUS), solids):

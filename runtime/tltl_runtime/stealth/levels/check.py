@@ -1,4 +1,4 @@
-"""Check the names in a level: specs must be able to use them, and references to find them."""
+"""Check the names in a level: specs must be able to use them, and what they refer to must exist."""
 
 from __future__ import annotations
 

@@ -97,8 +97,8 @@ def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any
 def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
     """Convert the arrays of a file to snapshots.
 
-    ``modes`` lists the modes of enemies. The indices into it in the array ``enemy_mode`` must be
-    valid.
+    ``modes`` lists the modes of enemies. The array ``enemy_mode`` has indices into this list, which
+    must be valid.
     """
     lists = {name: array.tolist() for name, array in arrays.items()}
     player = zip(

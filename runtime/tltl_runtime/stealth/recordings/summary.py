@@ -22,8 +22,8 @@ _INSTANT: Final = 1e-6
 def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
     """Return a summary of an episode as JSON data.
 
-    ``changes`` has a row for the start and for each change of state. The label in a row says, in
-    ``notation``, what remains to be satisfied in that state.
+    The key ``changes`` has a row for the start and for each change of the automaton's state. The
+    label in a row says, in ``notation``, what remains to be satisfied in that state.
     """
     level, fspa, result, reason = episode.level, episode.fspa, summary_of(episode), cause(episode)
     states = episode.states.tolist()
@@ -99,7 +99,7 @@ def monitor_command(episode: Episode, trace: str) -> str:
 def trace_csv(episode: Episode, start: float = 0.0, stop: float = inf) -> str:
     """Return the spec's signals from ``start`` to ``stop`` seconds as CSV, for ``tltlc monitor``.
 
-    The column ``step`` counts decisions from 1: the moment of the reset is not part of the trace.
+    The column ``step`` counts time steps from 1: the moment of the reset is not part of the trace.
     Numbers have enough digits to be read back bit for bit.
     """
     text = StringIO()

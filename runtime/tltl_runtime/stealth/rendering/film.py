@@ -55,8 +55,8 @@ def frames(
 ) -> Iterator[Picture]:
     """Yield one RGB picture of ``size`` (width, height) for each of ``times``.
 
-    ``times`` are rising seconds since the reset. At a time between two decisions, the positions of
-    bodies are interpolated, and the automaton is in the state of the earlier decision.
+    ``times`` are rising seconds since the reset. At a time between two snapshots, the positions of
+    bodies are interpolated, and the automaton is in the state of the earlier snapshot.
     """
     width, height = size
     font = ImageFont.truetype(str(_FONT), _TEXT)

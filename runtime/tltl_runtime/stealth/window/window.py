@@ -132,7 +132,7 @@ class Window:
         return Keys(action, restart, stop, view)
 
     def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
-        """Show a picture (height, width, 3), with names at their pixels and the head-up display."""
+        """Show a picture (height, width, 3), with entities' names in it and a head-up display."""
         pygame = self._pygame
         picture = pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), frame.shape[1::-1], "RGB")
         self._surface.blit(pygame.transform.smoothscale(picture, self.size), (self._side, 0))

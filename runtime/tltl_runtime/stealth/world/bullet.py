@@ -1,8 +1,8 @@
 """Import pybullet without the line that it prints on standard error.
 
-Programs may parse that output. Pybullet prints the line at its first import, from C. So all other
-modules import pybullet from here. If pybullet is not installed, importing this module raises
-TltlError, TLT0730.
+The line would disturb programs that parse standard error. Pybullet prints it at the first import,
+from C. So all other modules import pybullet from here. If pybullet is not installed, importing this
+module raises TltlError, TLT0730.
 """
 
 from __future__ import annotations
