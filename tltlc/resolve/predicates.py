@@ -79,7 +79,8 @@ def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int =
 def check_unused(binding: Binding, env: Env) -> None:
     """Instantiate a predicate with symbolic arguments, so that its body is checked even if nothing uses it.
 
-    The range is checked only if no parameter needs a number, because the range depends on the numbers.
+    Whether its value stays in its range is checked only if each parameter is an entity or has a
+    default: with a symbol in place of a number, the range of the value is unknown.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)

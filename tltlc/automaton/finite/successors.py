@@ -156,7 +156,10 @@ class Successors:
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the transition of a formula in negation normal form."""
+        """Return the transition of a formula in negation normal form.
+
+        It is a node of a decision diagram that says, for each letter, what remains to be done.
+        """
         known = self._of_formula
         result = known.get(formula)
         if result is not None:

@@ -66,7 +66,7 @@ def concatenate(parts: Sequence[Poses]) -> Poses:
 
 @record
 class _Boxes:
-    """The corners of boxes, [3, boxes] each."""
+    """Boxes as arrays [3, boxes] of x, y and z in metres: their lowest and their highest corners."""
 
     low: Floats
     high: Floats

@@ -26,9 +26,10 @@ little is left to find.
 class RecentEpisodes:
     """The last ``windows * episodes`` episodes of a training, in windows of ``episodes`` each.
 
-    ``limit_steps`` is the spec's limit; None if it has no limit. ``unbroken`` is the number of
-    successive episodes, up to the last one, that met the spec, at most ``windows * episodes``. A
-    failed confirmation of the policy resets it.
+    ``limit_steps`` is the spec's limit in steps; None if it has no limit. ``unbroken`` is the number
+    of successive episodes, up to the last one, that met the spec, at most ``windows * episodes``.
+    When it is that many, the training confirms the policy in fresh episodes; if the policy fails
+    there, ``unbroken`` starts at 0 again.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:

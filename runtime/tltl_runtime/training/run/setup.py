@@ -1,4 +1,6 @@
-"""Prepare a training: its folder, environments, demonstrations, initial policy and first search."""
+"""Prepare a training: its folder, environments, demonstrations, initial policy and the first
+search for ways to meet the spec.
+"""
 
 from __future__ import annotations
 

@@ -16,11 +16,11 @@ from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
-    """Return episode ``index`` of a case as JSON data.
+    """Return an episode as JSON data for the report page; ``index`` is its number within its case.
 
-    An episode of n steps has n + 1 rows of each value, but n rows of atoms. Lengths are in
-    centimetres on the map, angles in degrees, times in milliseconds, shares and robustness in
-    hundredths, progress in thousandths. The functions of
+    For an episode of n steps, each list has n + 1 values, the first before step 1; lists about atoms
+    have n. Lengths are in centimetres on the map, angles in degrees, times in milliseconds, health
+    and robustness in hundredths, progress in thousandths. The functions of
     :mod:`~tltl_runtime.regression.report.page.packing` encode the values.
     """
     assert isinstance(episode, Episode)
