@@ -56,7 +56,7 @@ class _MarginRange:
 
     @property
     def width(self) -> float:
-        """The greatest size of a margin; infinite if it overflows."""
+        """The size of the largest margin of this range: its upper end. Infinite if it overflows."""
         return self.most - self.least
 
     @property

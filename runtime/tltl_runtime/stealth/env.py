@@ -46,10 +46,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     element of MultiDiscrete([3, 3, 2, 2, 2]). The attribute ``action`` is the last action played.
     :class:`~tltl_runtime.stealth.observation.observation.Observer` describes the observations.
 
-    ``reset(seed=...)`` reproduces an episode bit for bit. ``game.seed`` is the seed of the current
-    episode; a reset without a seed draws one. A cell is a cube with sides of half a metre.
-    ``info["cell"]`` is the number of the cell that contains the player's feet, or -1 while the
-    player is in the air.
+    ``reset(seed=...)`` reproduces an episode bit for bit. A reset without a seed draws one. The
+    attribute ``game`` is the running game, and ``game.seed`` the seed of its episode. The level is
+    divided into cells, cubes with sides of half a metre. ``info["cell"]`` is the number of the cell
+    that contains the player's feet, or -1 while the player is in the air.
 
     With ``render_mode`` ``rgb_array``, :meth:`render` returns pictures of ``render_size`` (width,
     height), each from 16 to 4096 pixels. With ``human``, a window shows the episode in real time.

@@ -247,10 +247,12 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether just one item is large, and the current line has room up to its opening bracket.
+        """Whether a call may be laid out as ``f(1, g(`` in one line, with the arguments of ``g`` below it.
 
-        An example is ``clamp(min(``. An item is large if it is more than a name, a number or a
-        constant. The small items must fit on the line, too.
+        That is so if exactly one of its ``items`` is large, that is more than a name, a number or a
+        constant; if this item begins with an opening bracket; and if all other items and that bracket
+        fit into the ``room`` that is left in the line. ``end`` is the offset after the call's closing
+        bracket.
         """
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):

@@ -108,9 +108,9 @@ class Page:
         return False
 
     def find(self, sign: str, start: int) -> int:
-        """Return the offset of the first ``sign`` in the source that is not before ``start``.
+        """Return the offset of the first ``sign`` in the source at or after ``start``, -1 if there is none.
 
-        A ``sign`` in a comment that is not written yet does not count.
+        A ``sign`` in a comment does not count, unless the comment is already written to the page.
         """
         place = self._text.find(sign, start)
         for number in range(self._next, len(self._comments)):

@@ -38,7 +38,7 @@ def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int
 
 
 def template_clause(kind: str, text: str, atoms: int, accepts: int, not_vacuous: int) -> MinedClause:
-    """Return a clause that is an instance of the template ``kind``; the arguments are fields of :class:`MinedClause`."""
+    """Return a clause of the template ``kind``; the arguments are fields of :class:`MinedClause`."""
     return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, not_vacuous)
 
 

@@ -84,8 +84,8 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
 def seconds_left(report: TrainingReport, stop: Stop) -> float:
     """Estimate the seconds until a limit ends the training.
 
-    The estimate uses the mean speed since the end of the search, or since the start without a
-    search.
+    The estimate uses the mean speed so far. If the training began with a search for ways to meet the
+    spec, the time of that search does not count.
     """
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))

@@ -164,7 +164,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
 
 
 def _other_kind_of_file(table: CheckedTable) -> str | None:
-    """Return what kind of file a table is from, instead of a suite, by its keys; None if unknown."""
+    """Guess from its keys what kind of file a table was read from, if it is not a suite; None if unknown."""
     kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
 

@@ -1,4 +1,6 @@
-"""Prepare a training: its folder, environments, demonstrations, initial policy and the first
+"""Prepare a training.
+
+This makes its folder, environments and demonstrations, reads its initial policy, and runs the first
 search for ways to meet the spec.
 """
 
