@@ -50,8 +50,12 @@ def pytest_configure(config: pytest.Config) -> None:
     for name in LEFT_OUT:
         os.environ.pop(name, None)
     os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
-    # Use a new cache: results of earlier runs, and of tests in other processes, must not be used.
-    os.environ["TLTLC_CACHE_DIR"] = _cache
+    os.environ.update(
+        # Use a new cache: results of earlier runs, and of tests in other processes, must not be used.
+        TLTLC_CACHE_DIR=_cache,
+        # Ray would start its workers with niceness 15: beside busy processes, they then take minutes to start.
+        RAY_worker_niceness="0",
+    )
     # A process in the background of a shell ignores Ctrl-C, and one under `nohup` ignores SIGHUP.
     for number, handler in HANDLERS.items():
         if signal.getsignal(number) is signal.SIG_IGN:
