@@ -90,7 +90,7 @@ def test_an_entry_that_is_a_file_and_a_folder_is_rejected(inside: Path, tltlc: R
     name = revision("bad", tree((PLAIN, b"a.tltl", blob), (FOLDER, b"a.tltl", below)))
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
-    assert "two entries for `a.tltl/b.tltl`" in outcome.err
+    assert "contains `a.tltl` and `a.tltl/b.tltl`, which cannot both exist" in outcome.err
 
 
 def test_the_help_for_names_that_differ_in_case_suggests_linux(
@@ -105,7 +105,7 @@ def test_the_help_for_names_that_differ_in_case_suggests_linux(
     outcome = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert outcome.status == 3
     assert outcome.err == (
-        "error[TLT0009]: the revision `capitals` contains `Leave.tltl` and `leave.tltl`, which are the same path "
+        "error[TLT0009]: the revision `capitals` contains `Leave.tltl` and `leave.tltl`, which cannot both exist "
         "in this file system\n"
         "  help: run this on Linux, or name a revision in which the file has another name\n"
     )
