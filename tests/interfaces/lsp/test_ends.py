@@ -65,6 +65,34 @@ def test_the_server_and_its_processes_end(
     client.wait_for_processes()
 
 
+_SIGNAL_IN_ANOTHER_THREAD = """
+import signal, threading, time
+from tltlc.interfaces.cli.main import main
+
+def send():
+    # Wait until the main thread sleeps, which it does while it waits for the editor.
+    path = "/proc/self/task/%d/stat" % threading.main_thread().native_id
+    while signal.getsignal(signal.SIGTERM) is signal.SIG_DFL or open(path).read().rpartition(")")[2].split()[0] != "S":
+        time.sleep(0.01)
+    time.sleep(0.2)
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+
+threading.Thread(target=send, daemon=True).start()
+main(["lsp"])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the state of a thread in /proc")
+def test_a_signal_that_does_not_interrupt_the_main_thread_ends_the_server() -> None:
+    process = subprocess.Popen([sys.executable, "-c", _SIGNAL_IN_ANOTHER_THREAD], stdin=subprocess.PIPE)
+    try:
+        assert process.wait(HANG_S) == 128 + signal.SIGTERM
+    finally:
+        process.kill()
+        assert process.stdin is not None
+        process.stdin.close()
+
+
 def test_a_closed_pipe_ends_the_server(client: Client, tmp_path: Path) -> None:
     uri = client.open(tmp_path / "a.tltl", "signal a: bool\n")
     client.diagnostics(uri)

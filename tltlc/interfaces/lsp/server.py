@@ -6,6 +6,8 @@ import asyncio
 import logging
 import os
 import signal
+import socket
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -66,6 +68,7 @@ async def _listen(server: EditorSession, file: BufferedReader) -> None:
     """Read messages from ``file``, and handle them until the input ends."""
     frames, protocol = Frames(), cast("Protocol", server.protocol)
     loop = asyncio.get_running_loop()
+    _wake_at_signals(loop)
     data = b"?"
     while data:
         data = await loop.run_in_executor(server.thread_pool, file.read1, _READ_SIZE)
@@ -77,6 +80,22 @@ async def _listen(server: EditorSession, file: BufferedReader) -> None:
                 server.report_server_error(error, JsonRpcException)
             # Let handlers run, for example to send an answer, before the next message is handled.
             await asyncio.sleep(0)
+
+
+def _wake_at_signals(loop: asyncio.AbstractEventLoop) -> None:
+    """Let each signal wake the event loop, so that Python calls the signal's handler at once.
+
+    Otherwise, a signal that arrives just before the loop begins to wait, or in another thread, has
+    no effect until the editor sends the next message. On Windows, the loop of asyncio does this
+    itself.
+    """
+    if sys.platform == "win32":
+        return
+    waking, written = socket.socketpair()
+    waking.setblocking(False)
+    written.setblocking(False)
+    signal.set_wakeup_fd(written.detach(), warn_on_full_buffer=False)
+    loop.add_reader(waking, waking.recv, _READ_SIZE)
 
 
 class _EditorOutput:
