@@ -1,4 +1,4 @@
-"""The network of a policy as a module of torch: trainings and exports use it."""
+"""The network of a policy as a module of torch, which exports use, and weights as arrays for policies."""
 
 from __future__ import annotations
 

@@ -56,10 +56,10 @@ def test_the_line_at_the_end_of_the_search() -> None:
     assert search_result_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
 
 
-@pytest.mark.parametrize(("ways", "said"), [(1, "1 way is"), (2, "2 ways are")])
-def test_the_end_of_the_search(ways: int, said: str) -> None:
+@pytest.mark.parametrize(("ways", "ways_text"), [(1, "1 way is"), (2, "2 ways are")])
+def test_the_end_of_the_search(ways: int, ways_text: str) -> None:
     settings = replace(read_settings().exploration, ways=ways, steps=640)
-    assert search_end(settings) == f"The search ends when {said} found, at the latest after 640 steps."
+    assert search_end(settings) == f"The search ends when {ways_text} found, at the latest after 640 steps."
 
 
 def test_the_nearer_limit_determines_the_remaining_time(stop: Stop) -> None:

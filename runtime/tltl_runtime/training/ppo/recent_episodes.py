@@ -66,7 +66,7 @@ class RecentEpisodes:
     def score(self) -> Score | None:
         """The pass rate, mean progress and mean reward of the last ``episodes`` episodes.
 
-        None until so many episodes have ended.
+        It is None as long as fewer than ``episodes`` episodes have ended.
         """
         if len(self._episodes) < self._window_episodes:
             return None

@@ -142,8 +142,9 @@ def test_the_suggestion_keeps_the_rest_of_the_clause(clause: str, advice: str) -
 
 def test_the_suggestion_fits_a_spec_or_let_without_clauses() -> None:
     for text in ("spec s = G F a", "let often = G F a spec s = often"):
-        (finding,) = (found for found in findings_in(f"{SIGNALS}{text}") if found.diagnostic.code == "TLT0424")
-        assert (finding.diagnostic.help or "").endswith("if once is enough, write `eventually a`")
+        diagnostics = [finding.diagnostic for finding in findings_in(f"{SIGNALS}{text}")]
+        (diagnostic,) = (diagnostic for diagnostic in diagnostics if diagnostic.code == "TLT0424")
+        assert (diagnostic.help or "").endswith("if once is enough, write `eventually a`")
 
 
 def test_lets_are_checked_if_all_specs_are_finite() -> None:
