@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from functools import cache
 
-from threadpoolctl import threadpool_limits
+# NumPy loads its library for matrix products when it is imported, so `_loaded_libraries` finds this library.
+import numpy as np  # noqa: F401
+from threadpoolctl import ThreadpoolController
 
 
 def blas_threads(count: int) -> AbstractContextManager[object]:
     """Let NumPy multiply matrices in ``count`` threads within this context."""
-    limits: AbstractContextManager[object] = threadpool_limits(count, "blas")
+    limits: AbstractContextManager[object] = _loaded_libraries().limit(limits=count, user_api="blas")
     return limits
+
+
+@cache
+def _loaded_libraries() -> ThreadpoolController:
+    """Find the libraries of this process that compute in threads. This takes 10 ms, once per process."""
+    return ThreadpoolController()

@@ -11,15 +11,17 @@ keys of the outer object, in place of an inner object. The inner fields must not
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from math import isfinite
+from operator import attrgetter
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from tltlc.api import MissingFieldsError
 
 T = TypeVar("T")
+_Read = Callable[[object], object]
 
 _PLAIN = {str: "a text", bool: "true or false", int: "a whole number", float: "a number", NoneType: "null"}
 
@@ -28,14 +30,28 @@ class RecordJsonError(ValueError):
     """Raised for JSON that does not fit a record; the message says where, and what was expected."""
 
 
+class _Misfit(Exception):
+    """Raised for a value that does not fit; ``problem`` follows the place of the value in the message.
+
+    ``place`` has the parts of the place, such as ``.name`` and ``[3]``, innermost first. Each caller adds its own part.
+    """
+
+    def __init__(self, problem: str) -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.place: list[str] = []
+
+
 def to_json(value: object) -> Any:
     """Return the JSON data, for ``json.dumps``, of a record, a tuple of records or a plain value."""
-    names = getattr(type(value), "__match_args__", None)
-    if names is not None:
-        inlined = _inlined(type(value))
-        inner = {key: name for name, keys in inlined.items() for key in keys}
-        keys = [key for name in names for key in inlined.get(name, (name,))]
-        return {key: to_json(getattr(getattr(value, inner[key]) if key in inner else value, key)) for key in keys}
+    kind: Any = type(value)
+    if kind in _PLAIN:
+        return value
+    if kind is tuple or kind is list:
+        return [to_json(item) for item in cast("tuple[object, ...]", value)]
+    getters = _getters(kind)
+    if getters is not None:
+        return {key: to_json(get(value)) for key, get in getters}
     if isinstance(value, Mapping):
         return {name: to_json(item) for name, item in value.items()}
     return [to_json(item) for item in value] if isinstance(value, (tuple, list)) else value
@@ -51,84 +67,146 @@ def from_json(kind: type[T], data: object, where: str, **known: object) -> T:
     Raises:
         RecordJsonError: the JSON does not fit.
     """
-    return cast(T, _record(kind, data, where, known) if known else _value(kind, data, where))
+    try:
+        return cast(T, _read_record(kind, data, known) if known else _reader(cast(Any, kind))(data))
+    except _Misfit as misfit:
+        place = where + "".join(reversed(misfit.place))
+        raise RecordJsonError(f"`{place}`{misfit.problem}") from None
 
 
-def _value(kind: Any, data: object, where: str) -> object:
+@cache
+def _reader(kind: Any) -> _Read:
+    """Return the function that reads values of type ``kind``; it raises _Misfit."""
     origin = get_origin(kind)
     if origin is Literal:
-        if isinstance(data, str) and data in get_args(kind):
-            return data
-        raise _mismatch_error(where, "one of " + ", ".join(map(repr, get_args(kind))), data)
+        return _literal_reader(get_args(kind))
     if origin is UnionType:
-        return None if data is None else _value(next(arg for arg in get_args(kind) if arg is not NoneType), data, where)
+        read = _reader(next(arg for arg in get_args(kind) if arg is not NoneType))
+        return lambda data: None if data is None else read(data)
     if origin is tuple:
-        return _tuple(get_args(kind), data, where)
+        return _tuple_reader(get_args(kind))
     if origin is Mapping:
-        inner = get_args(kind)[1]
-        return {name: _value(inner, item, f"{where}.{name}") for name, item in _object(data, where).items()}
+        return _mapping_reader(_reader(get_args(kind)[1]))
     if kind is Any:
-        return _any_value(data, where)
+        return _read_any
+    if kind is float:
+        return _read_float
     if kind in _PLAIN:
-        return _plain_value(kind, data, where)
-    return _record(kind, data, where, {})
+        return _plain_reader(kind)
+    return lambda data: _read_record(kind, data, {})
 
 
-def _plain_value(kind: type, data: object, where: str) -> object:
-    if kind is float and type(data) is int and abs(data) < 2**53:
-        return float(data)
-    if type(data) is kind and _fits(data):
+def _literal_reader(texts: tuple[str, ...]) -> _Read:
+    def read(data: object) -> object:
+        if isinstance(data, str) and data in texts:
+            return data
+        raise _mismatch("one of " + ", ".join(map(repr, texts)), data)
+
+    return read
+
+
+def _plain_reader(kind: type) -> _Read:
+    def read(data: object) -> object:
+        if type(data) is kind and _fits(data):
+            return data
+        raise _mismatch(_PLAIN[kind], data)
+
+    return read
+
+
+def _read_float(data: object) -> object:
+    if type(data) is float and isfinite(data):
         return data
-    raise _mismatch_error(where, _PLAIN[kind], data)
+    if type(data) is int and abs(data) < 2**53:
+        return float(data)
+    raise _mismatch(_PLAIN[float], data)
 
 
 def _fits(data: object) -> bool:
-    """Whether a plain value is finite and, if it is an integer, has at most 64 bits."""
-    if isinstance(data, int):
-        return -(2**63) <= data < 2**63
-    return not isinstance(data, float) or isfinite(data)
+    """Whether a plain value, if it is an integer, has at most 64 bits."""
+    return not isinstance(data, int) or -(2**63) <= data < 2**63
 
 
-def _any_value(data: object, where: str) -> object:
-    """Return JSON data of any kind; raise RecordJsonError for numbers that are not finite.
-
-    ``json.loads`` accepts such numbers.
-    """
+def _read_any(data: object) -> object:
+    """Return JSON data of any kind. Raise _Misfit for numbers that are not finite: ``json.loads`` accepts them."""
     if isinstance(data, dict):
-        return {name: _any_value(item, f"{where}.{name}") for name, item in data.items()}
+        return _read_mapping(_read_any, data)
     if isinstance(data, list):
-        return [_any_value(item, f"{where}[{index}]") for index, item in enumerate(data)]
-    return _plain_value(float, data, where) if isinstance(data, float) else data
+        return list(_read_items(_read_any, data))
+    return _read_float(data) if isinstance(data, float) else data
 
 
-def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ...]:
-    if not isinstance(data, list):
-        raise _mismatch_error(where, "a list", data)
+def _mapping_reader(read: _Read) -> _Read:
+    return lambda data: _read_mapping(read, _object(data))
+
+
+def _read_mapping(read: _Read, data: dict[str, object]) -> dict[str, object]:
+    values, name = {}, ""
+    try:
+        for name, item in data.items():
+            values[name] = read(item)
+    except _Misfit as misfit:
+        misfit.place.append(f".{name}")
+        raise
+    return values
+
+
+def _tuple_reader(kinds: tuple[Any, ...]) -> _Read:
     if kinds[-1] is Ellipsis:
-        kinds = kinds[:1] * len(data)
-    if len(data) != len(kinds):
-        values = f"{len(data)} value{'s' * (len(data) != 1)}"
-        raise RecordJsonError(f"`{where}` has {values}, but {len(kinds)} were expected")
-    pairs = enumerate(zip(kinds, data, strict=True))
-    return tuple(_value(kind, item, f"{where}[{index}]") for index, (kind, item) in pairs)
+        read_item = _reader(kinds[0])
+        return lambda data: _read_items(read_item, _list(data))
+    readers = tuple(map(_reader, kinds))
+
+    def read(data: object) -> object:
+        items = _list(data)
+        if len(items) != len(readers):
+            values = f"{len(items)} value{'s' * (len(items) != 1)}"
+            raise _Misfit(f" has {values}, but {len(readers)} were expected")
+        values_read: list[object] = []
+        try:
+            for read_item, item in zip(readers, items, strict=True):
+                values_read.append(read_item(item))
+        except _Misfit as misfit:
+            misfit.place.append(f"[{len(values_read)}]")
+            raise
+        return tuple(values_read)
+
+    return read
 
 
-def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) -> object:
-    kinds = {name: field_kind for name, field_kind in _fields(kind).items() if name not in known}
-    unknown = _object(data, where).keys() - kinds.keys()
+def _read_items(read: _Read, items: list[object]) -> tuple[object, ...]:
+    values: list[object] = []
+    try:
+        values.extend(map(read, items))
+    except _Misfit as misfit:
+        misfit.place.append(f"[{len(values)}]")
+        raise
+    return tuple(values)
+
+
+def _read_record(kind: Any, data: object, known: Mapping[str, object]) -> object:
+    readers, items = _field_readers(kind), _object(data)
+    unknown = items.keys() - (readers.keys() - known.keys() if known else readers.keys())
     if unknown:
-        raise RecordJsonError(f"`{where}` has an unknown key `{min(unknown)}`")
-    values = {name: _value(kinds[name], item, f"{where}.{name}") for name, item in _object(data, where).items()}
+        raise _Misfit(f" has an unknown key `{min(unknown)}`")
+    values: dict[str, object] = {}
+    name = ""
+    try:
+        for name, item in items.items():
+            values[name] = readers[name](item)
+    except _Misfit as misfit:
+        misfit.place.append(f".{name}")
+        raise
     missing = _gather_inlined(kind, values)
     try:
         instance: object = kind(**values, **known)
     except ValueError as error:
-        raise RecordJsonError(f"`{where}`: {error}") from None
+        raise _Misfit(f": {error}") from None
     except MissingFieldsError as error:
         missing += error.names
     if missing:
         keys = ", ".join(f"`{key}`" for key in missing)
-        raise RecordJsonError(f"`{where}` lacks the key{'s' * (len(missing) > 1)} {keys}")
+        raise _Misfit(f" lacks the key{'s' * (len(missing) > 1)} {keys}")
     return instance
 
 
@@ -152,10 +230,27 @@ def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
     return missing
 
 
-def _object(data: object, where: str) -> dict[str, object]:
+def _object(data: object) -> dict[str, object]:
     if isinstance(data, dict):
         return data
-    raise _mismatch_error(where, "an object", data)
+    raise _mismatch("an object", data)
+
+
+def _list(data: object) -> list[object]:
+    if isinstance(data, list):
+        return data
+    raise _mismatch("a list", data)
+
+
+@cache
+def _getters(kind: Any) -> tuple[tuple[str, Callable[[object], object]], ...] | None:
+    """Return the keys of a record in JSON, each with the function that gets its value; None for other types."""
+    names = getattr(kind, "__match_args__", None)
+    if names is None:
+        return None
+    inlined = _inlined(kind)
+    paths = {key: f"{name}.{key}" if name in inlined else name for name in names for key in inlined.get(name, (name,))}
+    return tuple((key, attrgetter(path)) for key, path in paths.items())
 
 
 @cache
@@ -165,15 +260,15 @@ def _hints(kind: Any) -> Mapping[str, Any]:
 
 
 @cache
-def _fields(kind: Any) -> Mapping[str, Any]:
-    """Return the types of a record's keys in JSON, in order."""
+def _field_readers(kind: Any) -> Mapping[str, _Read]:
+    """Return the functions that read the values of a record's keys in JSON, in order."""
     hints, inlined = _hints(kind), _inlined(kind)
-    fields: dict[str, Any] = {}
+    readers: dict[str, _Read] = {}
     for name in kind.__match_args__:
         inner = _hints(hints[name]) if name in inlined else hints
-        fields |= {key: inner[key] for key in inlined.get(name, (name,))}
-    return fields
+        readers |= {key: _reader(inner[key]) for key in inlined.get(name, (name,))}
+    return readers
 
 
-def _mismatch_error(where: str, expected: str, data: object) -> RecordJsonError:
-    return RecordJsonError(f"`{where}` is {data!r:.60}, but {expected} was expected")
+def _mismatch(expected: str, data: object) -> _Misfit:
+    return _Misfit(f" is {data!r:.60}, but {expected} was expected")

@@ -205,14 +205,14 @@ def busy(ray_here: None) -> Iterator[Any]:
     """An actor that occupies all cores of the cluster."""
     import ray
 
+    # A local class travels by value. For one of this module, the actor's process would import the module, with torch.
+    class Busy:
+        pass
+
     actor = ray.remote(num_cpus=CORES)(Busy).remote()
     ray.get(actor.__ray_ready__.remote())
     yield actor
     ray.kill(actor)
-
-
-class Busy:
-    """An actor that does nothing."""
 
 
 @needs_ray

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 from typing import Final
@@ -125,6 +126,12 @@ def shared_names(level: Path, folder: str) -> tuple[str, ...]:
     return tuple(sorted({path.stem for place in places for path in place.glob("*.toml")}))
 
 
+@lru_cache(maxsize=64)
+def _known_tree(source: SourceFile) -> Tree:
+    """Return the tree of a text, and keep it: a run loads levels often, and parsing takes most of the time."""
+    return read_tree(source)
+
+
 class _Loading:
     """The state of loading a level file: the files read so far, and the diagnostics."""
 
@@ -217,7 +224,7 @@ class _Loading:
         # Git may convert line ends; the hash must not depend on that.
         text = source.text.replace("\r\n", "\n")
         self.files.append((name, hashlib.sha256(text.encode()).hexdigest()))
-        return Entry(read_tree(source), Label(source, _first_line(source)))
+        return Entry(_known_tree(source), Label(source, _first_line(source)))
 
     def _variants(self) -> dict[str, tuple[str, ...]]:
         """Return the overlays of each variant; by default only ``v0``, without overlays."""
