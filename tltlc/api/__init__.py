@@ -1,7 +1,7 @@
 """The names of the compiler that other programs, such as the runtime, may import.
 
 Import them from here and from nowhere else in ``tltlc``, because other modules may move. This
-package has the classes and functions that most programs need. Its eight modules have more; each
+package has the classes and functions that most programs need. Its nine modules have more; each
 answers a question:
 
 - ``cli``: how does a command take options, show diagnostics and choose its exit status?
@@ -12,6 +12,7 @@ answers a question:
 - ``ranges``: which values can an expression take?
 - ``specs``: what types do signals have, and where is the standard library?
 - ``syntax``: what does a ``.tltl`` file declare?
+- ``traces``: is a recorded trace accepted, and why not?
 
 Importing this package imports no other module. The module of a name is imported when the name is
 first used.
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from tltlc.api import ranges as ranges
     from tltlc.api import specs as specs
     from tltlc.api import syntax as syntax
+    from tltlc.api import traces as traces
     from tltlc.automaton.fspa import Fspa as Fspa
     from tltlc.automaton.fspa import Implicant as Implicant
     from tltlc.automaton.fspa import Notation as Notation
@@ -115,6 +117,7 @@ __all__ = [
     "replace",
     "specs",
     "syntax",
+    "traces",
     "workflow_command",
 ]
 

@@ -18,7 +18,7 @@ from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.formulas import formula
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.judge import Judge
-from tltlc.tools.judge.verdict import Cause, TraceVerdict
+from tltlc.tools.judge.verdict import Cause, TraceDetails, TraceVerdict
 
 LAVA = """
 clock 10 Hz
@@ -242,3 +242,56 @@ def _episode(fspa: Fspa, samples: list[dict[str, float]]) -> TraceOutcome:
         if step.done:
             break
     return TraceOutcome(monitor.success, step.verdict, number, step.progress, total)
+
+
+# --- details --------------------------------------------------------------------------------------
+
+
+def _details(*rows: str, episodes: bool = False) -> TraceDetails:
+    judged = Judge(FSPA, CLAUSES, episodes=episodes, details=True).judge("trace", _trace(rows))
+    assert judged.verdict is not None
+    assert judged.verdict.details is not None
+    return judged.verdict.details
+
+
+def test_verdicts_have_no_details_unless_asked_for() -> None:
+    judged = Judge(FSPA, CLAUSES).judge("trace", _trace(["0,0,0,1"]))
+    assert judged.verdict is not None
+    assert judged.verdict.details is None
+
+
+def test_the_details_have_the_states_and_the_nearest_sample() -> None:
+    """Before the violation, the trace waits for ``out``; no sample of this stay comes nearer than the others."""
+    details = _details("0,0,0,1", "0,1,0,1", "0,1,0,1", "0,1,0,9", "0,1,1,1")
+    (start, at_start), (waiting, since), (violated, at) = details.arrivals
+    assert (start, at_start, since, at) == (0, 0, 2, 4)
+    assert FSPA.states[violated].verdict == "violated"
+    assert details.unmet == waiting
+    assert details.nearest is not None
+    assert (FSPA.atoms[details.nearest.atom].name, details.nearest.wanted, details.nearest.row) == ("out", True, 0)
+
+
+def test_an_accepted_trace_has_no_nearest_sample() -> None:
+    details = _details("0,1,0,1", "0,0,1,1")
+    assert details.nearest is None
+    assert FSPA.states[details.unmet].accepting
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_the_arrivals_are_those_of_the_monitor(part: int) -> None:
+    """Both ways of running a trace, step by step and generated, report the states that the monitor enters."""
+    random = Random(part)
+    rows = [",".join(str(int(random.random() < share)) for share in (0.02, 0.1, 0.1)) + ",1" for _ in range(40)]
+    monitor = Monitor(FSPA)
+    states = [0, *(monitor.step(sample).state for sample in _samples(rows))]
+    expected = tuple((state, at) for at, state in enumerate(states) if at == 0 or states[at - 1] != state)
+    judge = Judge(FSPA, CLAUSES, details=True)
+    for _ in range(6):
+        judged = judge.judge("trace", _trace(rows))
+        assert judged.verdict is not None
+        assert judged.verdict.details is not None
+        assert judged.verdict.details.arrivals == expected
+
+
+def _samples(rows: Iterable[str]) -> Iterable[dict[str, float]]:
+    return read_trace(io.BytesIO(_trace(rows)), "trace", FSPA.signals, None)

@@ -12,6 +12,7 @@ from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.guards import holds, prime_robustness
 from tltlc.monitor.monitor import Monitor
+from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.sample_times import times_fit
 from tltlc.monitor.samples import MonitorError, Samples
@@ -19,7 +20,7 @@ from tltlc.monitor.traces import Sample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
-from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceVerdict
+from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceDetails, TraceVerdict
 
 _MOST_JOINT: Final = 50
 """At most this many automata of several clauses are kept."""
@@ -32,11 +33,13 @@ class Judge:
     :class:`~tltlc.tools.judge.verdict.Cause` in the result names those of ``clauses`` that the
     trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
     ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
-    limit do not count.
+    limit do not count. With ``details``, verdicts say how traces moved through the automaton.
     """
 
-    def __init__(self, fspa: Fspa, clauses: Clauses | None = None, *, episodes: bool = False) -> None:
-        self._fspa, self._clauses, self._episodes = fspa, clauses, episodes
+    def __init__(
+        self, fspa: Fspa, clauses: Clauses | None = None, *, episodes: bool = False, details: bool = False
+    ) -> None:
+        self._fspa, self._clauses, self._episodes, self._with_details = fspa, clauses, episodes, details
         self._runner = TraceRunner(fspa, episodes=episodes)
         self._clause_runners = [TraceRunner(part.fspa) for part in clauses.parts] if clauses else []
         self._joint_runners: dict[tuple[int, ...], TraceRunner | None] = {}
@@ -65,8 +68,21 @@ class Judge:
         self, name: str, samples: Sequence[Sample], run: TraceRun, warnings: Sequence[Diagnostic]
     ) -> JudgedTrace:
         cause = None if run.outcome.accepted else self._cause(samples, run)
-        verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples))
+        details = self._details(samples, run) if self._with_details else None
+        verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details)
         return JudgedTrace(name, verdict, in_trace(name, warnings))
+
+    def _details(self, samples: Sequence[Sample], run: TraceRun) -> TraceDetails:
+        unmet = run.state if run.broken_state is None else run.broken_state
+        nearest = None
+        if not run.outcome.accepted:
+            ends = [number for _, number in run.arrivals[1:]] + [run.outcome.steps]
+            stays = [
+                range(start, end) for (state, start), end in zip(run.arrivals, ends, strict=True) if state == unmet
+            ]
+            values = [self._samples.atom_values(samples[index], index + 1) for index in stays[-1]]
+            nearest = nearest_edge(self._fspa, unmet, values)
+        return TraceDetails(run.arrivals, unmet, nearest)
 
     def _unjudged(self, name: str, samples: Sequence[Sample], error: TltlError) -> JudgedTrace:
         """Return what is known of a trace with an error, given the samples that could be read.

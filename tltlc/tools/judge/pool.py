@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import suppress
 from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
@@ -36,13 +36,19 @@ _PARENT_CHECK_S: Final = 0.5
 
 
 def judge_files(
-    fspa: Fspa, clauses: Clauses, paths: Sequence[str], workers: int | None = None, *, episodes: bool = False
+    fspa: Fspa,
+    clauses: Clauses,
+    paths: Sequence[str],
+    workers: int | None = None,
+    *,
+    episodes: bool = False,
+    details: bool = False,
 ) -> Generator[JudgedTrace]:
     """Judge the traces in these files, and yield the results in order.
 
     ``workers`` is the number of processes. By default, it is one for each core, or only this process
-    for few traces. With ``episodes``, traces are judged as episodes: the samples after the goal, a
-    violation or the limit do not count. Closing the iterator ends the processes.
+    for few traces. ``episodes`` and ``details`` are as for :class:`~tltlc.tools.judge.judge.Judge`.
+    Closing the iterator ends the processes.
 
     Raises:
         TltlError: TLT0007, a process ended before its traces were judged.
@@ -51,9 +57,9 @@ def judge_files(
         workers = _cores() if len(paths) >= _FEW else 1
     workers = min(workers, len(paths), _MOST_WORKERS)
     if workers > 1:
-        yield from _judge_in_workers(fspa, clauses, paths, workers, episodes=episodes)
+        yield from _judge_in_workers(paths, workers, fspa, clauses, episodes=episodes, details=details)
         return
-    judge = Judge(fspa, clauses, episodes=episodes)
+    judge = Judge(fspa, clauses, episodes=episodes, details=details)
     for path in paths:
         yield _judge_file(judge, path)
 
@@ -77,7 +83,7 @@ def _judge_file(judge: Judge, path: str) -> JudgedTrace:
 
 
 def _judge_in_workers(
-    fspa: Fspa, clauses: Clauses, paths: Sequence[str], workers: int, *, episodes: bool
+    paths: Sequence[str], workers: int, fspa: Fspa, clauses: Clauses, **options: bool
 ) -> Iterator[JudgedTrace]:
     size = max(1, min(_CHUNK, len(paths) // workers))
     chunks = iter([(start, paths[start : start + size]) for start in range(0, len(paths), size)])
@@ -89,7 +95,7 @@ def _judge_in_workers(
         resource_tracker.ensure_running()
         with block_interrupts():
             # This keeps the workers that have started before an error.
-            started.extend(_Worker(fspa, clauses, episodes=episodes) for _ in range(workers))
+            started.extend(_Worker(fspa, clauses, options) for _ in range(workers))
         for worker in started:
             worker.give(next(chunks, None))
         while following < len(paths):
@@ -112,7 +118,7 @@ class _Worker:
     process has a chunk.
     """
 
-    def __init__(self, fspa: Fspa, clauses: Clauses, *, episodes: bool) -> None:
+    def __init__(self, fspa: Fspa, clauses: Clauses, options: Mapping[str, bool]) -> None:
         # A forked worker would inherit the locks of threads that other code of this process has started.
         context = get_context("spawn")
         self.connection, child = context.Pipe()
@@ -122,7 +128,7 @@ class _Worker:
         self.start = 0
         self.is_busy = False
         # A large spec among the arguments would block the start for ever if the process is killed meanwhile.
-        self._send((fspa, clauses, episodes))
+        self._send((fspa, clauses, dict(options)))
 
     def give(self, chunk: tuple[int, Sequence[str]] | None) -> None:
         """Give the worker its next chunk: the index of its first trace, and the paths of all.
@@ -173,8 +179,8 @@ def _work(connection: Connection, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_exit_with_parent, args=(parent,), daemon=True).start()
     with suppress(EOFError, OSError):
-        fspa, clauses, episodes = connection.recv()
-        judge = Judge(fspa, clauses, episodes=episodes)
+        fspa, clauses, options = connection.recv()
+        judge = Judge(fspa, clauses, **options)
         while True:
             paths: Sequence[str] = connection.recv()
             connection.send([_judge_file(judge, path) for path in paths])

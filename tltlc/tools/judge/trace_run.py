@@ -29,6 +29,8 @@ class TraceRun:
     """The result of a run of an automaton over a trace.
 
     ``state`` is the state in which the run ends, and ``done`` says whether the episode has ended.
+    ``arrivals`` are the entries into states, in order: pairs of a state and the number of samples
+    before it. The first is the initial state, after 0 samples.
     ``broken_at`` is the number, from 1, of the first sample after which the verdict is ``violated``,
     and ``broken_state`` is the state before that sample. Both are None if the verdict is never
     ``violated``.
@@ -37,6 +39,7 @@ class TraceRun:
     outcome: TraceOutcome
     state: int
     done: bool
+    arrivals: tuple[tuple[int, int], ...]
     broken_at: int | None = None
     broken_state: int | None = None
 
@@ -92,28 +95,39 @@ class TraceRunner:
         last = steps[-1]
         *_, total = accumulate(map(attrgetter("reward"), steps))
         outcome = TraceOutcome(last.accepting, last.verdict, len(steps), last.progress, total)
+        arrivals = _arrivals(list(map(attrgetter("state"), steps)))
         if last.verdict != "violated":
-            return TraceRun(outcome, last.state, last.done)
+            return TraceRun(outcome, last.state, last.done, arrivals)
         broken = bisect_left(steps, True, key=lambda step: step.verdict == "violated")
-        return TraceRun(outcome, last.state, last.done, broken + 1, steps[broken - 1].state if broken else 0)
+        return TraceRun(outcome, last.state, last.done, arrivals, broken + 1, steps[broken - 1].state if broken else 0)
 
     def _slow_run(self, monitor: Monitor, samples: Sequence[Sample], *, cut_off: bool) -> TraceRun:
         """Run a monitor over the samples, step by step, and return the result."""
-        total, number, state = 0.0, 0, 0
+        total, number, states = 0.0, 0, [0]
         broken_at = broken_state = step = None
         last_number = len(samples) if self._episodes and not cut_off else None
         for number, sample in enumerate(samples, start=1):
             step = monitor.step(sample, last=number == last_number)
             total += step.reward
             if broken_at is None and step.verdict == "violated":
-                broken_at, broken_state = number, state
-            state = step.state
+                broken_at, broken_state = number, states[-1]
+            states.append(step.state)
             if self._episodes and step.done:
                 break
         assert step is not None, "a trace has at least one sample"
         accepted = monitor.success if self._episodes else step.accepting
         outcome = TraceOutcome(accepted, step.verdict, number, step.progress, total)
-        return TraceRun(outcome, state, step.done, broken_at, broken_state)
+        return TraceRun(outcome, step.state, step.done, _arrivals(states[1:]), broken_at, broken_state)
+
+
+def _arrivals(states: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    """Return ``arrivals`` of :class:`TraceRun`, given the state after each sample."""
+    changes = (
+        (after, number)
+        for number, (before, after) in enumerate(zip((0, *states), states, strict=False), start=1)
+        if before != after
+    )
+    return ((0, 0), *changes)
 
 
 def _generated_monitor(fspa: Fspa) -> Any:

@@ -6,6 +6,7 @@ from typing import Literal
 
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.monitor.nearest_edge import NearestEdge
 from tltlc.monitor.run import TraceOutcome
 
 Kind = Literal["broken", "blocked", "late", "unfinished"]
@@ -33,18 +34,37 @@ class Cause:
 
 
 @record
+class TraceDetails:
+    """How a trace moved through the automaton.
+
+    ``arrivals`` are the entries into states, in order: pairs of a state and the number of samples
+    before it. The first is the initial state, after 0 samples. ``unmet`` is the state at the end, or
+    the state before the sample that broke the spec. If the trace is not accepted, ``nearest`` says how
+    near its last stay in the state ``unmet`` came to an edge that leads towards acceptance; ``row``
+    counts the samples of that stay. It is None if the trace is accepted, or if there is no such edge or
+    no sample in the stay.
+    """
+
+    arrivals: tuple[tuple[int, int], ...]
+    unmet: int
+    nearest: NearestEdge | None
+
+
+@record
 class TraceVerdict:
     """The verdict of a trace.
 
     ``remaining`` is the label of the last state: what remains to be satisfied. ``cause`` is None if
     the trace is accepted. ``samples`` is the number of samples in the trace. If the trace is judged
-    as an episode and the episode ends earlier, ``outcome.steps`` is less than ``samples``.
+    as an episode and the episode ends earlier, ``outcome.steps`` is less than ``samples``. ``details``
+    is None unless they were asked for.
     """
 
     outcome: TraceOutcome
     remaining: str
     cause: Cause | None
     samples: int
+    details: TraceDetails | None = None
 
 
 @record
