@@ -80,7 +80,7 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FUL
     suite = read_suite(_write_suite(edits, plan, folder))
     levels = {f"{EXPERT}{edit.level}": edit.level for edit in edits}
     measure_missing(store, SECTION, levels, lambda name: expert(levels[name], BASE, plan), say, field="ways")
-    cases = {edit_name(edit): (edit, case) for edit, case in zip(edits, suite.cases, strict=True)}
+    cases = {edit_name(edit): (edit, case) for edit, case in zip(edits, suite.played_cases, strict=True)}
 
     def record(name: str) -> Record:
         edit, case = cases[name]

@@ -180,7 +180,8 @@ def first_verdict(
     now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], error: float
 ) -> tuple[Judgement, int]:
     """Return the first verdict that is certain or final, and the number of episodes that it took."""
-    from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
+    from tltl_runtime.regression.suite.suite import LEAST_EPISODES
+    from tltl_runtime.regression.suite.thresholds import Thresholds
     from tltl_runtime.regression.verdict.verdict import judge
 
     thresholds = Thresholds()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,6 +30,12 @@ def _report_option(name: str, help_text: str) -> Callable[[Function], Function]:
     )
 
 
+def _threshold_option(name: str, help_text: str, default: str) -> Callable[[Function], Function]:
+    limits = cli.FiniteRange(min=0, max=0.999)
+    help_text = f"With --spec: {help_text[0].lower()}{help_text[1:]} (default: {default})."
+    return click.option(f"--{name.replace('_', '-')}", name, metavar="R", type=limits, help=help_text)
+
+
 @click.command(
     cls=ChangedCommand,
     epilog="""\b
@@ -39,6 +45,7 @@ Examples:
   tltlc regress suite.toml --json - > report.json
   tltlc regress suite.toml --changed assets/guard.toml
   tltlc regress suite.toml --retrain --minutes 20
+  tltlc regress --spec metroid.tltl --baseline traces/v1 --now traces/v2
   tltlc regress suite.toml --junit report.xml --github --changed $(git diff --no-renames --name-only main)
 """,
 )
@@ -55,10 +62,25 @@ Examples:
 @click.option("--github", is_flag=True, help="Print annotations for GitHub Actions, too.")
 @click.option(
     "--baseline",
-    metavar="FILE",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="The baseline to compare with (default: SUITE.baseline.json, next to the suite).",
+    metavar="PATH",
+    type=click.Path(path_type=Path),
+    help="The baseline to compare with (default: SUITE.baseline.json, next to the suite); with --spec, a recorded "
+    "trace or a folder of them.",
 )
+@click.option(
+    "--spec",
+    metavar="SPEC",
+    help="Judge recorded traces by this spec, without a suite, a game and a policy; needs --now and --baseline.",
+)
+@click.option("--now", metavar="PATH", type=click.Path(path_type=Path), help="The traces to judge: a file or a folder.")
+@click.option(
+    "--episodes",
+    "as_episodes",
+    is_flag=True,
+    help="With --spec: end each trace at the goal, at a violation or at the limit of the spec.",
+)
+@_threshold_option("pass_rate", "The pass rate that is enough", "0.85")
+@_threshold_option("fail_rate", "The pass rate below which the case fails", "0.5")
 @click.option("--fresh", is_flag=True, help="Play all cases again, even if nothing has changed since they were played.")
 @click.option(
     "--retrain",
@@ -79,6 +101,11 @@ def command(
     changed: tuple[str, ...],
     github: bool,
     baseline: Path | None,
+    spec: str | None,
+    now: Path | None,
+    as_episodes: bool,
+    pass_rate: float | None,
+    fail_rate: float | None,
     fresh: bool,
     retrain: bool,
     minutes: float | None,
@@ -89,8 +116,9 @@ def command(
     """Let trained policies play the cases of a suite, and report which levels still play as designed.
 
     SUITE is a TOML file. Without it, the levels that come with tltlc are played in all of their variants. A case is not
-    played again if nothing has changed since the last time. The exit status is 0 if all cases pass, and 1 if a case
-    fails or needs a review; --retrain does not change it.
+    played again if nothing has changed since the last time. Cases of a suite may also be recorded traces, of any game;
+    --spec judges such traces without a suite. The exit status is 0 if all cases pass, and 1 if a case fails or needs a
+    review; --retrain does not change it.
     """
     printed = {
         name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_standard_output(path)
@@ -102,6 +130,8 @@ def command(
         raise click.UsageError(f"{', '.join(uses[:-1])} and {uses[-1]} {both} need standard output: {advice}")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes works only with --retrain: add --retrain")
+    thresholds = {name: rate for name, rate in (("pass_rate", pass_rate), ("fail_rate", fail_rate)) if rate is not None}
+    _check_trace_options(spec, now, baseline, suite, changed, thresholds, as_episodes=as_episodes, retrain=retrain)
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` counts as a file of --changed: put the suite before --changed")
     with cli.Report() as report, name_missing_extra("`tltlc regress`"), ignore_closed_pipe():
@@ -110,8 +140,12 @@ def command(
 
         options = RegressOptions(
             suite=suite,
+            spec=spec,
+            now=now,
+            as_episodes=as_episodes,
+            thresholds=thresholds,
             changed=tuple(filter(None, changed)) if changed else None,
-            folder=folder or _default_folder(suite),
+            folder=folder or _default_folder(suite, spec),
             files={f"--{name}": path for name, path in files.items() if path is not None},
             github=github,
             fresh=fresh,
@@ -133,12 +167,47 @@ def _is_suite(word: str) -> bool:
         return False
 
 
-def _default_folder(suite: Path | None) -> Path:
+def _check_trace_options(
+    spec: str | None,
+    now: Path | None,
+    baseline: Path | None,
+    suite: Path | None,
+    changed: tuple[str, ...],
+    thresholds: Mapping[str, float],
+    *,
+    as_episodes: bool,
+    retrain: bool,
+) -> None:
+    """Raise UsageError unless the options for recorded traces fit together."""
+    if spec is None:
+        needs_spec = {
+            "--now": now is not None,
+            "--episodes": as_episodes,
+            **{f"--{name.replace('_', '-')}": True for name in thresholds},
+        }
+        if used := next((option for option, is_used in needs_spec.items() if is_used), None):
+            raise click.UsageError(f"{used} works only with --spec: name the spec that judges the recorded traces")
+        return
+    if missing := next((name for name, path in (("--now", now), ("--baseline", baseline)) if path is None), None):
+        which = "to judge" if missing == "--now" else "to compare with"
+        raise click.UsageError(f"--spec needs {missing}: name the recorded traces {which}, a file or a folder")
+    excluded = {"SUITE": suite is not None, "--changed": bool(changed), "--retrain": retrain}
+    if used := next((option for option, is_used in excluded.items() if is_used), None):
+        raise click.UsageError(f"--spec judges recorded traces without a suite: leave out {used}")
+    if thresholds.get("fail_rate", 0.5) > thresholds.get("pass_rate", 0.85):
+        raise click.UsageError("--fail-rate must be at most --pass-rate (defaults: 0.5 and 0.85)")
+
+
+def _default_folder(suite: Path | None, spec: str | None) -> Path:
     """Return the default folder of a run: `regression/levels/game` for `levels/game.toml`.
 
     It is ``regression``, followed by the path of the suite relative to the working directory,
-    without ``..`` and without the extension.
+    without ``..`` and without the extension. For a spec without a suite, it is ``regression`` and the
+    name of the spec.
     """
+    if spec is not None:
+        file, name = fileio.split_spec_name(spec)
+        return Path("regression", name or Path(file).name.partition(".")[0])
     if suite is None:
         return Path("regression", "shipped")
     try:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import platform
-from importlib.metadata import version
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from typing import Final
 
 _PACKAGES: Final = ("tltlc", "gymnasium", "pybullet", "numpy")
 
 
 def versions() -> dict[str, str]:
-    """Return the installed versions of Python and of these packages, by name."""
-    return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
+    """Return the versions of Python and of those of these packages that are installed, by name."""
+    versions_by_name = {"python": platform.python_version()}
+    for name in _PACKAGES:
+        with suppress(PackageNotFoundError):
+            versions_by_name[name] = version(name)
+    return versions_by_name

@@ -81,11 +81,12 @@ class RecordedEpisode(Protocol):
         """How the episode ended, for example ``success`` or ``violation``."""
 
 
-Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
+Kind = Literal["success", "killed", "violated", "blocked", "limit", "no way", "stopped"]
 """How an episode ended.
 
-``killed``: the player died. ``violated``: the spec was broken, but the player lived. ``limit``:
-time ran out. ``no way``: time ran out for the expert, which had no route to a goal. ``stopped``:
+``killed``: the player died. ``violated``: the spec was broken, but the player lived. ``blocked``:
+clauses of the spec can no longer be met together; only for recorded traces. ``limit``: time ran out.
+``no way``: time ran out for the expert, which had no route to a goal. ``stopped``:
 the episode is unfinished.
 """
 

@@ -14,10 +14,13 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
+from tltl_runtime.regression.report.trace_report import report_on_broken_traces, report_on_traces
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.slugs import slugs
-from tltl_runtime.regression.suite.suite import Case, Suite
+from tltl_runtime.regression.suite.suite import Case, Suite, SuiteCase
+from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
+from tltl_runtime.regression.verdict.judged_traces import JudgedTraces, OnTrace, judge_traces
 from tltl_runtime.regression.verdict.play import JudgedCase, OnEpisode, PreparedCase, judge_case, prepare_case
 from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.support.record_json import to_json
@@ -32,7 +35,7 @@ _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 
 _EDITED: Final = "TLT0905"
-WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
+WORKER_ERRORS: Final = frozenset({"TLT0007", "TLT0730", "TLT0850", "TLT0852"})
 """The codes of errors of worker processes. They stop the run, because the case is not at fault."""
 
 WRITABLE: Final = "make sure that there is room and that you may write there, or name another folder with --out"
@@ -45,13 +48,15 @@ class FinishedCase:
 
     ``is_cached`` says that an earlier run played the case and nothing has changed since.
     ``prepared`` is the case as it was played, and ``reference`` are the episodes of the baseline
-    with which it was compared. Both are None if the case could not be played.
+    with which it was compared. Both are None if the case could not be played. ``traces`` are the traces
+    of a case of recorded traces, which is not played; None for other cases.
     """
 
     report: CaseReport
     is_cached: bool
     prepared: PreparedCase | None = None
     reference: Reference | None = None
+    traces: JudgedTraces | None = None
 
     @property
     def case_to_train(self) -> PreparedCase | None:
@@ -79,14 +84,15 @@ class FinishedCase:
         return None if self.report.verdict == "pass" else self.prepared
 
 
-def check_references(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
+def check_references(suite: Suite, cases: Sequence[SuiteCase], references: tuple[Reference, ...]) -> None:
     """Check that the baseline has valid episodes (a reference) for each case that can be played.
 
     Raises:
         TltlError: TLT0903, the baseline lacks a case; TLT0902, the baseline is invalid.
     """
     for case in cases:
-        _prepare(suite, case, references)
+        if isinstance(case, Case):
+            _prepare(suite, case, references)
 
 
 def lock_run(folder: Path) -> AbstractContextManager[None]:
@@ -102,20 +108,21 @@ def lock_run(folder: Path) -> AbstractContextManager[None]:
 
 def regress(
     suite: Suite,
-    cases: Sequence[Case],
+    cases: Sequence[SuiteCase],
     references: tuple[Reference, ...],
     folder: Path,
     pool: Pool,
     on_episode: OnEpisode,
+    on_trace: OnTrace = lambda *_: None,
     *,
     fresh: bool = False,
 ) -> Generator[FinishedCase]:
     """Judge some cases of a suite in order, and yield each as soon as it is finished.
 
     ``references`` are the references of the baseline, and ``pool`` says which processes play.
-    ``on_episode`` is called after each episode. Results are cached below ``folder``; call this
-    within :func:`lock_run`. A case with a cached result is not played again if nothing that it
-    depends on has changed, unless ``fresh``.
+    ``on_episode`` is called after each episode, and ``on_trace`` after each recorded trace. Results
+    are cached below ``folder``; call this within :func:`lock_run`. A case with a cached result is not
+    played again if nothing that it depends on has changed, unless ``fresh``.
 
     A case that cannot be played gets the verdict ``fail``. A case whose level is edited while it is
     played gets ``review``. After both, the run goes on with the next case.
@@ -129,6 +136,9 @@ def regress(
     if fresh:
         _remove_cached(suite, cases, folder)
     for case in cases:
+        if isinstance(case, TraceCase):
+            yield _judge_traces(suite, case, pool, on_trace)
+            continue
         # Set the case up again: its files may have changed while other cases were played.
         prepared = _prepare(suite, case, references)
         if isinstance(prepared, TltlError):
@@ -137,7 +147,24 @@ def regress(
             yield _judge(suite, *prepared, folder, pool, on_episode)
 
 
-def _remove_cached(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+def _judge_traces(suite: Suite, case: TraceCase, pool: Pool, on_trace: OnTrace) -> FinishedCase:
+    """Judge the recorded traces of a case. Nothing is cached, because this takes little time.
+
+    Raises:
+        TltlError: TLT0007, a worker process ended.
+    """
+    # Ray, and 0 for all cores, are kinds of pools for episodes.
+    workers = pool if isinstance(pool, int) and pool > 0 else None
+    try:
+        judged = judge_traces(case, suite.error / len(suite.cases), workers, on_trace)
+    except TltlError as fault:
+        if {diagnostic.code for diagnostic in fault.diagnostics} & WORKER_ERRORS:
+            raise
+        return FinishedCase(report_on_broken_traces(case, fault), is_cached=False)
+    return FinishedCase(report_on_traces(judged), is_cached=False, traces=judged)
+
+
+def _remove_cached(suite: Suite, cases: Sequence[SuiteCase], folder: Path) -> None:
     """Remove the cached results of the cases, before a ``fresh`` run.
 
     If that run is stopped and continued, the continuation then finds only results of that run.

@@ -24,7 +24,9 @@ from tltl_runtime.regression.report.retraining_result import (
     RetrainingResult,
 )
 from tltl_runtime.regression.suite import suite as suite_module
-from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
+from tltl_runtime.regression.suite import thresholds, trace_case
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES, MOST_EPISODES, read_suite
+from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict import confidence
 from tltl_runtime.regression.verdict.confidence import rate_interval
 
@@ -33,19 +35,20 @@ PAGE = (DOCS / "regression.md").read_text(encoding="utf-8")
 
 def rows(heading: str) -> dict[str, str]:
     """The rows of the table whose first column has this heading, by the names in the first cell."""
-    table = re.search(rf"^\| {heading} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, re.MULTILINE)
-    assert table, heading
+    tables = re.findall(rf"^\| {heading} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, re.MULTILINE)
+    assert tables, heading
     cells = {}
-    for line in table[1].splitlines():
+    for line in "".join(tables).splitlines():
         first, rest = line.strip("| ").split(" | ", 1)
         cells |= dict.fromkeys(re.findall(r"`\[*([\w.]+)\]*`", first), rest)
     return cells
 
 
 def test_the_page_lists_exactly_the_keys_of_a_suite() -> None:
-    source = Path(suite_module.__file__).read_text(encoding="utf-8")
+    modules = (suite_module, thresholds, trace_case)
+    source = "".join(Path(str(module.__file__)).read_text(encoding="utf-8") for module in modules)
     read = set(re.findall(r"(?:table|found)\.(?:number|whole|text|names|tables?)\(\"(\w+)\"", source))
-    read |= set(re.findall(r"\b_text\(table, \"(\w+)\"", source))
+    read |= set(re.findall(r"\b_(?:text|paths)\(table, (?:folder, )?\"(\w+)\"", source))
     read |= set(Thresholds.__match_args__)
     documented = {*rows("key"), *rows("key of a case"), *rows("key of thresholds")}
     assert {name.rpartition(".")[2] for name in documented} == read
@@ -74,10 +77,14 @@ def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
     shutil.copy(shipped_policies()["cover_and_hide"], tmp_path / files[-1])
     texts = [block.text for block in blocks(DOCS / "regression.md") if block.kind == "toml"]
-    assert len(texts) == 2
+    (tmp_path / "metroid.tltl").write_text("signal a: bool\nspec fetch { reach a }\n", encoding="utf-8")
+    for name in ("v1", "v2"):
+        (tmp_path / "traces" / name).mkdir(parents=True)
+    counts = []
     for text in texts:
         (tmp_path / "game.toml").write_text(text, encoding="utf-8")
-        assert len(read_suite(tmp_path / "game.toml").cases) == 2
+        counts.append(len(read_suite(tmp_path / "game.toml").cases))
+    assert counts == [2, 2, 1]
 
 
 def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
@@ -131,7 +138,7 @@ def test_the_page_lists_every_option() -> None:
     from tltl_runtime.cli.regress import command
 
     options = {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
-    documented = set(re.findall(r"--[a-z]+", PAGE))
+    documented = set(re.findall(r"--[a-z-]+", PAGE))
     assert options - {"--workers", "--output", "--help"} <= documented
     (text,) = (block.text for block in blocks(DOCS / "regression.md") if block.kind == "yaml")
     (run,) = re.findall(r"- run: (tltlc regress .*)", text)

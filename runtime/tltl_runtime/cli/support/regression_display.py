@@ -10,6 +10,7 @@ import click
 from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case
+from tltl_runtime.regression.suite.trace_case import TraceCase
 
 _EPISODES_BETWEEN_LINES: Final = 25
 """The number of episodes between two lines."""
@@ -32,10 +33,17 @@ class RegressionDisplay:
         """Show that ``count`` episodes of a case are finished; ``last`` is the last one."""
         self._met = last.summary.success + (self._met if count > 1 else 0)
         if sys.stderr.isatty():
-            self._draw(case, count)
+            self._update(case.name, count, case.episodes, f"{self._met} of {count} met")
         elif count % _EPISODES_BETWEEN_LINES == 0 or count == case.episodes:
             text = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
             click.echo(f"{plain_text(case.name)}: {text}", err=True)
+
+    def show_traces(self, case: TraceCase, count: int, total: int) -> None:
+        """Show that ``count`` of all ``total`` recorded traces of a case are judged."""
+        if sys.stderr.isatty():
+            self._update(case.name, count, total, f"{count} of {total} traces")
+        elif count == total:
+            click.echo(f"{plain_text(case.name)}: {total} traces are judged", err=True)
 
     def clear(self) -> None:
         """Remove the bar, so that other lines can be printed."""
@@ -43,19 +51,17 @@ class RegressionDisplay:
             self._bar.stop()
             self._bar = None
 
-    def _draw(self, case: Case, count: int) -> None:
+    def _update(self, name: str, count: int, total: int, text: str) -> None:
         if self._bar is None:
             from rich.console import Console
             from rich.markup import escape
             from rich.progress import Progress
 
             self._bar = Progress(console=Console(stderr=True), transient=True)
-            self._name = escape(plain_text(case.name))
-            self._bar.add_task(self._name, total=case.episodes)
+            self._name = escape(plain_text(name))
+            self._bar.add_task(self._name, total=total)
             self._bar.start()
-        self._bar.update(
-            self._bar.task_ids[0], completed=count, description=f"{self._name}: {self._met} of {count} met"
-        )
+        self._bar.update(self._bar.task_ids[0], completed=count, description=f"{self._name}: {text}")
 
     def __enter__(self) -> RegressionDisplay:
         return self

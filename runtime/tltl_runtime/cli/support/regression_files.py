@@ -10,19 +10,20 @@ from pathlib import Path
 from typing import Final, cast, get_args
 
 from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
+from tltl_runtime.regression.report.trace_curves import example_curves
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.regression.verdict.level_texts import baseline_level
 from tltl_runtime.regression.verdict.play import PreparedCase
 from tltl_runtime.regression.verdict.verdict import Verdict
-from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import TltlError, fileio, record
 
@@ -153,6 +154,13 @@ def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
 
 def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCase:
     """Return a case with the data that the HTML page needs to draw it."""
+    if case.traces is not None:
+        return ReportedCase(
+            report=case.report,
+            fspa=case.traces.fspa,
+            before=case.traces.before.accounts,
+            traces=example_curves(case.traces, case.report.explanation),
+        )
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
     episodes = _episodes(case, case_folder(suite, case.report.name, folder / CASES))
@@ -184,10 +192,11 @@ def _curve(case: FinishedCase, folder: Path) -> bytes:
     return b""
 
 
-def _episodes(case: FinishedCase, folder: Path) -> dict[int, Episode]:
+def _episodes(case: FinishedCase, folder: Path) -> dict[int, RecordedEpisode]:
     """Read the recorded episodes of a case; return them by index. Damaged recordings are left out."""
-    episodes: dict[int, Episode] = {}
+    game = registered_game()
+    episodes: dict[int, RecordedEpisode] = {}
     for index, name in case.report.recordings:
         with suppress(TltlError):
-            episodes[index] = read_episode(folder / name)
+            episodes[index] = game.read_episode(folder / name)
     return episodes

@@ -19,12 +19,14 @@ from tltl_runtime.cli.support.writable_paths import check_apart, check_no_traini
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.report.github import workflow_commands
 from tltl_runtime.regression.suite.dependencies import Selection, files_of, select
-from tltl_runtime.regression.suite.suite import SHIPPED, Case, Suite, read_suite
+from tltl_runtime.regression.suite.suite import DEFAULT_ERROR, SHIPPED, Case, Suite, SuiteCase, played, read_suite
+from tltl_runtime.regression.suite.thresholds import Thresholds
+from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.suite_run import FinishedCase, check_references, lock_run, regress
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
 from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import TltlError, cli, record, workflow_command
+from tltlc.api import TltlError, cli, fileio, record, workflow_command
 
 _MOST_NAMED: Final = 8
 """The most files that a message names."""
@@ -35,12 +37,18 @@ _EXPECTED_NOTE: Final = "v1 and v2 of the shipped levels are changed on purpose:
 class RegressOptions:
     """The options of ``tltlc regress``.
 
-    ``files`` maps the option of each requested report, such as ``--json``, to the file to write.
+    ``spec`` and ``now`` are the spec and the recorded traces of ``--spec`` and ``--now``; there is no
+    suite then, and ``baseline`` has the traces to compare with. ``thresholds`` are the thresholds that
+    options set. ``files`` maps the option of each requested report, such as ``--json``, to the file to write.
     ``folder`` is the folder of the run. ``minutes`` limits the retraining of each case that does
     not pass; None: no retraining.
     """
 
     suite: Path | None
+    spec: str | None
+    now: Path | None
+    as_episodes: bool
+    thresholds: Mapping[str, float]
     changed: tuple[str, ...] | None
     folder: Path
     files: Mapping[str, Path]
@@ -61,6 +69,11 @@ class RegressOptions:
         return {option: path for option, path in self.files.items() if not is_standard_output(path)}
 
 
+def option_of(threshold: str) -> str:
+    """Return the option that sets a threshold: ``--pass-rate`` for ``pass_rate``."""
+    return f"--{threshold.replace('_', '-')}"
+
+
 def run(options: RegressOptions) -> int:
     """Judge the requested cases, report on them, and return the exit status.
 
@@ -72,7 +85,7 @@ def run(options: RegressOptions) -> int:
     """
     check_no_training(options.folder)
     check_writable(options.report_files)
-    suite = read_suite(options.suite or SHIPPED, options.baseline)
+    suite = _suite(options)
     check_apart(options.report_files, files_of(suite))
     selection = _select_cases(suite, options)
     cases, left_out = selection.cases, tuple(case.name for case in selection.left_out)
@@ -80,8 +93,8 @@ def run(options: RegressOptions) -> int:
         # What retrains needs torch; what judges does not.
         from tltl_runtime.regression.retrain.retrain import check_policy_folders
 
-        check_policy_folders(suite, cases, options.folder)
-    references = _references(suite, cases)
+        check_policy_folders(suite, played(cases), options.folder)
+    references = _references(suite, played(cases))
     _warn_unnamed(suite, selection.left_out, references)
     check_references(suite, cases, references)
     results: list[FinishedCase] = []
@@ -96,6 +109,24 @@ def run(options: RegressOptions) -> int:
             raise
         _report(_outcome(suite, cases, left_out, options, results), options)
     return cli.exits.CLEAN if all(case.report.verdict == "pass" for case in results) else cli.exits.FINDINGS
+
+
+def _suite(options: RegressOptions) -> Suite:
+    """Return the suite that the options name, or one of a single case for ``--spec``."""
+    if options.spec is None:
+        return read_suite(options.suite or SHIPPED, options.baseline)
+    assert options.now is not None
+    assert options.baseline is not None
+    file, name = fileio.split_spec_name(options.spec)
+    case = TraceCase(
+        name=name or Path(file).name.partition(".")[0],
+        spec=options.spec,
+        traces=(str(options.now),),
+        baseline=(str(options.baseline),),
+        thresholds=Thresholds(**options.thresholds),
+        as_episodes=options.as_episodes,
+    )
+    return Suite(Path(file), 0, DEFAULT_ERROR, (case,), options.baseline)
 
 
 def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
@@ -133,7 +164,7 @@ def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
         return ()
 
 
-def _warn_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Reference, ...]) -> None:
+def _warn_unnamed(suite: Suite, left_out: Sequence[SuiteCase], references: tuple[Reference, ...]) -> None:
     """Warn about files that have changed since the baseline, but that ``--changed`` does not name."""
     for name, cases in unnamed_changes(suite, left_out, references).items():
         names = plain_text(short_list(cases, _MOST_NAMED))
@@ -145,17 +176,26 @@ def _warn_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Refe
 
 def _play(
     suite: Suite,
-    cases: Sequence[Case],
+    cases: Sequence[SuiteCase],
     references: tuple[Reference, ...],
     options: RegressOptions,
     results: list[FinishedCase],
 ) -> None:
-    """Play the cases; print each finished case at once and add it to ``results``."""
+    """Judge the cases; print each finished case at once and add it to ``results``."""
     width = max((len(plain_text(case.name)) for case in cases), default=0)
     with (
         RegressionDisplay("at most") as display,
         closing(
-            regress(suite, cases, references, options.folder, options.workers, display, fresh=options.fresh)
+            regress(
+                suite,
+                cases,
+                references,
+                options.folder,
+                options.workers,
+                display,
+                display.show_traces,
+                fresh=options.fresh,
+            )
         ) as finished_cases,
     ):
         for case in finished_cases:
@@ -183,6 +223,8 @@ def _untrained_count(options: RegressOptions, results: list[FinishedCase]) -> in
 def _resume_words(options: RegressOptions) -> list[str]:
     """Return the words of the command that continues a run, without --retrain and --minutes."""
     values = {
+        "--spec": options.spec,
+        "--now": options.now,
         "--out": options.folder,
         "--baseline": options.baseline,
         **{option: options.files.get(option) for option in REPORTS},
@@ -191,6 +233,8 @@ def _resume_words(options: RegressOptions) -> list[str]:
     words = ["tltlc", "regress", *([str(options.suite)] if options.suite else [])]
     for name, value in values.items():
         words += [] if value is None else [name, str(value)]
+    words += ["--episodes"] if options.as_episodes else []
+    words += [word for name, value in options.thresholds.items() for word in (option_of(name), f"{value:g}")]
     words += ["--github"] if options.github else []
     return words if options.changed is None else [*words, "--changed", *options.changed]
 
@@ -207,7 +251,11 @@ def _print_stopped(options: RegressOptions, results: list[FinishedCase], cases: 
 
 
 def _outcome(
-    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], options: RegressOptions, results: list[FinishedCase]
+    suite: Suite,
+    cases: Sequence[SuiteCase],
+    left_out: tuple[str, ...],
+    options: RegressOptions,
+    results: list[FinishedCase],
 ) -> SuiteRun:
     """Return the outcome of the run so far."""
     missing = tuple(case.name for case in cases[len(results) :])
@@ -234,7 +282,7 @@ def _are_expected(outcome: SuiteRun) -> bool:
     """
     findings = {case.report.name for case in outcome.cases if case.report.verdict != "pass"}
     return bool(findings) and all(
-        case.variant != case.reference for case in outcome.suite.cases if case.name in findings
+        case.variant != case.reference for case in outcome.suite.played_cases if case.name in findings
     )
 
 

@@ -49,23 +49,30 @@ class Finding:
 
 
 def findings(
-    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
+    level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> tuple[Finding, ...]:
     """Compare the episodes ``now`` with those of the baseline, ``before``.
 
     The findings say which stages the episodes complete, how they fail, how long the successful ones
-    are, and through which regions these pass. ``level`` is the level that was played now.
+    are, and through which regions these pass. ``level`` is the level that was played now, or None for
+    recorded traces, which have no regions.
     """
     return (
-        *_stages(fspa, now, before),
+        *_stages(fspa, now, before, _noun(level)),
         *(finding for _, finding in _ends(level, fspa, now, before)),
         *_lengths(now, before),
-        *_regions(level, now, before),
+        *(_regions(level, now, before) if level is not None else ()),
     )
 
 
-def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
-    """Yield at most one finding about the stages that episodes complete.
+def _noun(level: Level | None) -> str:
+    return "traces" if level is None else "episodes"
+
+
+def _stages(
+    fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode], noun: str
+) -> Iterator[Finding]:
+    """Yield at most one finding about the stages that episodes complete; ``noun`` names them in the plural.
 
     The finding is about the first stage that clearly more or clearly fewer episodes complete now
     than before. It also names the earlier stages that most episodes complete. If there is no such
@@ -83,7 +90,7 @@ def _stages(fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[Explai
         prefix = f"{subgoals_text(unchanged_stages)} as before, then " if unchanged_stages else ""
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
-            count_text(len(passed), len(episodes), "episodes")
+            count_text(len(passed), len(episodes), noun)
             for passed, episodes in ((passed_now, now), (passed_before, before))
         ]
         text = f"{prefix}{stage.text} in {counts[0]}; before: in {counts[1]}"
@@ -117,26 +124,27 @@ def _distances(fspa: Fspa, episode: ExplainedEpisode) -> list[int]:
 
 
 def most_frequent_end(
-    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
+    level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> str | None:
     """Describe briefly how failed episodes ``now`` end most often; None if no episode failed."""
     return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
 
 
 def _ends(
-    level: Level, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
+    level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> Iterator[tuple[str, Finding]]:
     """Yield a short text and a finding for each way in which episodes ``now`` fail.
 
     The finding also says how many episodes ``before`` failed in this way. The order is that of
     :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.
     """
+    noun = _noun(level)
     ends_before = [end_of(level, fspa, episode) for episode in before if not episode.summary.success]
     for group in failures(level, fspa, now):
         matches = [group.matches(end) for end in ends_before]
         ends_before = [end for end, is_match in zip(ends_before, matches, strict=True) if not is_match]
-        headline = f"{group.text} in {_count_text(len(group.episodes), now)}"
-        text = f"{headline}; before: in {_count_text(sum(matches), before)}{group.more}"
+        headline = f"{group.text} in {_count_text(len(group.episodes), now, noun)}"
+        text = f"{headline}; before: in {_count_text(sum(matches), before, noun)}{group.more}"
         yield headline, Finding(text, tuple(sorted(episode.summary.index for episode in group.episodes)))
 
 
@@ -172,8 +180,9 @@ def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[Exp
 
 def _visits(episode: ExplainedEpisode, region: Region) -> bool:
     (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
-    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*positions_along(episode.way), episode.place[:2]))
+    end = [] if episode.place is None else [episode.place[:2]]
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*positions_along(episode.way), *end))
 
 
-def _count_text(count: int, episodes: Sequence[ExplainedEpisode]) -> str:
-    return f"{count} of {len(episodes)} episodes"
+def _count_text(count: int, episodes: Sequence[ExplainedEpisode], noun: str) -> str:
+    return f"{count} of {len(episodes)} {noun}"

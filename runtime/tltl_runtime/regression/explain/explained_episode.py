@@ -22,12 +22,12 @@ _SEEN_WITHIN_S: Final = 3.0
 class Arrival:
     """An entry into a state of the automaton, at a step.
 
-    ``place`` is the position of the player's feet at that step, in metres.
+    ``place`` is the position of the player's feet at that step, in metres; None for a recorded trace.
     """
 
     state: int
     step: int
-    place: Point
+    place: Point | None = None
 
 
 @record
@@ -38,8 +38,8 @@ class NearestMiss:
     to that state do not count.
 
     ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges, and
-    ``place`` is where the player was then. ``atom`` is the atom that limited the robustness. It had
-    to be true if ``wanted`` is true, else false.
+    ``place`` is where the player was then; None for a recorded trace. ``atom`` is the atom that
+    limited the robustness. It had to be true if ``wanted`` is true, else false.
 
     If the atom had to be true, and approaching an entity makes it true, ``target`` is that entity.
     ``distance``, in metres, is then the least distance from it at which the atom was false.
@@ -48,7 +48,7 @@ class NearestMiss:
 
     atom: str
     robustness: float
-    place: Point
+    place: Point | None = None
     target: str | None = None
     distance: float | None = None
     wanted: bool = True
@@ -57,6 +57,9 @@ class NearestMiss:
 @record
 class ExplainedEpisode:
     """An episode of a case: its ``summary``, and the facts that explain its result.
+
+    A recorded trace is an episode without a game: it has no places, no enemies and no barriers. ``by``
+    are the clauses that it breaks or does not meet.
 
     - ``cause``, ``by`` and ``place`` say how, by what and where the episode ended, as in
       :class:`~tltl_runtime.game.episode.Cause`.
@@ -77,7 +80,7 @@ class ExplainedEpisode:
     summary: EpisodeSummary
     cause: Kind
     by: tuple[str, ...]
-    place: Point
+    place: Point | None
     seen_by: tuple[str, ...]
     arrivals: tuple[Arrival, ...]
     nearest: NearestMiss | None
@@ -137,17 +140,19 @@ def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Poin
     None if no edge leads from the state towards acceptance, or if the episode made no step in it.
     ``positions`` are those of the player's feet.
     """
-    fspa = episode.fspa
-    guards = [edge.guard for edge in monitors.tables(fspa).improving[state]]
     steps = _last_stay(episode, state)
-    if not guards or not steps:
+    nearest = monitors.nearest_edge(episode.fspa, state, episode.atoms[steps].tolist())
+    if nearest is None:
         return None
-    atoms: Sequence[list[float]] = episode.atoms.tolist()
-    greatest, step = max((max(monitors.robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
-    row = -step
-    atom, must_hold = monitors.bounding_literal(guards, atoms[row])
-    target, distance = _target_and_distance(episode, atom, steps) if must_hold else (None, None)
-    return NearestMiss(fspa.atoms[atom].name, round(greatest, 4), positions[row + 1], target, distance, must_hold)
+    target, distance = _target_and_distance(episode, nearest.atom, steps) if nearest.wanted else (None, None)
+    return NearestMiss(
+        atom=episode.fspa.atoms[nearest.atom].name,
+        robustness=round(nearest.robustness, 4),
+        place=positions[steps[nearest.row] + 1],
+        target=target,
+        distance=distance,
+        wanted=nearest.wanted,
+    )
 
 
 def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:

@@ -12,6 +12,7 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.nearest_miss import approach_text, remaining_text
 from tltl_runtime.regression.explain.places import blocking_solids, place_name
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
+from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltlc.api import Fspa, record, replace
 
 _T = TypeVar("_T")
@@ -29,8 +30,9 @@ episodes.
 class FailureEnd:
     """How and where an episode failed, and which subgoal it had not reached.
 
-    ``cause`` and ``by`` are as in :class:`~tltl_runtime.game.episode.Cause`. ``where`` is a phrase,
-    for example ``in the corridor``.
+    ``cause`` and ``by`` are as in
+    :class:`~tltl_runtime.regression.explain.explained_episode.ExplainedEpisode`. ``where`` is a phrase,
+    for example ``in the corridor``; it is empty for a recorded trace.
     """
 
     cause: Kind
@@ -58,13 +60,14 @@ class Failures:
     more: str = ""
 
 
-def end_of(level: Level, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
-    """Return how a failed episode ended."""
+def end_of(level: Level | None, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
+    """Return how a failed episode ended. ``level`` is None for a recorded trace."""
     by = tuple(sorted(episode.by))
-    return FailureEnd(episode.cause, by, place_name(level, episode.place), subgoal(fspa, episode.summary.unmet))
+    where = "" if level is None or episode.place is None else place_name(level, episode.place)
+    return FailureEnd(episode.cause, by, where, subgoal(fspa, episode.summary.unmet))
 
 
-def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
+def failures(level: Level | None, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
     """Group the failed episodes by how they end. All texts are distinct.
 
     First come the largest groups, whose episodes have equal ends. Next are groups of the other
@@ -78,12 +81,12 @@ def failures(level: Level, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> 
     stages = Counter(replace(end, undone=Subgoal()) for end in groups)
     for end in frequent:
         # If ends differ only in their subgoals, name the subgoal, so that the texts differ.
-        stage = f" before it {end.undone.text}" if stages[replace(end, undone=Subgoal())] > 1 else ""
+        stage = _stage_text(level, end) if stages[replace(end, undone=Subgoal())] > 1 else ""
         group = groups[end]
         details = f"{approach_text(level, fspa, end.undone, group)}; {remaining_text(fspa, group)}"
-        yield Failures(_end_text(level, end, group) + stage, tuple(group), end.__eq__, details)
+        yield Failures(_end_text(level, fspa, end, group) + stage, tuple(group), end.__eq__, details)
     remaining = {end: group for end, group in groups.items() if end not in frequent}
-    yield from _remaining_failures(level, remaining, frequent, len(episodes))
+    yield from _remaining_failures(level, fspa, remaining, frequent, len(episodes))
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
@@ -93,7 +96,8 @@ def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_co
 
 
 def _remaining_failures(
-    level: Level,
+    level: Level | None,
+    fspa: Fspa,
     groups: Mapping[FailureEnd, Sequence[ExplainedEpisode]],
     frequent: Collection[FailureEnd],
     episode_count: int,
@@ -113,7 +117,7 @@ def _remaining_failures(
         rare_causes = []
     for cause in frequent_causes:
         same_cause = [end for end in groups if end.kind == cause]
-        text, matches = _text_for_cause(level, same_cause, causes[cause], frequent)
+        text, matches = _text_for_cause(level, fspa, same_cause, causes[cause], frequent)
         yield Failures(text, tuple(causes[cause]), matches)
     if rare_causes:
         otherwise = " otherwise" if frequent or frequent_causes else ""
@@ -123,7 +127,11 @@ def _remaining_failures(
 
 
 def _text_for_cause(
-    level: Level, ends: Sequence[FailureEnd], episodes: Sequence[ExplainedEpisode], frequent: Collection[FailureEnd]
+    level: Level | None,
+    fspa: Fspa,
+    ends: Sequence[FailureEnd],
+    episodes: Sequence[ExplainedEpisode],
+    frequent: Collection[FailureEnd],
 ) -> tuple[str, Callable[[FailureEnd], bool]]:
     """Return a text for ``ends``, which have the same cause, and a predicate.
 
@@ -139,7 +147,7 @@ def _text_for_cause(
     stage = ""
     is_one_stage = len(stages) == 1 and len({end.undone for end in (*frequent, *ends)}) > 1
     if is_one_stage:
-        stage = f" before it {ends[0].undone.text}"
+        stage = _stage_text(level, ends[0])
     elif places <= frequent_places:
         stage = " at other stages"
 
@@ -149,15 +157,24 @@ def _text_for_cause(
         )
         return end.kind == cause and same_place and (not is_one_stage or end.undone in stages)
 
-    return _end_text(level, replace(ends[0], where=where), episodes) + stage, matches
+    return _end_text(level, fspa, replace(ends[0], where=where), episodes) + stage, matches
 
 
-def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
+def _stage_text(level: Level | None, end: FailureEnd) -> str:
+    """Return a clause with the subgoal that was not reached."""
+    # Here the text says already that a trace ends before something.
+    also = " and" if level is None and end.cause in ("limit", "stopped") else ""
+    return f"{also} before it {end.undone.text}"
+
+
+def _end_text(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
     """Describe how ``episodes`` failed, which all share ``end``, without the number of episodes.
 
     The caller appends the number. So if the text ends with a clause that is set off by a comma, a
     comma also follows the clause.
     """
+    if level is None:
+        return trace_end_text(fspa, end.cause, end.by, episodes)
     by = f" by {_names(end.by)}" if end.by else ""
     broke = _majority_clause("breaking", [episode.broke for episode in episodes])
     saw = _majority_clause(
@@ -167,7 +184,7 @@ def _end_text(level: Level, end: FailureEnd, episodes: Sequence[ExplainedEpisode
         return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
         return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
-    positions = [(episode.place, episode.shut) for episode in episodes]
+    positions = [(episode.place, episode.shut) for episode in episodes if episode.place is not None]
     obstacles = blocking_solids(level, positions)
     mostly = (
         "" if all(set(obstacles) <= set(blocking_solids(level, [position])) for position in positions) else "mostly "

@@ -13,7 +13,7 @@ from tltl_runtime.support.number_text import number
 from tltlc.api import Fspa, label_text
 
 
-def approach_text(level: Level, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> str:
+def approach_text(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> str:
     """Describe how near the failed episodes came to the subgoal ``undone``.
 
     The first clause counts the episodes that had reached the subgoal when another atom broke the
@@ -39,7 +39,7 @@ def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
     return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
 
 
-def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
+def _limit_text(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
     """Describe the atom that limits the nearest misses most often, and the best of these misses.
 
     A nearest miss says how near an episode came to its next subgoal. ``of`` says which episodes are
@@ -50,7 +50,7 @@ def _limit_text(level: Level, fspa: Fspa, misses: Sequence[NearestMiss], of: str
     often = "" if 2 * count > len(misses) else "most often "
     if not must_hold:
         return f"{often}the limit is that `{atom}` holds"
-    if distances := [miss.distance for miss in same_limit if miss.distance is not None]:
+    if level is not None and (distances := [miss.distance for miss in same_limit if miss.distance is not None]):
         nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
         return f"closest approach{of} to `{same_limit[0].target}`: {nearest} ({often}`{atom}` is the limit{sufficient})"
     best = max(miss.robustness for miss in same_limit)

@@ -11,12 +11,25 @@ from tltl_runtime.regression.explain.explain import Finding, findings, most_freq
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
-from tltl_runtime.regression.suite.suite import Case, Thresholds
+from tltl_runtime.regression.suite.suite import Case
+from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import FigureChange, Judgement, Verdict
 from tltlc.api import Diagnostic, TltlError, record
+
+
+@record
+class TraceNames:
+    """The names of the recorded traces of a case, in the order of their indices, and of its spec.
+
+    ``now`` are the traces that were judged, ``before`` those of the baseline.
+    """
+
+    spec: str
+    now: tuple[str, ...]
+    before: tuple[str, ...]
 
 
 @record
@@ -30,9 +43,11 @@ class CaseReport:
     - ``explanation`` says what the policy does differently from the baseline.
     - ``edits`` are sentences about what has changed since the baseline: files, overlays, versions.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
-    - ``accounts`` are the played episodes.
+    - ``accounts`` are the played episodes, or the judged traces.
+    - ``traces`` are the names of the traces of a case of recorded traces, which has no level and no
+      variant: both are empty. It is None for other cases.
 
-    A case that cannot be played has no figures and no episodes.
+    A case that cannot be played or judged has no figures and no episodes.
     """
 
     name: str
@@ -54,6 +69,7 @@ class CaseReport:
     """The index of each recorded episode, with the name of its file."""
     retrained: RetrainingResult | None = None
     """The result of retraining the policy; None if it was not requested or not needed."""
+    traces: TraceNames | None = None
     told: str = ""
     """The headline; if it is empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None
@@ -97,7 +113,7 @@ def report_on(result: JudgedCase) -> CaseReport:
         causes=(*([outdated] if outdated else []), *statistics[:1], *blocked, *statistics[1:]),
         told=outdated
         or next(iter(blocked), None)
-        or _headline(result.judgement, case.thresholds, statistics, most_frequent),
+        or headline(result.judgement, case.thresholds, statistics, most_frequent),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(_edits(result)),
         played=result.prepared.played,
@@ -116,9 +132,7 @@ def _edits(result: JudgedCase) -> Iterator[str]:
     return edits(prepared.played, before.played, prepared.changes, texts, before.texts)
 
 
-def _headline(
-    judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None
-) -> str:
+def headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None) -> str:
     """Return the headline of a case's report: the first of these sentences that applies.
 
     1. how failed episodes end most often, if that is given and the pass rate may be too low;
@@ -137,12 +151,12 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
 
     The verdict is ``fail``, because the error is in a file that the case tests, not in the suite.
     """
-    causes = ("it cannot be played", *map(_one_line, error.diagnostics))
+    causes = ("it cannot be played", *map(one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
     variant = variant_text(case.variant)
     name = Path(case.level).stem
     return CaseReport(
-        case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=_error_location(error)
+        case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=error_location(error)
     )
 
 
@@ -152,11 +166,11 @@ def report_on_edited(case: Case, error: TltlError) -> CaseReport:
     Its verdict is ``review``, and it has no figures.
     """
     variant = variant_text(case.variant)
-    causes = tuple(map(_one_line, error.diagnostics))
+    causes = tuple(map(one_line, error.diagnostics))
     return CaseReport(case.name, Path(case.level).stem, variant, "review", causes, certain=False)
 
 
-def _one_line(diagnostic: Diagnostic) -> str:
+def one_line(diagnostic: Diagnostic) -> str:
     """Format a diagnostic in one line, with its file and line."""
     location = message = ""
     if diagnostic.labels:
@@ -168,7 +182,7 @@ def _one_line(diagnostic: Diagnostic) -> str:
     )
 
 
-def _error_location(error: TltlError) -> tuple[str, int] | None:
+def error_location(error: TltlError) -> tuple[str, int] | None:
     """Return the file and the line, from 1, that an error points to first; None if it points to none."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

@@ -9,7 +9,8 @@ from typing import Final
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.dependencies import dependencies
-from tltl_runtime.regression.suite.suite import Case, Suite
+from tltl_runtime.regression.suite.suite import Suite, SuiteCase
+from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltlc.api import fileio, workflow_command
 
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
@@ -21,7 +22,7 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
     An annotation is at the first of these places that exists:
 
     1. the file and the line of the error that keeps the case from being played;
-    2. the file of the level, if no episodes were judged;
+    2. the file of the spec, for recorded traces, or of the level, if no episodes were judged;
     3. a file that has changed since the baseline: if possible, an overlay instead of the level;
     4. the suite.
 
@@ -37,11 +38,13 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
             yield workflow_command(_COMMANDS[report.verdict], text, {**location, "title": title})
 
 
-def _file_to_annotate(suite: Suite, case: Case, report: CaseReport) -> Path:
+def _file_to_annotate(suite: Suite, case: SuiteCase, report: CaseReport) -> Path:
     """Return the file to annotate for an error without a location.
 
     The choice is that of :func:`workflow_commands`.
     """
+    if isinstance(case, TraceCase):
+        return Path(fileio.split_spec_name(case.spec)[0])
     if report.played is None:
         return registered_game().level_files.path(case.level)
     before = dict(report.reference.files) if report.reference else {}

@@ -9,7 +9,7 @@ from typing import Final
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.changed_keys import changed_keys
-from tltl_runtime.regression.suite.suite import Thresholds
+from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
@@ -22,15 +22,22 @@ _OVERLAYS: Final = "overlays/"
 
 
 def reasons(
-    judgement: Judgement, thresholds: Thresholds, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]
+    judgement: Judgement,
+    thresholds: Thresholds,
+    now: Sequence[EpisodeSummary],
+    before: Sequence[EpisodeSummary],
+    *,
+    are_traces: bool = False,
 ) -> Iterator[str]:
     """Describe the statistics of a verdict: the pass rate and the figures that have changed.
 
-    ``now`` are the episodes that the verdict is about, and ``before`` those of the baseline.
+    ``now`` are the episodes that the verdict is about, and ``before`` those of the baseline. Recorded
+    traces are not paired by seeds, so their figures are compared over all of them.
     """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
-    met = f"met in {count_text(passed, len(now), 'episodes')}, before in {count_text(passed_before, len(before))}"
+    noun = "traces" if are_traces else "episodes"
+    met = f"met in {count_text(passed, len(now), noun)}, before in {count_text(passed_before, len(before))}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {fail_rate}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
@@ -43,8 +50,10 @@ def reasons(
         yield _change_text(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:
         certain = {change.figure for change in judgement.changes}
-        for figure in (name for name in differing_figures(now, before, thresholds) if name not in certain):
-            text = _uncertain_change_text(figure, now, before)
+        for figure in (
+            name for name in differing_figures(now, before, thresholds, paired=not are_traces) if name not in certain
+        ):
+            text = _uncertain_change_text(figure, now, before, paired=not are_traces)
             yield f"{text}; the difference is {getattr(thresholds, figure):g} or more, but not certain"
 
 
@@ -54,13 +63,15 @@ def _change_text(figure: str, now: float, before: float) -> str:
     return f"{figure} is {direction}, {now:.2f} on average; before: {before:.2f}"
 
 
-def _uncertain_change_text(figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> str:
-    """Say how the mean of a figure has changed, over the seeds that ``now`` and ``before`` share.
+def _uncertain_change_text(
+    figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], *, paired: bool
+) -> str:
+    """Say how the mean of a figure has changed, over the seeds that ``now`` and ``before`` share, or over all.
 
     Reports also show the mean over all episodes of the baseline. If that mean looks different, the
     sentence mentions it, too.
     """
-    count = min(len(now), len(before))
+    count = min(len(now), len(before)) if paired else None
     new, old, overall = (
         fmean(getattr(episode, figure) for episode in episodes) for episodes in (now[:count], before[:count], before)
     )

@@ -58,7 +58,7 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "name": report.name,
         "level": report.level,
         "variant": report.variant,
-        "spec": played.spec if played else None,
+        "spec": played.spec if played else report.traces.spec if report.traces else None,
         "verdict": report.verdict,
         "certain": report.certain,
         **(to_json(figures) if figures else dict.fromkeys(Figures.__match_args__)),
@@ -70,6 +70,7 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "explanation": to_json(report.explanation),
         "played": to_json(played),
         "retrained": to_json(report.retrained),
+        "traces": to_json(report.traces),
         "accounts": [_episode(episode) for episode in report.accounts],
     }
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Final, Literal
 
 from tltl_runtime.evaluation.figures import Figures
-from tltl_runtime.regression.suite.suite import Thresholds
+from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.support.number_text import duration, interval_text, number, percent_exactly
 from tltlc.api import record
 

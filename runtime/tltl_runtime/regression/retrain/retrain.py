@@ -123,7 +123,7 @@ def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
         TltlError: TLT0942, the policy of a case lies in that folder.
     """
     place = case_folder(suite, case.name, folder / FOLDER)
-    for suite_case in suite.cases:
+    for suite_case in suite.played_cases:
         if policy_file(suite_case.policy).resolve().parent == place.resolve():
             whose = "its training" if suite_case.name == case.name else f"the training for `{case.name}`"
             title = f"the policy of the case `{suite_case.name}` is stored in `{place}`, where {whose} will write"

@@ -17,9 +17,10 @@ from typing import Final
 
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.named_files import policy_file
-from tltl_runtime.regression.suite.suite import Case, Suite
+from tltl_runtime.regression.suite.suite import Suite, SuiteCase
+from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.spec.spec_files import spec_files
-from tltlc.api import fileio, record
+from tltlc.api import fileio, record, traces
 
 _ESCAPE: Final = re.compile(rb"\\([0-7]{3}|.)", re.DOTALL)
 _LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", range(7, 14), strict=True)}
@@ -34,8 +35,8 @@ class Selection:
     are pairs of an unknown name and a similar name that matches a dependency.
     """
 
-    cases: tuple[Case, ...]
-    left_out: tuple[Case, ...] = ()
+    cases: tuple[SuiteCase, ...]
+    left_out: tuple[SuiteCase, ...] = ()
     unknown: tuple[str, ...] = ()
     suggestions: tuple[tuple[str, str], ...] = ()
 
@@ -66,14 +67,17 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
     )
 
 
-def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
+def dependencies(suite: Suite, case: SuiteCase) -> tuple[Path, ...]:
     """Return the absolute paths of the files that a case depends on.
 
     If a path contains symbolic links, return it both as named and with the links resolved. A path
     without a file counts, too, if a file there would be read instead of one of the others.
     """
-    files = [suite.path, suite.baseline, policy_file(case.policy)]
-    files += registered_game().level_files.dependencies(case.level, case.variant)
+    if isinstance(case, TraceCase):
+        files = [suite.path, *map(Path, traces.find_traces((*case.traces, *case.baseline)).traces)]
+    else:
+        files = [suite.path, suite.baseline, policy_file(case.policy)]
+        files += registered_game().level_files.dependencies(case.level, case.variant)
     if case.spec is not None:
         files += spec_files(Path(fileio.split_spec_name(case.spec)[0]))
     return tuple(

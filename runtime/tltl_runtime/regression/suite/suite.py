@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from os.path import normpath
 from pathlib import Path
 from typing import Final
@@ -20,7 +21,9 @@ from tltl_runtime.regression.suite.named_files import (
     similar_level,
     spec_diagnostics,
 )
-from tltl_runtime.support.checked_table import CheckedTable, wrong_value
+from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
+from tltl_runtime.regression.suite.trace_case import TraceCase, read_trace_case
+from tltl_runtime.support.checked_table import CheckedTable
 from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree
@@ -38,28 +41,11 @@ MOST_EPISODES: Final = 300
 _MOST_ERRORS: Final = 100
 """Once a suite has this many errors, no more cases are read: checking a case can take long."""
 
+DEFAULT_ERROR: Final = 0.05
+"""The error of a suite, unless it sets another one."""
+
 _MAX_EPISODES: Final = 10_000
-_GREATEST: Final = {"pass_rate": 0.999}
-"""The greatest allowed value of each threshold whose greatest value is less than 1.
-
-No number of episodes can make a pass rate of 1 certain.
-"""
 _HELP: Final = 'write values as in `episodes = 100`, and texts as in `level = "navigation"`'
-
-
-@record
-class Thresholds:
-    """The thresholds of a verdict.
-
-    A case passes if its pass rate is certainly at least ``pass_rate``. It fails if its pass rate is
-    certainly below ``fail_rate``. Both are in [0, 1]. ``progress`` and ``reward`` are the least
-    changes of the mean progress and of the mean reward that count.
-    """
-
-    pass_rate: float = 0.85
-    fail_rate: float = 0.5
-    progress: float = 0.05
-    reward: float = 0.05
 
 
 @record
@@ -84,20 +70,34 @@ class Case:
     place: str = ""
 
 
+SuiteCase = Case | TraceCase
+"""A case of a suite."""
+
+
 @record
 class Suite:
     """Cases that are judged together.
 
     ``path`` is the suite's file. ``seed`` is the seed of the episodes. ``error``, in (0, 1), bounds
     the probability that any certain ``fail`` or ``review`` is wrong, or that any case passes
-    although its pass rate is too low. ``baseline`` is the file that the cases are compared with.
+    although its pass rate is too low. ``baseline`` is the file that the played cases are compared with.
     """
 
     path: Path
     seed: int
     error: float
-    cases: tuple[Case, ...]
+    cases: tuple[SuiteCase, ...]
     baseline: Path
+
+    @property
+    def played_cases(self) -> tuple[Case, ...]:
+        """The cases that a policy plays."""
+        return played(self.cases)
+
+
+def played(cases: Iterable[SuiteCase]) -> tuple[Case, ...]:
+    """Return those of ``cases`` that a policy plays; the others have recorded traces."""
+    return tuple(case for case in cases if isinstance(case, Case))
 
 
 def baseline_path(suite: Path) -> Path:
@@ -135,20 +135,23 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             )
             raise TltlError([Diagnostic("TLT0802", title, (table.label_of("level"),), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
-    error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
+    error = table.number("error", DEFAULT_ERROR, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
-    thresholds = _thresholds(table, Thresholds())
+    thresholds = read_thresholds(table, Thresholds())
     case_tables = table.tables("case")
     if len(case_tables) > (fileio.limits.SUITE.values or 0):
         title, help_ = f"the suite has more than {fileio.limits.SUITE.values:,} cases", "divide it into several suites"
         raise TltlError([Diagnostic("TLT0006", title, (table.label,), help_)])
     known_variants: dict[str, tuple[str, ...]] = {}
-    cases = []
+    cases: list[tuple[SuiteCase, Label] | None] = []
     for number, case_table in enumerate(case_tables):
         if len(log) >= _MOST_ERRORS:
             log.append(_unread_cases_error(len(case_tables) - number, case_table.label))
             break
-        cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
+        if "traces" in case_table.entries:
+            cases.append(read_trace_case(case_table, path.parent, thresholds))
+        else:
+            cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
     table.report_unknown_keys()
     if not cases and not log:
         log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "write one, under `[[case]]`"))
@@ -190,7 +193,7 @@ def _case(
     overlays = _overlays(table, folder)
     reference = table.text("reference", "")
     spec = _spec(table, folder)
-    episodes, thresholds = _episodes(table, episodes), _thresholds(table, thresholds)
+    episodes, thresholds = _episodes(table, episodes), read_thresholds(table, thresholds)
     name = table.text("name", "")
     policy = _policy(table, folder, level)
     table.report_unknown_keys()
@@ -327,29 +330,6 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
 
 def _episodes(table: CheckedTable, default: int) -> int:
     return table.whole("episodes", default, low=LEAST_EPISODES, high=_MAX_EPISODES)
-
-
-def _thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
-    subtable = table.table("thresholds", needed=False)
-    if subtable is None:
-        return defaults
-    before = len(table.log)
-    values = [
-        subtable.number(key, getattr(defaults, key), low=0.0, high=_GREATEST.get(key, 1.0), unit="")
-        for key in defaults.__match_args__
-    ]
-    subtable.report_unknown_keys()
-    thresholds = Thresholds(*values)
-    if thresholds.fail_rate > thresholds.pass_rate and len(table.log) == before:
-        if "fail_rate" in subtable.entries:
-            expected = f"a `fail_rate` of at most {thresholds.pass_rate:g}, the `pass_rate`"
-            table.log.append(wrong_value(subtable.entries["fail_rate"], "fail_rate", expected))
-        else:
-            default = f"`fail_rate`, which is {thresholds.fail_rate:g} by default"
-            title = f"`pass_rate` is {thresholds.pass_rate:g}, below the {default}"
-            help_ = f"write a `fail_rate`, too, of at most {thresholds.pass_rate:g}"
-            table.log.append(Diagnostic("TLT0803", title, (subtable.label_of("pass_rate"),), help_))
-    return thresholds
 
 
 def _missing_file_error(kind: str, name: str, label: Label, candidates: tuple[str, ...] = ()) -> Diagnostic:

@@ -120,7 +120,7 @@ def episodes_for_certainty(pass_rate: float, error: float) -> int:
 def _groups(suite: Suite) -> list[list[PreparedCase]]:
     """Set up the cases for the variants of their baselines; group those that share a reference."""
     groups: list[list[PreparedCase]] = []
-    for case in suite.cases:
+    for case in suite.played_cases:
         prepared = _prepare(case, suite.seed)
         matches = [group for group in groups if group[0].played == prepared.played]
         if matches:

@@ -12,13 +12,14 @@ from pathlib import Path
 from tltl_runtime.game.level_name import variant_text
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.suite.dependencies import dependencies
-from tltl_runtime.regression.suite.suite import Case, Suite
+from tltl_runtime.regression.suite.suite import Case, Suite, SuiteCase
+from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltl_runtime.regression.verdict.level_texts import current_text
 
 
 def unnamed_changes(
-    suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]
+    suite: Suite, left_out: Sequence[SuiteCase], references: Sequence[Reference]
 ) -> dict[str, tuple[str, ...]]:
     """Return the changed level files of the cases ``left_out``, each with the cases that use it.
 
@@ -27,6 +28,8 @@ def unnamed_changes(
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:
+        if isinstance(case, TraceCase):
+            continue
         for name in _changed_files(suite, case, references):
             cases_of[name] = (*cases_of.get(name, ()), case.name)
     return cases_of

@@ -38,7 +38,8 @@ from operator import attrgetter
 from statistics import fmean
 from typing import Final, Literal
 
-from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Thresholds
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES
+from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interval
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import record
@@ -86,19 +87,26 @@ class Judgement:
 
 
 def judge(
-    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], episodes: int, thresholds: Thresholds, error: float
+    now: Sequence[EpisodeSummary],
+    before: Sequence[EpisodeSummary],
+    episodes: int,
+    thresholds: Thresholds,
+    error: float,
+    *,
+    paired: bool = True,
 ) -> Judgement | None:
     """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
-    ``before`` are the baseline's episodes, with the same seeds in the same order. ``episodes`` is
-    the most that may be played. ``error`` is the greatest probability that a certain verdict is
+    ``before`` are the baseline's episodes, with the same seeds in the same order. If they are not
+    ``paired`` in this way, all of them are compared with all of ``now``. ``episodes`` is the most that
+    may be played. ``error`` is the greatest probability that a certain verdict is
     wrong.
     """
     if len(now) < LEAST_EPISODES:
         return None
     passed = sum(episode.success for episode in now)
     low, high = interval = rate_interval(passed, len(now) - passed, error)
-    differences = _differences(now, before)
+    differences = _differences(now, before, paired=paired)
     differing = _differing_figures(differences, thresholds)
     changes = tuple(_changes(differing, now, before, thresholds, error))
     if high < thresholds.fail_rate:
@@ -116,26 +124,27 @@ def judge(
 
 
 def differing_figures(
-    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds
+    now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds, *, paired: bool = True
 ) -> tuple[str, ...]:
     """Return which of progress and reward differ from the baseline by at least their thresholds.
 
-    The means over the seeds that occur both in ``now`` and in ``before`` are compared. The
-    differences may be due to chance.
+    The means over the seeds that occur both in ``now`` and in ``before`` are compared; if the episodes
+    are not ``paired`` by seeds, the means over all. The differences may be due to chance.
     """
-    return _differing_figures(_differences(now, before), thresholds)
+    return _differing_figures(_differences(now, before, paired=paired), thresholds)
 
 
 def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
     return tuple(figure for figure, difference in differences.items() if 0 < difference >= getattr(thresholds, figure))
 
 
-def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary]) -> dict[str, float]:
+def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], *, paired: bool) -> dict[str, float]:
     """Return the absolute difference of the means now and before, for progress and for reward.
 
-    The means are over the seeds that occur both in ``now`` and in ``before``.
+    The means are over the seeds that occur both in ``now`` and in ``before``, or over all episodes if
+    they are not ``paired``.
     """
-    count = min(len(now), len(before))
+    count = min(len(now), len(before)) if paired else None
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
     return {figure: abs(fmean(new) - fmean(old)) for figure, (new, old) in pairs.items()}
 

@@ -10,8 +10,6 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
 from tltl_runtime.regression.report.page.packing import runs, x_steps, y_steps
-from tltl_runtime.regression.report.page.stealth.level_map import map_data
-from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
 from tltlc.api import label_text
 
 _RESOLUTION_CM: Final = 5
@@ -29,6 +27,10 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     level, fspa = case.level, case.fspa
     if level is None or fspa is None:
         return None
+    # What draws the level needs the packages of the game, which recorded traces do not.
+    from tltl_runtime.regression.report.page.stealth.level_map import map_data
+    from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
+
     return {
         "slug": slug,
         "map": map_data(level),
@@ -49,7 +51,8 @@ def _episodes_data(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> dict[st
 
 def _trajectory(bounds: Box, episode: ExplainedEpisode) -> dict[str, Any]:
     """Return the trajectory of an episode on the map, and how the episode ended."""
-    place = episode.place
+    place = episode.place or episode.arrivals[-1].place
+    assert place is not None, "an episode of a level has places"
     return {
         "index": episode.summary.index,
         "unit": _RESOLUTION_CM,

@@ -9,8 +9,6 @@ from markupsafe import Markup
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.page.contents import ReportedCase
 from tltl_runtime.regression.report.page.render import render
-from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
-from tltl_runtime.regression.report.page.stealth.mentions import mentions
 from tltlc.api import record, replace
 
 
@@ -40,6 +38,10 @@ def case_maps(case: ReportedCase, level: Level) -> Markup:
 
 
 def _maps(case: ReportedCase, level: Level) -> Iterator[_DrawnMap]:
+    # These need the packages of the game, which a page of recorded traces does not.
+    from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
+    from tltl_runtime.regression.report.page.stealth.mentions import mentions
+
     old_level, mentioned = case.baseline_level, mentions(level, case.report.reasons)
     map_now, key_now = level_map(level, mentioned), map_key(level, mentioned)
     if old_level is None or not case.before:

@@ -12,9 +12,10 @@ from tltl_runtime.regression.report.page.automaton import AutomatonPicture, coun
 from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
-from tltl_runtime.regression.report.page.episode_links import episode_links
+from tltl_runtime.regression.report.page.episode_links import episode_links, trace_links
 from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.render import render
+from tltl_runtime.regression.report.page.trace_charts import trace_charts
 from tltl_runtime.regression.report.page.traffic import traffic
 from tltlc.api import formula_text, record
 
@@ -32,18 +33,20 @@ class _Reason:
 
 @record
 class _Drawings:
-    """The pictures and tables in the section of a case with level and automaton.
+    """The pictures and tables in the section of a case with an automaton.
 
-    ``automaton`` is None if its layout failed; ``notes`` say what it does not show. ``player`` is
-    the panel that plays recorded episodes. ``curves`` are the progress of the recorded episodes, or
+    ``automaton`` is None if its layout failed; ``notes`` say what it does not show. ``maps``
+    are None without a level. ``player`` is the panel that plays recorded episodes, and ``traces`` are
+    the pictures of recorded traces; one of them is None. ``curves`` are the progress of the recorded episodes, or
     None without recordings. ``distribution`` is the distribution of progress over all episodes.
     ``table`` says how many episodes visited each state and failed in it.
     """
 
     automaton: Markup | None
     notes: tuple[str, ...]
-    maps: Markup
-    player: Markup
+    maps: Markup | None
+    player: Markup | None
+    traces: Markup | None
     curves: Markup | None
     distribution: Markup
     table: Markup
@@ -53,7 +56,7 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
     """Return the section of a case.
 
     ``slug`` is the case's short name in addresses within the page. ``automaton`` is the picture of
-    the case's automaton. If the case has no level or no automaton, the section has only texts.
+    the case's automaton. If the case has no automaton, the section has only texts.
     """
     return render(
         "case_section.html",
@@ -64,7 +67,8 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         reasons=tuple(_reasons(case, slug)),
         curve=base64.b64encode(case.curve).decode(),
         has_baseline=bool(case.before),
-        drawings=_drawings(case, automaton),
+        drawings=_drawings(case, slug, automaton),
+        noun="traces" if case.report.traces else "episodes",
     )
 
 
@@ -74,6 +78,9 @@ def not_run_section(case: NotRun, slug: str) -> Markup:
 
 
 def _facts(report: CaseReport) -> list[str]:
+    if report.traces:
+        now, before = (_traces_text(len(names)) for names in (report.traces.now, report.traces.before))
+        return [now, f"compared with {before}", f"spec {report.traces.spec}"]
     facts = [f"{report.level} {report.variant}"]
     if report.reference:
         facts.append(f"compared with {report.reference.variant}")
@@ -84,25 +91,31 @@ def _facts(report: CaseReport) -> list[str]:
     return facts
 
 
+def _traces_text(count: int) -> str:
+    return f"{count} recorded trace{'s' * (count != 1)}"
+
+
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     """Yield the reasons of the verdict. Findings have links to their recorded episodes."""
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:
-        yield _Reason(finding.text, episode_links(finding, case.episodes, slug))
+        links = episode_links(finding, case.episodes, slug) or trace_links(finding, case.traces, slug)
+        yield _Reason(finding.text, links)
     yield from map(_Reason, report.edits)
 
 
-def _drawings(case: ReportedCase, automaton: AutomatonPicture | None) -> _Drawings | None:
+def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> _Drawings | None:
     level, fspa = case.level, case.fspa
-    if level is None or fspa is None or automaton is None:
+    if fspa is None or automaton is None:
         return None
     now, before = traffic(case.report.accounts), traffic(case.before)
     return _Drawings(
         automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
         notes=automaton.notes,
-        maps=case_maps(case, level),
-        player=player_panel(fspa, case.episodes),
+        maps=None if level is None else case_maps(case, level),
+        player=None if level is None else player_panel(fspa, case.episodes),
+        traces=trace_charts(fspa, case.traces, slug) if case.traces else None,
         curves=progress_curves(case.episodes) if case.episodes else None,
         distribution=progress_distribution(case.report.accounts, case.before),
         table=counts_table(fspa, now, before),

@@ -8,6 +8,7 @@ from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.regression.verdict.verdict import Verdict
 from tltlc.api import EMPTY, Fspa, record
 
@@ -20,6 +21,9 @@ class ReportedCase:
     episodes by index. ``before`` are the episodes of the baseline. ``baseline_level`` is the level
     that the baseline was recorded on, or None if it is unknown. ``curve`` is the plot of the
     retraining as a PNG, or empty without a retraining or its plot.
+
+    A case of recorded traces has no level. ``traces`` are examples of its traces by index; they are
+    empty for other cases.
     """
 
     report: CaseReport
@@ -29,6 +33,7 @@ class ReportedCase:
     before: tuple[ExplainedEpisode, ...] = ()
     baseline_level: Level | None = None
     curve: bytes = b""
+    traces: Mapping[int, TraceCurves] = EMPTY
 
 
 @record

@@ -11,6 +11,8 @@ from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.page.render import render
+from tltl_runtime.regression.report.page.trace_charts import anchor
+from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.regression.suite.slugs import episode_link
 from tltlc.api import record
 
@@ -48,6 +50,21 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
     label = f"play {'the end of ' * shows_end}{named}"
     links = [_link(index, episodes[index], slug) for index in indices]
     return render("episode_links.html", label=label, links=links)
+
+
+def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) -> Markup | None:
+    """Return links to the pictures of the drawn ``traces`` of a finding; None if it has none."""
+    links = [
+        _Link(index, f"#{anchor(slug, index)}", f"show the trace {traces[index].name}")
+        for index in finding.episodes
+        if index in traces
+    ]
+    if not links:
+        return None
+    named = "a trace that does not" if finding.others else "trace"
+    if len(links) > 1:
+        named = "traces that do not" if finding.others else "traces"
+    return render("episode_links.html", label=f"show {named}", links=links)
 
 
 def _link(index: int, episode: RecordedEpisode, slug: str) -> _Link:

@@ -39,7 +39,12 @@ def time_spent(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
 
 def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
     """Return the number of failed episodes that ended in each cell."""
-    return _grid(bounds, ENDS_CELL, [episode.place[:2] for episode in episodes if not episode.summary.success], 1.0)
+    return _grid(
+        bounds,
+        ENDS_CELL,
+        [episode.place[:2] for episode in episodes if not episode.summary.success and episode.place is not None],
+        1.0,
+    )
 
 
 def _grid(bounds: Box, cell: float, positions: Iterable[tuple[float, float]], weight: float) -> Heat:

@@ -15,7 +15,6 @@ from tltl_runtime.regression.report.page.case_section import case_section, not_r
 from tltl_runtime.regression.report.page.contents import SuiteReport
 from tltl_runtime.regression.report.page.markup import script_json
 from tltl_runtime.regression.report.page.render import render
-from tltl_runtime.regression.report.page.stealth.colours import colours, state_colours
 from tltl_runtime.regression.report.page.summary import summary
 from tltl_runtime.regression.suite.slugs import slugs
 from tltlc.api import Fspa
@@ -42,7 +41,7 @@ def html_report(suite: SuiteReport) -> str:
         "report.html",
         suite=suite.suite,
         digest=_digest(script),
-        style=Markup(f"{colours()}\n{_file_text('report.css')}"),
+        style=Markup(_style(has_maps=any(case.level for case in suite.cases))),
         summary=summary(suite, names),
         sections=[
             *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
@@ -53,9 +52,23 @@ def html_report(suite: SuiteReport) -> str:
     )
 
 
+def _style(*, has_maps: bool) -> str:
+    style = _file_text("report.css")
+    if not has_maps:
+        return style
+    # The colours of maps need the packages of the game, which a page of recorded traces does not.
+    from tltl_runtime.regression.report.page.stealth.colours import colours
+
+    return f"{colours()}\n{style}"
+
+
 def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
     drawn_cases = [case for case in cases if case is not None]
-    states = max((len(case["states"]) for case in drawn_cases), default=0)
+    if not drawn_cases:
+        return {"colours": [], "cases": []}
+    from tltl_runtime.regression.report.page.stealth.colours import state_colours
+
+    states = max(len(case["states"]) for case in drawn_cases)
     return {"colours": state_colours(states), "cases": drawn_cases}
 
 

@@ -125,6 +125,12 @@ class Report {
       { rootMargin: "800px" },
     );
     for (const view of this.views.values()) near.observe(view.section);
+    // A case of recorded traces has no map: its toggle switches the automaton alone.
+    for (const form of document.querySelectorAll(".toggles.without-map")) {
+      form.addEventListener("change", () => {
+        form.closest(".case").dataset.when = new FormData(form).get("when");
+      });
+    }
     addEventListener("hashchange", () => this.#follow());
     // A click on a link does not change the address if it names this episode already.
     document.addEventListener("click", ({ target }) => {

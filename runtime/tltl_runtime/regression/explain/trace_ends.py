@@ -1,0 +1,41 @@
+"""Describe how recorded traces fail: by the clauses that they break or do not meet."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from tltl_runtime.game.episode import Kind
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
+from tltlc.api import Fspa
+
+
+def trace_end_text(fspa: Fspa, cause: Kind, clauses: Sequence[str], traces: Sequence[ExplainedEpisode]) -> str:
+    """Describe how ``traces`` failed, which all share ``cause`` and ``clauses``, without their number.
+
+    The caller appends the number, so a comma follows a clause that is set off by a comma.
+    """
+    names = " and ".join(f"`{clause}`" for clause in clauses)
+    unmet = f"before {names or 'the spec'} {'are' if len(clauses) > 1 else 'is'} met"
+    if cause == "limit":
+        return f"reaches the limit {unmet}"
+    if cause == "stopped":
+        return f"ends {unmet}"
+    steps = [step for trace in traces if (step := _violation_step(fspa, trace)) is not None]
+    usual = _usual_step_text(steps)
+    return f"makes {names} impossible{usual}" if cause == "blocked" else f"breaks {names or 'the spec'}{usual}"
+
+
+def _violation_step(fspa: Fspa, trace: ExplainedEpisode) -> int | None:
+    """Return the number, from 1, of the sample that broke the spec; None if no sample did."""
+    violated = (arrival.step for arrival in trace.arrivals if fspa.states[arrival.state].verdict == "violated")
+    return next(violated, None)
+
+
+def _usual_step_text(steps: Sequence[int]) -> str:
+    if not steps:
+        return ""
+    step, count = Counter(steps).most_common(1)[0]
+    if count == len(steps):
+        return f" at step {step}"
+    return f", mostly at step {step}," if 2 * count > len(steps) else ""

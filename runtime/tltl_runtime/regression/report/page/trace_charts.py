@@ -1,0 +1,134 @@
+"""Draw recorded traces: the values of the atoms over time, with the states of the automaton.
+
+A row for each atom shows its curve, from -1 to 1; it is filled where the atom holds. Functions draw the
+SVG, because nearly every attribute is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Final
+
+from markupsafe import Markup
+
+from tltl_runtime.regression.report.page.markup import coordinate, element
+from tltl_runtime.regression.report.page.render import render
+from tltl_runtime.regression.report.trace_curves import TraceCurves
+from tltlc.api import Fspa, label_text, record
+
+_WIDTH: Final = 860
+_LEFT: Final = 170
+_RIGHT: Final = 10
+_ROW: Final = 26
+_STATES: Final = 22
+_AXIS: Final = 30
+_LONGEST_NAME: Final = 24
+"""Longer names of atoms are cut; their tooltip has the whole name."""
+
+_MOST_POINTS: Final = 1_500
+"""The most samples of a row that are drawn. Of a longer trace, the least and the greatest value are drawn for
+each group of samples, so that no short change is lost."""
+
+
+@record
+class _Chart:
+    """The picture of a trace; ``anchor`` is its address within the page."""
+
+    anchor: str
+    name: str
+    ended: str
+    picture: Markup
+
+
+def trace_charts(fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str) -> Markup:
+    """Return the pictures of traces. ``slug`` is the case's short name in addresses within the page."""
+    charts = [
+        _Chart(anchor(slug, index), curves.name, curves.ended, _chart(fspa, curves))
+        for index, curves in sorted(traces.items())
+    ]
+    return render("trace_charts.html", charts=charts)
+
+
+def anchor(slug: str, index: int) -> str:
+    """Return the address, within the page, of the picture of a trace."""
+    return f"trace:{slug}:{index}"
+
+
+def _chart(fspa: Fspa, curves: TraceCurves) -> Markup:
+    names = [atom.name for atom in fspa.atoms]
+    height = _STATES + _ROW * len(names) + _AXIS
+    parts = [element("title", f"{curves.name}: states and atoms over {curves.steps} steps")]
+    parts += _state_strip(fspa, curves)
+    for row, name in enumerate(names):
+        parts += _atom_row(name, [values[row] for values in curves.atoms], _STATES + _ROW * row)
+    parts += _axis(curves.steps, height - _AXIS)
+    return element("svg", *parts, class_="diagram trace", viewBox=f"0 0 {_WIDTH} {height}", role="img")
+
+
+def _x(step: float, steps: int) -> float:
+    return _LEFT + step / max(1, steps) * (_WIDTH - _LEFT - _RIGHT)
+
+
+def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
+    """Yield a box for each stay in a state, with the number of the state where it fits."""
+    yield element("text", "state", class_="tick y", x=_LEFT - 6, y=15)
+    starts = [*((arrival.state, arrival.step) for arrival in curves.arrivals), (0, curves.steps)]
+    for (state, start), (_, end) in pairwise(starts):
+        left, right = _x(start, curves.steps), _x(end, curves.steps)
+        title = element("title", f"state {state}, from step {start}: {label_text(fspa, state)}")
+        box = {"x": coordinate(left), "width": coordinate(max(0.5, right - left)), "y": 2, "height": _STATES - 6}
+        kind = fspa.states[state].verdict
+        yield element("rect", title, class_=f"stay {kind} {'odd' if state % 2 else 'even'}", **box)
+        if right - left > 14:
+            middle = coordinate((left + right) / 2)
+            yield element("text", str(state), class_="stay-name", x=middle, y=15)
+
+
+def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
+    """Yield the curve of an atom: its zero line, the area where it holds, and its name."""
+    steps, zero, height = len(values), top + _ROW / 2, _ROW / 2 - 2
+    short = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+    label_y = coordinate(zero + 4)
+    yield element("text", element("title", name), short, class_="tick y", x=_LEFT - 6, y=label_y)
+    y = coordinate(zero)
+    yield element("line", class_="grid", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y)
+    points = list(_points(values))
+    for first, last in _stretches(values):
+        left, width = _x(first, steps), _x(last, steps) - _x(first, steps)
+        box = {"x": coordinate(left), "width": coordinate(max(0.5, width)), "y": top + 2, "height": _ROW - 4}
+        yield element("rect", element("title", f"`{name}` holds, steps {first + 1} to {last}"), class_="holds", **box)
+    path = " ".join(f"{coordinate(_x(step, steps))},{coordinate(zero - height * value)}" for step, value in points)
+    yield element("polyline", class_="atom", points=path)
+
+
+def _stretches(values: Sequence[float]) -> Iterator[tuple[int, int]]:
+    """Yield the stretches of samples at which an atom holds: the first index, and the one after the last."""
+    start = None
+    for index, value in enumerate((*values, -1.0)):
+        if value > 0.0 and start is None:
+            start = index
+        elif value <= 0.0 and start is not None:
+            yield start, index
+            start = None
+
+
+def _points(values: Sequence[float]) -> Iterator[tuple[float, float]]:
+    """Yield the corners of a curve that keeps each value until the next sample."""
+    size = -(-len(values) // _MOST_POINTS)
+    for start in range(0, len(values), size):
+        group = values[start : start + size]
+        end = min(start + size, len(values))
+        for value in dict.fromkeys((min(group), max(group))):
+            yield float(start), value
+        yield float(end), group[-1]
+
+
+def _axis(steps: int, top: int) -> Iterator[Markup]:
+    spacings = (unit * 10**exponent for exponent in range(9) for unit in (1, 2, 5))
+    spacing = next(spacing for spacing in spacings if 8 * spacing >= steps)
+    for step in range(0, steps + 1, spacing):
+        x = coordinate(_x(step, steps))
+        yield element("line", class_="grid", x1=x, x2=x, y1=0, y2=top)
+        yield element("text", str(step), class_="tick x", x=x, y=top + 14)
+    yield element("text", "step", class_="tick x", x=coordinate((_LEFT + _WIDTH - _RIGHT) / 2), y=top + 27)

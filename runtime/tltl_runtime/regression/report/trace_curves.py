@@ -1,0 +1,63 @@
+"""The values of atoms over the samples of a recorded trace, read again for a picture."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+
+from tltl_runtime.regression.explain.explain import Finding
+from tltl_runtime.regression.explain.explained_episode import Arrival
+from tltl_runtime.regression.verdict.judged_traces import JudgedTraces
+from tltlc.api import Fspa, TltlError, fileio, monitors, record, traces
+
+_EXAMPLES = 3
+"""At most this many traces of each finding are drawn."""
+
+
+@record
+class TraceCurves:
+    """A recorded trace as it is drawn.
+
+    ``atoms`` has the values of all atoms, in [-1, 1], for each of the ``steps`` samples. ``arrivals``
+    are the entries into states of the automaton. ``ended`` says in words how the trace ended.
+    """
+
+    name: str
+    ended: str
+    atoms: tuple[tuple[float, ...], ...]
+    arrivals: tuple[Arrival, ...]
+
+    @property
+    def steps(self) -> int:
+        """The number of samples."""
+        return len(self.atoms)
+
+
+def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[int, TraceCurves]:
+    """Return the curves of example traces, by index: some of each finding, and the first accepted trace.
+
+    A trace that was removed or changed since it was judged is left out.
+    """
+    accepted = [account.summary.index for account in judged.now.accounts if account.summary.success]
+    wanted = {*(index for finding in findings for index in finding.episodes[:_EXAMPLES]), *accepted[:1]}
+    return {index: curves for index in sorted(wanted) for curves in _curves(judged, index)}
+
+
+def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
+    name, account, fspa = judged.now.names[index], judged.now.accounts[index], judged.fspa
+    with suppress(TltlError):
+        rows = tuple(_atom_values(fspa, name, account.summary.steps))
+        if len(rows) == account.summary.steps:
+            ended = "accepted" if account.summary.success else "not accepted"
+            yield TraceCurves(name, ended, rows, account.arrivals)
+
+
+def _atom_values(fspa: Fspa, path: str, steps: int) -> Iterator[tuple[float, ...]]:
+    """Yield the values of all atoms at each of the first ``steps`` samples of a trace."""
+    limit = fileio.limits.JUDGED_TRACE
+    text = traces.as_text(fileio.read_bytes(path, path, limit.size), path, fspa.signals)
+    samples = monitors.Samples(fspa, None, [])
+    read = traces.read_trace(io.BytesIO(text), path, fspa.signals, fspa.clock_s)
+    for number, sample in zip(range(1, steps + 1), read, strict=False):
+        yield samples.atom_values(sample, number)

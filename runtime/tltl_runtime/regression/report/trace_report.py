@@ -1,0 +1,77 @@
+"""The report on a case of recorded traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltl_runtime.evaluation.figures import figures_of
+from tltl_runtime.regression.explain.explain import findings, most_frequent_end
+from tltl_runtime.regression.explain.explained_episode import summaries_of
+from tltl_runtime.regression.report.case_report import CaseReport, TraceNames, error_location, headline, one_line
+from tltl_runtime.regression.report.reasons import reasons
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES
+from tltl_runtime.regression.suite.trace_case import TraceCase
+from tltl_runtime.regression.verdict.judged_traces import JudgedTraces, TraceSet
+from tltlc.api import TltlError, fileio
+
+
+def report_on_traces(judged: JudgedTraces) -> CaseReport:
+    """Return the report on a case whose traces were judged."""
+    case, fspa, judgement = judged.case, judged.fspa, judged.judgement
+    names = TraceNames(fspa.name, judged.now.names, judged.before.names)
+    unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
+    if judgement is None:
+        return CaseReport(case.name, "", "", "fail", unread, traces=names)
+    now, before = judged.now.accounts, judged.before.accounts
+    summaries, summaries_before = summaries_of(now), summaries_of(before)
+    few = tuple(_too_few_texts(judged))
+    statistics = tuple(reasons(judgement, judged.thresholds, summaries, summaries_before, are_traces=True))
+    figures, baseline = figures_of(summaries), figures_of(summaries_before)
+    is_worse = judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
+    most_frequent = most_frequent_end(None, fspa, now, before) if is_worse else None
+    return CaseReport(
+        name=case.name,
+        level="",
+        variant="",
+        verdict=judgement.verdict,
+        certain=judgement.certain,
+        rate_interval=judgement.rate_interval,
+        figures=figures,
+        baseline=baseline,
+        changes=judgement.changes,
+        causes=(*few, *statistics, *unread),
+        told=next(iter(few), "") or headline(judgement, judged.thresholds, statistics, most_frequent),
+        explanation=findings(None, fspa, now, before),
+        accounts=now,
+        traces=names,
+    )
+
+
+def report_on_broken_traces(case: TraceCase, error: TltlError) -> CaseReport:
+    """Return the report on a case whose spec or traces cannot be read. The verdict is ``fail``."""
+    file, name = fileio.split_spec_name(case.spec)
+    causes = ("it cannot be judged", *map(one_line, error.diagnostics))
+    return CaseReport(
+        case.name,
+        "",
+        "",
+        "fail",
+        causes,
+        told=": ".join(causes[:2]),
+        fault_at=error_location(error),
+        traces=TraceNames(name or file, (), ()),
+    )
+
+
+def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:
+    for traces, where in ((judged.now, ""), (judged.before, " in the baseline")):
+        if (count := len(traces.accounts)) < LEAST_EPISODES:
+            yield f"only {count} trace{'s' * (count != 1)}{where}: a verdict needs {LEAST_EPISODES}"
+
+
+def _unread_texts(traces: TraceSet, of: str) -> Iterator[str]:
+    """Yield a sentence that counts the traces that cannot be judged, with the first error."""
+    if traces.unread:
+        name, diagnostic = traces.unread[0]
+        count, total = len(traces.unread), len(traces.unread) + len(traces.names)
+        yield f"{count} of {total} traces{of} cannot be judged: first `{name}` ({one_line(diagnostic)})"

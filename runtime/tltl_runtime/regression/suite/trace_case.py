@@ -1,0 +1,70 @@
+"""Cases of recorded traces: a spec judges them, without a game and without a policy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tltl_runtime.regression.suite.named_files import spec_diagnostics
+from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
+from tltl_runtime.support.checked_table import CheckedTable
+from tltlc.api import Diagnostic, Label, fileio, record
+
+
+@record
+class TraceCase:
+    """A regression test of recorded traces: a spec judges them and the traces of a baseline.
+
+    ``spec`` is a path, or ``FILE:NAME``. ``traces`` and ``baseline`` are paths of files, and of folders
+    with such files. With ``as_episodes``, traces are judged as episodes: the samples after the goal, a
+    violation or the limit do not count.
+    """
+
+    name: str
+    spec: str
+    traces: tuple[str, ...]
+    baseline: tuple[str, ...]
+    thresholds: Thresholds = Thresholds()
+    as_episodes: bool = False
+
+
+def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -> tuple[TraceCase, Label] | None:
+    """Read a case of recorded traces and its label; None if it has errors.
+
+    ``folder`` is the folder of the suite, and ``thresholds`` are those that the case does not set.
+    """
+    before = len(table.log)
+    spec = _spec(table, folder)
+    traces, baseline = _paths(table, folder, "traces"), _paths(table, folder, "baseline")
+    thresholds = read_thresholds(table, thresholds)
+    judged_as = table.text("judged_as", "traces", one_of=("traces", "episodes"))
+    name = table.text("name", "")
+    table.report_unknown_keys()
+    if len(table.log) > before:
+        return None
+    name = name or Path(traces[0]).stem
+    return TraceCase(name, spec, traces, baseline, thresholds, judged_as == "episodes"), table.label
+
+
+def _spec(table: CheckedTable, folder: Path) -> str:
+    text = table.text("spec")
+    file, name = fileio.split_spec_name(text)
+    path = str(folder / file)
+    if text and not fileio.is_file(path):
+        title, help_ = f"there is no spec `{file}`", "paths are relative to the suite"
+        table.log.append(Diagnostic("TLT0805", title, (table.label_of("spec"),), help_))
+        return text
+    spec = f"{path}:{name}" if name else path
+    if text:
+        table.log += spec_diagnostics(spec, table.label_of("spec"))
+    return spec
+
+
+def _paths(table: CheckedTable, folder: Path, key: str) -> tuple[str, ...]:
+    """Read the paths of files and folders: a text, or a list of texts. They are relative to the suite."""
+    entry = table.entries.get(key)
+    names = table.names(key) if entry is not None and isinstance(entry.value, list) else (table.text(key),)
+    for name in names:
+        if name and not fileio.exists(folder / name):
+            title, help_ = f"there is no file or folder `{name}`", "paths are relative to the suite"
+            table.log.append(Diagnostic("TLT0805", title, (table.label_of(key),), help_))
+    return tuple(str(folder / name) for name in names)

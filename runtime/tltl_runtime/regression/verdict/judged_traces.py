@@ -1,0 +1,156 @@
+"""Judge the recorded traces of a case, and those of its baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
+
+from tltl_runtime.game.episode import Kind
+from tltl_runtime.regression.explain.explained_episode import Arrival, ExplainedEpisode, NearestMiss, summaries_of
+from tltl_runtime.regression.suite.suite import LEAST_EPISODES
+from tltl_runtime.regression.suite.thresholds import Thresholds
+from tltl_runtime.regression.suite.trace_case import TraceCase
+from tltl_runtime.regression.verdict.confidence import rate_interval
+from tltl_runtime.regression.verdict.verdict import Judgement, judge
+from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
+from tltl_runtime.spec.task import read_spec
+from tltlc.api import Diagnostic, Fspa, TltlError, record, replace, traces
+
+OnTrace = Callable[[TraceCase, int, int], None]
+"""A callback after each trace: the case, the number of traces judged so far, and the number of all."""
+
+_KINDS: Final[dict[traces.Kind, Kind]] = {
+    "broken": "violated",
+    "blocked": "blocked",
+    "late": "limit",
+    "unfinished": "stopped",
+}
+
+
+_NEVER: Final = 3.0
+"""A threshold that no change of the reward, which is in [-1, 1], can reach."""
+
+
+@record
+class TraceSet:
+    """Judged traces: their ``names``, and how each went, in the same order.
+
+    ``unread`` has the traces that cannot be judged, which are not in ``names``: their names, and the
+    errors.
+    """
+
+    names: tuple[str, ...]
+    accounts: tuple[ExplainedEpisode, ...]
+    unread: tuple[tuple[str, Diagnostic], ...]
+
+
+@record
+class JudgedTraces:
+    """A case of recorded traces with its verdict.
+
+    ``judgement`` is None if there is no trace, now or in the baseline, that can be judged.
+    ``thresholds`` are those of the case; if traces are not judged as episodes, or the spec has no limit,
+    no change of the reward counts, because the reward then is the progress.
+    """
+
+    case: TraceCase
+    thresholds: Thresholds
+    fspa: Fspa
+    judgement: Judgement | None
+    now: TraceSet
+    before: TraceSet
+
+
+def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: OnTrace) -> JudgedTraces:
+    """Judge the traces of a case and of its baseline, and return the verdict.
+
+    ``error`` is the allowed probability of a wrong verdict on this case. ``workers`` is the number of
+    processes, or None for the default of :func:`tltlc.api.traces.judge_files`. With fewer than 25
+    traces, now or in the baseline, the verdict is ``review``.
+
+    Raises:
+        TltlError: errors of the spec; TLT0001, a folder contains no trace or cannot be read; TLT0007, a
+            worker process ended.
+    """
+    fspa, spec = read_spec(case.spec)
+    clauses = traces.clauses_of(fspa, spec)
+    files = [_files(paths) for paths in (case.traces, case.baseline)]
+    total = sum(map(len, files))
+    # The same process or pool judges both, because the start of a pool takes longer than many traces.
+    judged = traces.judge_files(fspa, clauses, sum(files, ()), workers, episodes=case.as_episodes, details=True)
+    results = []
+    for count, result in enumerate(judged, start=1):
+        results.append(result)
+        on_trace(case, count, total)
+    now, before = (
+        _trace_set(fspa, part, as_episodes=case.as_episodes)
+        for part in (results[: len(files[0])], results[len(files[0]) :])
+    )
+    has_limit = case.as_episodes and fspa.limit_steps is not None
+    thresholds = case.thresholds if has_limit else replace(case.thresholds, reward=_NEVER)
+    return JudgedTraces(case, thresholds, fspa, _judgement(thresholds, error, now, before), now, before)
+
+
+def _files(paths: Sequence[str]) -> tuple[str, ...]:
+    found = traces.find_traces(paths)
+    if found.errors:
+        raise TltlError(found.errors)
+    return found.traces
+
+
+def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: TraceSet) -> Judgement | None:
+    if not now.accounts or not before.accounts:
+        return None
+    summaries, summaries_before = summaries_of(now.accounts), summaries_of(before.accounts)
+    judgement = judge(summaries, summaries_before, len(summaries), thresholds, error, paired=False)
+    if judgement is None or len(summaries_before) < LEAST_EPISODES:
+        passed = sum(summary.success for summary in summaries)
+        return Judgement("review", False, rate_interval(passed, len(summaries) - passed, error), ())
+    # A trace that cannot be judged could have changed the verdict.
+    return replace(judgement, verdict="review") if now.unread and judgement.verdict == "pass" else judgement
+
+
+def _trace_set(fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool) -> TraceSet:
+    read = [trace for trace in judged if trace.verdict is not None]
+    return TraceSet(
+        tuple(trace.name for trace in read),
+        tuple(_accounts(fspa, read, as_episodes=as_episodes)),
+        tuple((trace.name, trace.diagnostics[0]) for trace in judged if trace.verdict is None),
+    )
+
+
+def _accounts(fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool) -> Iterator[ExplainedEpisode]:
+    for index, trace in enumerate(judged):
+        assert trace.verdict is not None
+        yield _explained(fspa, index, trace.verdict, limit=fspa.limit_steps if as_episodes else None)
+
+
+def _explained(fspa: Fspa, index: int, verdict: traces.TraceVerdict, limit: int | None) -> ExplainedEpisode:
+    """Return a trace as an episode. ``limit`` is the spec's limit, if the trace was judged as an episode."""
+    outcome, cause, details = verdict.outcome, verdict.cause, verdict.details
+    assert details is not None
+    end = settled_end(outcome.accepted, outcome.verdict)
+    summary = EpisodeSummary(
+        index=index,
+        seed=None,
+        success=outcome.accepted,
+        end="stopped" if cause is not None and cause.kind == "unfinished" else end,
+        progress=outcome.progress,
+        reward=progress_return(outcome.accepted, outcome.progress, outcome.steps, limit),
+        steps=outcome.steps,
+        unmet=details.unmet,
+    )
+    nearest = details.nearest
+    return ExplainedEpisode(
+        summary=summary,
+        cause="success" if cause is None else _KINDS[cause.kind],
+        by=() if cause is None else cause.clauses,
+        place=None,
+        seen_by=(),
+        arrivals=tuple(Arrival(state, step) for state, step in details.arrivals),
+        nearest=None
+        if nearest is None
+        else NearestMiss(fspa.atoms[nearest.atom].name, round(nearest.robustness, 4), wanted=nearest.wanted),
+        way=(),
+        broke=() if cause is None else cause.atoms,
+    )

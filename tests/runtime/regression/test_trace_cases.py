@@ -1,0 +1,258 @@
+"""Cases of recorded traces: verdicts, sentences, reports and errors, without a game."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.suite.trace_case import TraceCase
+from tltl_runtime.regression.verdict.judged_traces import judge_traces
+from tltlc.diagnostics.diagnostic import TltlError
+
+Run = Callable[..., Outcome]
+
+SPEC = """clock 10 Hz
+signal on_lava: bool
+signal has_key: bool
+signal at_exit: bool
+
+spec fetch { reach has_key then at_exit  avoid on_lava }
+"""
+
+WON = ["000", "010", "011"]
+BURNT = ["000", "100", "110", "011"]
+SHORT = ["000", "010"]
+
+
+def write_traces(folder: Path, *kinds: tuple[int, Sequence[str]]) -> Path:
+    """Write so many traces of each kind; a trace is a list of rows, and a row has a digit for each signal."""
+    folder.mkdir(parents=True)
+    rows = [rows for count, rows in kinds for _ in range(count)]
+    for number, trace in enumerate(rows):
+        lines = [f"{step / 10:.1f},{','.join(digits)}" for step, digits in enumerate(trace)]
+        text = "\n".join(["time,on_lava,has_key,at_exit", *lines]) + "\n"
+        (folder / f"{number:03}.csv").write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder, as the current one, with a spec, traces of an old build, and traces of a new build in which the
+    lava burns players."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "fetch.tltl").write_text(SPEC, encoding="utf-8")
+    write_traces(tmp_path / "old", (95, WON), (5, SHORT))
+    write_traces(tmp_path / "new", (30, WON), (65, BURNT), (5, SHORT))
+    return tmp_path
+
+
+def regress(tltlc: Run, *words: str) -> Outcome:  # noqa: F811
+    return tltlc("regress", "--spec", "fetch.tltl", *words)
+
+
+def test_equal_traces_pass(tltlc: Run, here: Path) -> None:  # noqa: F811
+    result = regress(tltlc, "--baseline", "old", "--now", "old")
+    assert result.status == 0
+    assert result.out == ("fetch  pass     95 of 100  progress  0.97 ( 0.97)  reward  0.97 ( 0.97)\n1 case: 1 pass\n")
+    assert "wrote regression/fetch/report.html" in result.err
+
+
+def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) -> None:  # noqa: F811
+    result = regress(tltlc, "--baseline", "old", "--now", "new")
+    assert result.status == 1
+    first, *reasons, last = result.out.splitlines()
+    assert first.startswith("fetch  fail     30 of 100")
+    assert last == "1 case: 1 fail"
+    assert reasons[0].strip() == "met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%"
+    (burnt,) = (reason for reason in reasons if "breaks" in reason)
+    assert burnt.strip().startswith(
+        "breaks `avoid on_lava` at step 2 in 65 of 100 traces; before: in 0 of 100 traces; "
+    )
+    (short,) = (reason for reason in reasons if "ends before" in reason)
+    assert short.strip().startswith(
+        "ends before `reach has_key then at_exit` is met in 5 of 100 traces; before: in 5 of 100 traces; "
+    )
+
+
+def test_fewer_than_25_traces_need_a_review(tltlc: Run, here: Path) -> None:  # noqa: F811
+    write_traces(here / "few", (24, WON))
+    result = regress(tltlc, "--baseline", "old", "--now", "few")
+    assert result.status == 1
+    assert result.out.startswith("fetch  review   24 of 24")
+    assert "    only 24 traces: a verdict needs 25\n" in result.out
+    result = regress(tltlc, "--baseline", "few", "--now", "old")
+    assert "    only 24 traces in the baseline: a verdict needs 25\n" in result.out
+
+
+def test_a_trace_that_cannot_be_judged_needs_a_review(tltlc: Run, here: Path) -> None:  # noqa: F811
+    (here / "old" / "bad.csv").write_text("time,on_lava,has_key\n0.0,0,0\n", encoding="utf-8")
+    result = regress(tltlc, "--baseline", "old", "--now", "old")
+    assert result.out.startswith("fetch  review   95 of 100")
+    assert "1 of 101 traces cannot be judged: first `old/bad.csv` (old/bad.csv:1: TLT0" in result.out
+    assert "1 of 101 traces of the baseline cannot be judged" in result.out
+
+
+def test_folders_without_a_trace_that_can_be_judged_fail(tltlc: Run, here: Path) -> None:  # noqa: F811
+    (here / "bad").mkdir()
+    (here / "bad" / "bad.csv").write_text("time\n0.0\n", encoding="utf-8")
+    result = regress(tltlc, "--baseline", "old", "--now", "bad")
+    assert (result.status, result.out.splitlines()[0]) == (1, "fetch  fail")
+    (here / "empty").mkdir()
+    result = regress(tltlc, "--baseline", "old", "--now", "empty")
+    assert result.status == 1
+    assert "TLT0001, the folder `empty` contains no trace" in result.out
+
+
+def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F811
+    words = ("--baseline", "new", "--now", "new")
+    assert regress(tltlc, *words).out.startswith("fetch  fail ")
+    assert regress(tltlc, *words, "--pass-rate", "0.15", "--fail-rate", "0.1").out.startswith("fetch  pass ")
+    rejected = regress(tltlc, *words, "--pass-rate", "0.3")
+    assert (rejected.status, "--fail-rate must be at most --pass-rate" in rejected.err) == (2, True)
+
+
+def test_with_episodes_a_trace_ends_at_the_goal(tltlc: Run, here: Path) -> None:  # noqa: F811
+    write_traces(here / "longer", (40, [*WON, "100"]))
+    words = ("--baseline", "longer", "--now", "longer")
+    assert regress(tltlc, *words).out.startswith("fetch  fail      0 of 40")
+    assert regress(tltlc, *words, "--episodes").out.startswith("fetch  pass     40 of 40")
+
+
+def test_all_traces_are_compared_whatever_their_order(here: Path) -> None:
+    """Recordings have no seeds in common, so the first of them are no pairs."""
+    write_traces(here / "sorted", (95, SHORT), (205, WON))
+    case = TraceCase("it", "fetch.tltl", ("old",), ("sorted",))
+    judged = judge_traces(case, 0.05, 1, lambda *_: None)
+    assert judged.judgement is not None
+    assert [change.figure for change in judged.judgement.changes] == ["progress"]
+    assert judged.judgement.changes[0].before == pytest.approx((95 * 0.5 + 205) / 300, abs=0.05)
+
+
+def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # noqa: F811
+    files = ("--json", "report.json", "--junit", "report.xml", "--html", "report.html", "--github")
+    result = regress(tltlc, "--baseline", "old", "--now", "new", *files)
+    (annotation,) = (line for line in result.out.splitlines() if line.startswith("::"))
+    assert annotation.startswith("::error file=fetch.tltl,title=fetch%3A fail::met in 30 of 100 traces")
+    document = json.loads((here / "report.json").read_text(encoding="utf-8"))
+    (case,) = document["cases"]
+    assert (case["verdict"], case["spec"], case["episodes"], case["pass_rate"]) == ("fail", "fetch", 100, 0.3)
+    assert case["traces"]["now"][:2] == ["new/000.csv", "new/001.csv"]
+    assert case["accounts"][30]["by"] == ["avoid on_lava"]
+    (failure,) = ET.parse(here / "report.xml").getroot().iter("failure")
+    assert str(failure.get("message")).startswith("fail: breaks `avoid on_lava` at step 2 in 65 of 100 traces")
+    page = (here / "report.html").read_text(encoding="utf-8")
+    assert "100 recorded traces · compared with 100 recorded traces · spec fetch" in page
+    assert page.count('<figure class="trace"') == 7
+    assert "<title>`on_lava` holds, steps 2 to 3</title>" in page
+    assert "On the map" not in page
+
+
+def suite_file(here: Path, text: str) -> Path:
+    (here / "suite.toml").write_text(text, encoding="utf-8")
+    return here / "suite.toml"
+
+
+SUITE = """
+[[case]]
+name = "lava"
+spec = "fetch.tltl:fetch"
+traces = "new"
+baseline = ["old"]
+thresholds = { pass_rate = 0.9 }
+
+[[case]]
+spec = "fetch.tltl"
+traces = ["old"]
+baseline = "old"
+judged_as = "episodes"
+thresholds = { pass_rate = 0.8 }
+"""
+
+
+def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
+    suite = suite_file(here, SUITE)
+    first, second = read_suite(suite).cases
+    assert isinstance(first, TraceCase)
+    assert isinstance(second, TraceCase)
+    assert (first.name, first.thresholds.pass_rate, first.as_episodes) == ("lava", 0.9, False)
+    assert (second.name, second.as_episodes) == ("old", True)
+    result = tltlc("regress", "suite.toml")
+    assert [line.split()[:2] for line in result.out.splitlines() if line[0] != " "][:2] == [
+        ["lava", "fail"],
+        ["old", "pass"],
+    ]
+    changed = tltlc("regress", "suite.toml", "--changed", "new/003.csv")
+    assert "left out, because it depends on none of the named files: old" in changed.err
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ('[[case]]\nspec = "fetch.tltl"\ntraces = "new"\n', "TLT0803", "`[[case]]` lacks `baseline`"),
+        ('[[case]]\ntraces = "new"\nbaseline = "old"\n', "TLT0803", "`[[case]]` lacks `spec`"),
+        (
+            '[[case]]\nspec = "fetch.tltl"\ntraces = "newer"\nbaseline = "old"\n',
+            "TLT0805",
+            "there is no file or folder `newer`",
+        ),
+        ('[[case]]\nspec = "f.tltl"\ntraces = "new"\nbaseline = "old"\n', "TLT0805", "there is no spec `f.tltl`"),
+        (
+            '[[case]]\nspec = "fetch.tltl"\ntraces = "new"\nbaseline = "old"\nlevel = "navigation"\n',
+            "TLT0802",
+            "`[[case]]` has no key `level`",
+        ),
+        (
+            '[[case]]\nspec = "fetch.tltl:gone"\ntraces = "new"\nbaseline = "old"\n',
+            "TLT0720",
+            "gone",
+        ),
+    ],
+)
+def test_errors_of_a_suite(text: str, code: str, message: str, here: Path) -> None:
+    with pytest.raises(TltlError) as caught:
+        read_suite(suite_file(here, text))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == code
+    assert message in diagnostic.title
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--spec", "fetch.tltl", "--now", "new"), "--spec needs --baseline"),
+        (("--spec", "fetch.tltl", "--baseline", "old"), "--spec needs --now"),
+        (("--now", "new"), "--now works only with --spec"),
+        (("--pass-rate", "0.5"), "--pass-rate works only with --spec"),
+        (("--episodes",), "--episodes works only with --spec"),
+        (("suite.toml", "--spec", "fetch.tltl", "--now", "new", "--baseline", "old"), "leave out SUITE"),
+        (("--spec", "fetch.tltl", "--now", "new", "--baseline", "old", "--retrain"), "leave out --retrain"),
+    ],
+)
+def test_options_that_do_not_fit_together(words: Sequence[str], message: str, tltlc: Run, here: Path) -> None:  # noqa: F811
+    result = tltlc("regress", *words)
+    assert (result.status, message in result.err) == (2, True), result.err
+
+
+def test_traces_are_judged_without_a_game(here: Path) -> None:
+    """Neither the game's physics nor its pictures are needed, nor what trains."""
+    hidden = ["pybullet", "torch", "rsl_rl", "pygame", "matplotlib", "imageio_ffmpeg"]
+    program = (
+        f"import sys; sys.modules.update(dict.fromkeys({hidden})); from tltlc.interfaces.cli.main import main; "
+        "main('regress --spec fetch.tltl --baseline old --now old'.split())"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=here, capture_output=True, text=True, timeout=HANG_S, check=False
+    )
+    assert (done.returncode, done.stderr.splitlines()) == (
+        0,
+        ["fetch: 200 traces are judged", "wrote regression/fetch/report.html: open it in a browser"],
+    )
