@@ -56,6 +56,9 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         from tltl_runtime.regression.verdict.baseline_run import partial_path, record_and_write_baseline
 
         loaded = read_suite(suite or SHIPPED)
+        if not loaded.played_cases:
+            click.echo("nothing to record: the baselines of the suite are recorded traces", err=True)
+            return cli.exits.CLEAN
         output = path or default_output(loaded.path)
         check_apart({"--output": output}, files_of(loaded) - {loaded.baseline.resolve()})
         check_writable({"--output": output})

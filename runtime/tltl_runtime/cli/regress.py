@@ -74,10 +74,10 @@ Examples:
 )
 @click.option("--now", metavar="PATH", type=click.Path(path_type=Path), help="The traces to judge: a file or a folder.")
 @click.option(
-    "--episodes",
-    "as_episodes",
-    is_flag=True,
-    help="With --spec: end each trace at the goal, at a violation or at the limit of the spec.",
+    "--judged-as",
+    type=click.Choice(["episodes", "traces"]),
+    help="With --spec: whether each trace ends at the goal, at a violation or at the limit of the spec, or is judged "
+    "as a whole (default: episodes).",
 )
 @_threshold_option("pass_rate", "The pass rate that is enough", "0.85")
 @_threshold_option("fail_rate", "The pass rate below which the case fails", "0.5")
@@ -103,7 +103,7 @@ def command(
     baseline: Path | None,
     spec: str | None,
     now: Path | None,
-    as_episodes: bool,
+    judged_as: str | None,
     pass_rate: float | None,
     fail_rate: float | None,
     fresh: bool,
@@ -113,7 +113,7 @@ def command(
     folder: Path | None,
     **files: Path | None,
 ) -> int:
-    """Let trained policies play the cases of a suite, and report which levels still play as designed.
+    """Report which levels still play as designed: trained policies play them, or recorded play is judged.
 
     SUITE is a TOML file. Without it, the levels that come with tltlc are played in all of their variants. A case is not
     played again if nothing has changed since the last time. Cases of a suite may also be recorded traces, of any game;
@@ -131,7 +131,7 @@ def command(
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes works only with --retrain: add --retrain")
     thresholds = {name: rate for name, rate in (("pass_rate", pass_rate), ("fail_rate", fail_rate)) if rate is not None}
-    _check_trace_options(spec, now, baseline, suite, changed, thresholds, as_episodes=as_episodes, retrain=retrain)
+    _check_trace_options(spec, now, baseline, suite, changed, thresholds, judged_as=judged_as, retrain=retrain)
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` counts as a file of --changed: put the suite before --changed")
     with cli.Report() as report, name_missing_extra("`tltlc regress`"), ignore_closed_pipe():
@@ -142,7 +142,7 @@ def command(
             suite=suite,
             spec=spec,
             now=now,
-            as_episodes=as_episodes,
+            judged_as=judged_as,
             thresholds=thresholds,
             changed=tuple(filter(None, changed)) if changed else None,
             folder=folder or _default_folder(suite, spec),
@@ -175,25 +175,30 @@ def _check_trace_options(
     changed: tuple[str, ...],
     thresholds: Mapping[str, float],
     *,
-    as_episodes: bool,
+    judged_as: str | None,
     retrain: bool,
 ) -> None:
     """Raise UsageError unless the options for recorded traces fit together."""
     if spec is None:
         needs_spec = {
             "--now": now is not None,
-            "--episodes": as_episodes,
+            "--judged-as": judged_as is not None,
             **{f"--{name.replace('_', '-')}": True for name in thresholds},
         }
         if used := next((option for option, is_used in needs_spec.items() if is_used), None):
-            raise click.UsageError(f"{used} works only with --spec: name the spec that judges the recorded traces")
+            in_suite = "" if used == "--now" else "; in a suite, write it as a key of the case"
+            raise click.UsageError(
+                f"{used} works only with --spec, which names the spec that judges recorded traces{in_suite}"
+            )
         return
     if missing := next((name for name, path in (("--now", now), ("--baseline", baseline)) if path is None), None):
         which = "to judge" if missing == "--now" else "to compare with"
         raise click.UsageError(f"--spec needs {missing}: name the recorded traces {which}, a file or a folder")
     excluded = {"SUITE": suite is not None, "--changed": bool(changed), "--retrain": retrain}
     if used := next((option for option, is_used in excluded.items() if is_used), None):
-        raise click.UsageError(f"--spec judges recorded traces without a suite: leave out {used}")
+        hint = "; put several traces into one folder" if used == "SUITE" else ""
+        named = f"`{suite}`" if used == "SUITE" else used
+        raise click.UsageError(f"--spec judges recorded traces without a suite: leave out {named}{hint}")
     if thresholds.get("fail_rate", 0.5) > thresholds.get("pass_rate", 0.85):
         raise click.UsageError("--fail-rate must be at most --pass-rate (defaults: 0.5 and 0.85)")
 

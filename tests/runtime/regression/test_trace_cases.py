@@ -107,7 +107,8 @@ def test_folders_without_a_trace_that_can_be_judged_fail(tltlc: Run, here: Path)
     result = regress(tltlc, "--baseline", "old", "--now", "bad")
     assert (result.status, result.out.splitlines()[0]) == (1, "fetch  fail")
     (here / "empty").mkdir()
-    result = regress(tltlc, "--baseline", "old", "--now", "empty")
+    suite_file(here, '[[case]]\nspec = "fetch.tltl"\ntraces = "empty"\nbaseline = "old"\n')
+    result = tltlc("regress", "suite.toml")
     assert result.status == 1
     assert "TLT0001, the folder `empty` contains no trace" in result.out
 
@@ -120,11 +121,50 @@ def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F81
     assert (rejected.status, "--fail-rate must be at most --pass-rate" in rejected.err) == (2, True)
 
 
-def test_with_episodes_a_trace_ends_at_the_goal(tltlc: Run, here: Path) -> None:  # noqa: F811
+def test_a_trace_ends_at_the_goal_unless_it_is_judged_as_a_whole(tltlc: Run, here: Path) -> None:  # noqa: F811
     write_traces(here / "longer", (40, [*WON, "100"]))
     words = ("--baseline", "longer", "--now", "longer")
-    assert regress(tltlc, *words).out.startswith("fetch  fail      0 of 40")
-    assert regress(tltlc, *words, "--episodes").out.startswith("fetch  pass     40 of 40")
+    assert regress(tltlc, *words).out.startswith("fetch  pass     40 of 40")
+    assert regress(tltlc, *words, "--judged-as", "traces").out.startswith("fetch  fail      0 of 40")
+
+
+def test_a_trace_that_takes_longer_than_the_limit_fails(tltlc: Run, here: Path) -> None:  # noqa: F811
+    (here / "fetch.tltl").write_text(SPEC.replace("avoid", "limit 2 steps  avoid"), encoding="utf-8")
+    result = regress(tltlc, "--baseline", "old", "--now", "old")
+    assert result.out.startswith("fetch  fail      0 of 100")
+    assert "reaches the limit before `reach has_key then at_exit` is met in 100 of 100 traces" in result.out
+
+
+def test_earlier_failures_at_another_stage_are_not_denied(tltlc: Run, here: Path) -> None:  # noqa: F811
+    """In both builds, as many players burn; in the new one, they have the key already."""
+    write_traces(here / "early", (70, WON), (30, ["000", "100"]))
+    write_traces(here / "late", (70, WON), (30, ["000", "010", "110"]))
+    result = regress(tltlc, "--baseline", "early", "--now", "late")
+    (burnt,) = (line.strip() for line in result.out.splitlines() if "breaks" in line)
+    assert burnt.startswith("breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces; ")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "status"),
+    [
+        (("--baseline", "old", "--now", "gone"), "TLT0001", 3),
+        (("--baseline", "gone", "--now", "old"), "TLT0001", 3),
+        (("--baseline", "old", "--now", "empty"), "TLT0001", 3),
+        (("--spec", "gone.tltl", "--baseline", "old", "--now", "old"), "TLT0001", 3),
+        (("--spec", "fetch.tltl:gone", "--baseline", "old", "--now", "old"), "TLT0720", 2),
+    ],
+)
+def test_a_name_that_does_not_exist_is_an_error_and_no_verdict(
+    words: Sequence[str],
+    code: str,
+    status: int,
+    tltlc: Run,  # noqa: F811
+    here: Path,
+) -> None:
+    (here / "empty").mkdir()
+    result = regress(tltlc, *words)
+    assert (result.status, result.out, code in result.err) == (status, "", True), result.err
+    assert not (here / "regression").exists()
 
 
 def test_all_traces_are_compared_whatever_their_order(here: Path) -> None:
@@ -145,14 +185,14 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     document = json.loads((here / "report.json").read_text(encoding="utf-8"))
     (case,) = document["cases"]
     assert (case["verdict"], case["spec"], case["episodes"], case["pass_rate"]) == ("fail", "fetch", 100, 0.3)
-    assert case["traces"]["now"][:2] == ["new/000.csv", "new/001.csv"]
+    assert case["traces"]["now"]["names"][:2] == ["new/000.csv", "new/001.csv"]
     assert case["accounts"][30]["by"] == ["avoid on_lava"]
     (failure,) = ET.parse(here / "report.xml").getroot().iter("failure")
     assert str(failure.get("message")).startswith("fail: breaks `avoid on_lava` at step 2 in 65 of 100 traces")
     page = (here / "report.html").read_text(encoding="utf-8")
-    assert "100 recorded traces · compared with 100 recorded traces · spec fetch" in page
+    assert "100 recorded traces of new · compared with 100 recorded traces of old · spec fetch" in page
     assert page.count('<figure class="trace"') == 7
-    assert "<title>`on_lava` holds, steps 2 to 3</title>" in page
+    assert "<title>on_lava holds at step 2</title>" in page
     assert "On the map" not in page
 
 
@@ -173,9 +213,16 @@ thresholds = { pass_rate = 0.9 }
 spec = "fetch.tltl"
 traces = ["old"]
 baseline = "old"
-judged_as = "episodes"
+judged_as = "traces"
 thresholds = { pass_rate = 0.8 }
 """
+
+
+def test_no_baseline_is_recorded_for_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
+    suite_file(here, SUITE)
+    result = tltlc("baseline", "suite.toml")
+    assert (result.status, result.err) == (0, "nothing to record: the baselines of the suite are recorded traces\n")
+    assert not (here / "suite.baseline.json").exists()
 
 
 def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
@@ -183,8 +230,8 @@ def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
     first, second = read_suite(suite).cases
     assert isinstance(first, TraceCase)
     assert isinstance(second, TraceCase)
-    assert (first.name, first.thresholds.pass_rate, first.as_episodes) == ("lava", 0.9, False)
-    assert (second.name, second.as_episodes) == ("old", True)
+    assert (first.name, first.thresholds.pass_rate, first.as_episodes) == ("lava", 0.9, True)
+    assert (second.name, second.as_episodes) == ("old", False)
     result = tltlc("regress", "suite.toml")
     assert [line.split()[:2] for line in result.out.splitlines() if line[0] != " "][:2] == [
         ["lava", "fail"],
@@ -197,7 +244,7 @@ def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
 @pytest.mark.parametrize(
     ("text", "code", "message"),
     [
-        ('[[case]]\nspec = "fetch.tltl"\ntraces = "new"\n', "TLT0803", "`[[case]]` lacks `baseline`"),
+        ('[[case]]\nspec = "fetch.tltl"\ntraces = "new"\n', "TLT0803", "`[[case]]` has `traces`, but lacks `baseline`"),
         ('[[case]]\ntraces = "new"\nbaseline = "old"\n', "TLT0803", "`[[case]]` lacks `spec`"),
         (
             '[[case]]\nspec = "fetch.tltl"\ntraces = "newer"\nbaseline = "old"\n',
@@ -232,8 +279,11 @@ def test_errors_of_a_suite(text: str, code: str, message: str, here: Path) -> No
         (("--spec", "fetch.tltl", "--baseline", "old"), "--spec needs --now"),
         (("--now", "new"), "--now works only with --spec"),
         (("--pass-rate", "0.5"), "--pass-rate works only with --spec"),
-        (("--episodes",), "--episodes works only with --spec"),
-        (("suite.toml", "--spec", "fetch.tltl", "--now", "new", "--baseline", "old"), "leave out SUITE"),
+        (("--judged-as", "traces"), "in a suite, write it as a key of the case"),
+        (
+            ("suite.toml", "--spec", "fetch.tltl", "--now", "new", "--baseline", "old"),
+            "leave out `suite.toml`; put several traces into one folder",
+        ),
         (("--spec", "fetch.tltl", "--now", "new", "--baseline", "old", "--retrain"), "leave out --retrain"),
     ],
 )

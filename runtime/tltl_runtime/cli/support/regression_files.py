@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, cast, get_args
 
-from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.evaluation.versions import judging_versions, versions
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
@@ -79,9 +79,9 @@ def _page_text(outcome: SuiteRun) -> str:
     is_shipped = suite.path == SHIPPED
     contents = SuiteReport(
         suite="shipped" if is_shipped else suite.path.stem,
-        seed=suite.seed,
+        seed=suite.seed if suite.played_cases else None,
         error=suite.error,
-        versions=versions(),
+        versions=versions() if suite.played_cases else judging_versions(),
         cases=tuple(_reported_case(case, suite, outcome.folder) for case in outcome.cases),
         complete=outcome.complete,
         not_run=tuple(_cases_not_run(outcome)),

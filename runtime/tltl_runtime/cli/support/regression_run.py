@@ -25,8 +25,10 @@ from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.suite_run import FinishedCase, check_references, lock_run, regress
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
 from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
+from tltl_runtime.spec.task import read_spec
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import TltlError, cli, fileio, record, workflow_command
+from tltl_runtime.support.shown_path import path_text
+from tltlc.api import Diagnostic, TltlError, cli, fileio, record, traces, workflow_command
 
 _MOST_NAMED: Final = 8
 """The most files that a message names."""
@@ -47,7 +49,7 @@ class RegressOptions:
     suite: Path | None
     spec: str | None
     now: Path | None
-    as_episodes: bool
+    judged_as: str | None
     thresholds: Mapping[str, float]
     changed: tuple[str, ...] | None
     folder: Path
@@ -112,19 +114,33 @@ def run(options: RegressOptions) -> int:
 
 
 def _suite(options: RegressOptions) -> Suite:
-    """Return the suite that the options name, or one of a single case for ``--spec``."""
+    """Return the suite that the options name, or one of a single case for ``--spec``.
+
+    Raises:
+        TltlError: the errors of the suite or of the spec; TLT0001, a path has no trace.
+    """
     if options.spec is None:
         return read_suite(options.suite or SHIPPED, options.baseline)
     assert options.now is not None
     assert options.baseline is not None
+    read_spec(options.spec)
     file, name = fileio.split_spec_name(options.spec)
+    for option, path in (("--now", options.now), ("--baseline", options.baseline)):
+        if not fileio.exists(path):
+            title, help_ = (
+                f"there is no `{path_text(path)}`",
+                f"name a recorded trace, or a folder of them, with {option}",
+            )
+            raise TltlError([Diagnostic("TLT0001", title, help=help_)])
+        if errors := traces.find_traces([str(path)]).errors:
+            raise TltlError(errors)
     case = TraceCase(
         name=name or Path(file).name.partition(".")[0],
         spec=options.spec,
         traces=(str(options.now),),
         baseline=(str(options.baseline),),
         thresholds=Thresholds(**options.thresholds),
-        as_episodes=options.as_episodes,
+        as_episodes=options.judged_as != "traces",
     )
     return Suite(Path(file), 0, DEFAULT_ERROR, (case,), options.baseline)
 
@@ -233,7 +249,7 @@ def _resume_words(options: RegressOptions) -> list[str]:
     words = ["tltlc", "regress", *([str(options.suite)] if options.suite else [])]
     for name, value in values.items():
         words += [] if value is None else [name, str(value)]
-    words += ["--episodes"] if options.as_episodes else []
+    words += [] if options.judged_as is None else ["--judged-as", options.judged_as]
     words += [word for name, value in options.thresholds.items() for word in (option_of(name), f"{value:g}")]
     words += ["--github"] if options.github else []
     return words if options.changed is None else [*words, "--changed", *options.changed]

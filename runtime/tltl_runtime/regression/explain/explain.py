@@ -140,7 +140,7 @@ def _ends(
     """
     noun = _noun(level)
     ends_before = [end_of(level, fspa, episode) for episode in before if not episode.summary.success]
-    for group in failures(level, fspa, now):
+    for group in failures(level, fspa, now, ends_before):
         matches = [group.matches(end) for end in ends_before]
         ends_before = [end for end, is_match in zip(ends_before, matches, strict=True) if not is_match]
         headline = f"{group.text} in {_count_text(len(group.episodes), now, noun)}"

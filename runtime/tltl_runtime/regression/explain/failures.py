@@ -67,8 +67,13 @@ def end_of(level: Level | None, fspa: Fspa, episode: ExplainedEpisode) -> Failur
     return FailureEnd(episode.cause, by, where, subgoal(fspa, episode.summary.unmet))
 
 
-def failures(level: Level | None, fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> Iterator[Failures]:
+def failures(
+    level: Level | None, fspa: Fspa, episodes: Sequence[ExplainedEpisode], ends_before: Collection[FailureEnd] = ()
+) -> Iterator[Failures]:
     """Group the failed episodes by how they end. All texts are distinct.
+
+    ``ends_before`` are the ends with which the groups are compared: no text of a group that has a
+    text of its own may also describe an end of these that does not belong to it.
 
     First come the largest groups, whose episodes have equal ends. Next are groups of the other
     episodes by cause. The last group contains the rest.
@@ -78,7 +83,7 @@ def failures(level: Level | None, fspa: Fspa, episodes: Sequence[ExplainedEpisod
         if not episode.summary.success:
             groups.setdefault(end_of(level, fspa, episode), []).append(episode)
     frequent = _frequent_groups(groups, len(episodes))
-    stages = Counter(replace(end, undone=Subgoal()) for end in groups)
+    stages = Counter(replace(end, undone=Subgoal()) for end in {*groups, *ends_before})
     for end in frequent:
         # If ends differ only in their subgoals, name the subgoal, so that the texts differ.
         stage = _stage_text(level, end) if stages[replace(end, undone=Subgoal())] > 1 else ""

@@ -50,12 +50,20 @@ def _limit_text(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], 
     often = "" if 2 * count > len(misses) else "most often "
     if not must_hold:
         return f"{often}the limit is that `{atom}` holds"
-    if level is not None and (distances := [miss.distance for miss in same_limit if miss.distance is not None]):
+    if level is None:
+        return _trace_limit_text(often, atom, max(miss.robustness for miss in same_limit))
+    if distances := [miss.distance for miss in same_limit if miss.distance is not None]:
         nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
         return f"closest approach{of} to `{same_limit[0].target}`: {nearest} ({often}`{atom}` is the limit{sufficient})"
     best = max(miss.robustness for miss in same_limit)
     # A Boolean atom that does not hold has robustness -1, which says nothing.
     return f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
+
+
+def _trace_limit_text(often: str, atom: str, best: float) -> str:
+    """Say which atom kept traces from the next subgoal, and, if it is not Boolean, its best value."""
+    value = f", with {number(best, 2)} at best: it holds above 0" if best > -1.0 else ""
+    return f"{often}`{atom}` was missing{value}"
 
 
 def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:

@@ -38,4 +38,6 @@ def _usual_step_text(steps: Sequence[int]) -> str:
     step, count = Counter(steps).most_common(1)[0]
     if count == len(steps):
         return f" at step {step}"
-    return f", mostly at step {step}," if 2 * count > len(steps) else ""
+    if 2 * count > len(steps):
+        return f", mostly at step {step},"
+    return f", at steps {min(steps)} to {max(steps)},"

@@ -22,14 +22,22 @@ from tltlc.api import Diagnostic, TltlError, record
 
 @record
 class TraceNames:
-    """The names of the recorded traces of a case, in the order of their indices, and of its spec.
+    """The names of recorded traces, in the order of their indices.
 
-    ``now`` are the traces that were judged, ``before`` those of the baseline.
+    ``place`` names the files and folders that they come from.
     """
 
+    place: str
+    names: tuple[str, ...]
+
+
+@record
+class CaseTraces:
+    """The recorded traces of a case, ``now`` and in the baseline, and the name of its ``spec``."""
+
     spec: str
-    now: tuple[str, ...]
-    before: tuple[str, ...]
+    now: TraceNames
+    before: TraceNames
 
 
 @record
@@ -69,7 +77,7 @@ class CaseReport:
     """The index of each recorded episode, with the name of its file."""
     retrained: RetrainingResult | None = None
     """The result of retraining the policy; None if it was not requested or not needed."""
-    traces: TraceNames | None = None
+    traces: CaseTraces | None = None
     told: str = ""
     """The headline; if it is empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None

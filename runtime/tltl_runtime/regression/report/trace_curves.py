@@ -8,6 +8,7 @@ from contextlib import suppress
 
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.explain.explained_episode import Arrival
+from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltl_runtime.regression.verdict.judged_traces import JudgedTraces
 from tltlc.api import Fspa, TltlError, fileio, monitors, record, traces
 
@@ -49,8 +50,8 @@ def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
     with suppress(TltlError):
         rows = tuple(_atom_values(fspa, name, account.summary.steps))
         if len(rows) == account.summary.steps:
-            ended = "accepted" if account.summary.success else "not accepted"
-            yield TraceCurves(name, ended, rows, account.arrivals)
+            failed = trace_end_text(fspa, account.cause, account.by, [account])
+            yield TraceCurves(name, "accepted" if account.summary.success else failed, rows, account.arrivals)
 
 
 def _atom_values(fspa: Fspa, path: str, steps: int) -> Iterator[tuple[float, ...]]:

@@ -7,7 +7,14 @@ from collections.abc import Iterator
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.explain.explain import findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import summaries_of
-from tltl_runtime.regression.report.case_report import CaseReport, TraceNames, error_location, headline, one_line
+from tltl_runtime.regression.report.case_report import (
+    CaseReport,
+    CaseTraces,
+    TraceNames,
+    error_location,
+    headline,
+    one_line,
+)
 from tltl_runtime.regression.report.reasons import reasons
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.trace_case import TraceCase
@@ -18,7 +25,7 @@ from tltlc.api import TltlError, fileio
 def report_on_traces(judged: JudgedTraces) -> CaseReport:
     """Return the report on a case whose traces were judged."""
     case, fspa, judgement = judged.case, judged.fspa, judged.judgement
-    names = TraceNames(fspa.name, judged.now.names, judged.before.names)
+    names = _case_traces(case, fspa.name, judged.now.names, judged.before.names)
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
     if judgement is None:
         return CaseReport(case.name, "", "", "fail", unread, traces=names)
@@ -59,8 +66,12 @@ def report_on_broken_traces(case: TraceCase, error: TltlError) -> CaseReport:
         causes,
         told=": ".join(causes[:2]),
         fault_at=error_location(error),
-        traces=TraceNames(name or file, (), ()),
+        traces=_case_traces(case, name or file, (), ()),
     )
+
+
+def _case_traces(case: TraceCase, spec: str, now: tuple[str, ...], before: tuple[str, ...]) -> CaseTraces:
+    return CaseTraces(spec, TraceNames(", ".join(case.traces), now), TraceNames(", ".join(case.baseline), before))
 
 
 def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from tltl_runtime.regression.suite.named_files import spec_diagnostics
 from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
 from tltl_runtime.support.checked_table import CheckedTable
 from tltlc.api import Diagnostic, Label, fileio, record
+
+JUDGED_AS: Final = ("episodes", "traces")
+"""The values of the key ``judged_as``; the first is the default."""
 
 
 @record
@@ -15,8 +19,8 @@ class TraceCase:
     """A regression test of recorded traces: a spec judges them and the traces of a baseline.
 
     ``spec`` is a path, or ``FILE:NAME``. ``traces`` and ``baseline`` are paths of files, and of folders
-    with such files. With ``as_episodes``, traces are judged as episodes: the samples after the goal, a
-    violation or the limit do not count.
+    with such files. With ``as_episodes``, each trace ends at the goal, at a violation, or at the limit of the
+    spec; otherwise, it is judged as a whole.
     """
 
     name: str
@@ -24,7 +28,7 @@ class TraceCase:
     traces: tuple[str, ...]
     baseline: tuple[str, ...]
     thresholds: Thresholds = Thresholds()
-    as_episodes: bool = False
+    as_episodes: bool = True
 
 
 def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -> tuple[TraceCase, Label] | None:
@@ -36,13 +40,13 @@ def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -
     spec = _spec(table, folder)
     traces, baseline = _paths(table, folder, "traces"), _paths(table, folder, "baseline")
     thresholds = read_thresholds(table, thresholds)
-    judged_as = table.text("judged_as", "traces", one_of=("traces", "episodes"))
+    judged_as = table.text("judged_as", JUDGED_AS[0], one_of=JUDGED_AS)
     name = table.text("name", "")
     table.report_unknown_keys()
     if len(table.log) > before:
         return None
     name = name or Path(traces[0]).stem
-    return TraceCase(name, spec, traces, baseline, thresholds, judged_as == "episodes"), table.label
+    return TraceCase(name, spec, traces, baseline, thresholds, judged_as == JUDGED_AS[0]), table.label
 
 
 def _spec(table: CheckedTable, folder: Path) -> str:
@@ -62,7 +66,12 @@ def _spec(table: CheckedTable, folder: Path) -> str:
 def _paths(table: CheckedTable, folder: Path, key: str) -> tuple[str, ...]:
     """Read the paths of files and folders: a text, or a list of texts. They are relative to the suite."""
     entry = table.entries.get(key)
-    names = table.names(key) if entry is not None and isinstance(entry.value, list) else (table.text(key),)
+    if entry is None:
+        title = f"{table.description} has `traces`, but lacks `{key}`"
+        help_ = f'name the recorded traces to compare with, e.g. `{key} = "traces/old"`: a file, a folder, or a list'
+        table.log.append(Diagnostic("TLT0803", title, (table.label,), help_))
+        return ()
+    names = table.names(key) if isinstance(entry.value, list) else (table.text(key),)
     for name in names:
         if name and not fileio.exists(folder / name):
             title, help_ = f"there is no file or folder `{name}`", "paths are relative to the suite"

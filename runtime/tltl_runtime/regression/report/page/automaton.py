@@ -84,13 +84,11 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
         for group in root.iter("g")
         if (source := group.get("data-source")) and (target := group.get("data-target"))
     }
-    counts = [
-        (_edge_counts(traffic, states.values(), set(edges.values())), traffic.episodes) for traffic in (now, before)
-    ]
+    counts = [(_edge_counts(traffic, states.values(), set(edges.values())), traffic) for traffic in (now, before)]
     for group, run in states.items():
         _mark_state(group, group[0], run, now, before)
     for group, ends in edges.items():
-        _mark_edge(group, group[0], ends, [(edge_counts[ends], episodes) for edge_counts, episodes in counts])
+        _mark_edge(group, group[0], ends, [(edge_counts[ends], traffic) for edge_counts, traffic in counts])
     _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
     top = _remove_title(root)
     for graph in root:
@@ -142,7 +140,7 @@ def _mark_state(
     for when, traffic in (("now", now), ("before", before)):
         visited = _visits(traffic, states)
         failed = sum(traffic.failed.get(state, 0) for state in states)
-        parts.append(f"{when}: visited by {visited} of {traffic.episodes} episodes, {failed} failed in it")
+        parts.append(f"{when}: visited by {visited} of {traffic.episodes} {traffic.noun}, {failed} failed in it")
         badges = ElementTree.SubElement(group, "g", {"class": f"counts {when}"})
         _badge(badges, "visited", str(visited), left + 6, bottom, grows=1)
         if failed:
@@ -161,22 +159,22 @@ def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
 
 
 def _mark_edge(
-    group: ElementTree.Element, title: ElementTree.Element, ends: Ends, edge_counts: Sequence[tuple[int, int]]
+    group: ElementTree.Element, title: ElementTree.Element, ends: Ends, edge_counts: Sequence[tuple[int, Traffic]]
 ) -> None:
     """Set the thickness and the title of an edge; remove the title of a self-loop.
 
     ``edge_counts`` has two pairs, one for now and one for the baseline: how many episodes took the
-    edge, and how many episodes there are.
+    edge, and the traffic that it belongs to.
     """
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
         group.remove(title)
         return
     widths, parts = [], []
-    for when, (count, episodes) in zip(("now", "before"), edge_counts, strict=True):
-        share = count / episodes if episodes else 0.0
+    for when, (count, traffic) in zip(("now", "before"), edge_counts, strict=True):
+        share = count / traffic.episodes if traffic.episodes else 0.0
         widths.append(f"--took-{when}: {coordinate(_THINNEST + share * (_THICKEST - _THINNEST))}")
-        parts.append(f"{when}: taken by {count} of {episodes} episodes")
+        parts.append(f"{when}: taken by {count} of {traffic.episodes} {traffic.noun}")
         if not count:
             group.set("class", f"{group.get('class')} untaken-{when}")
     group.set("style", "; ".join(widths))

@@ -79,8 +79,12 @@ def not_run_section(case: NotRun, slug: str) -> Markup:
 
 def _facts(report: CaseReport) -> list[str]:
     if report.traces:
-        now, before = (_traces_text(len(names)) for names in (report.traces.now, report.traces.before))
-        return [now, f"compared with {before}", f"spec {report.traces.spec}"]
+        now, before = report.traces.now, report.traces.before
+        return [
+            f"{_traces_text(len(now.names))} of {now.place}",
+            f"compared with {_traces_text(len(before.names))} of {before.place}",
+            f"spec {report.traces.spec}",
+        ]
     facts = [f"{report.level} {report.variant}"]
     if report.reference:
         facts.append(f"compared with {report.reference.variant}")
@@ -109,7 +113,8 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
     level, fspa = case.level, case.fspa
     if fspa is None or automaton is None:
         return None
-    now, before = traffic(case.report.accounts), traffic(case.before)
+    noun = "traces" if case.report.traces else "episodes"
+    now, before = traffic(case.report.accounts, noun), traffic(case.before, noun)
     return _Drawings(
         automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
         notes=automaton.notes,

@@ -54,14 +54,15 @@ class SuiteReport:
     """What the page of a suite shows.
 
     ``suite`` is the name of the suite. ``seed`` and ``error`` are as in
-    :class:`~tltl_runtime.regression.suite.suite.Suite`. ``versions`` are the versions of the
-    software that played. ``cases`` are the judged cases in order, and ``not_run`` are the cases
-    that were not judged. ``complete`` says whether all requested cases were judged and retrained.
+    :class:`~tltl_runtime.regression.suite.suite.Suite`; ``seed`` is None if nothing is played.
+    ``versions`` are the versions of the software that played or judged. ``cases`` are the judged cases
+    in order, and ``not_run`` are the cases that were not judged. ``complete`` says whether all
+    requested cases were judged and retrained.
     ``note`` is shown at the top of the page.
     """
 
     suite: str
-    seed: int
+    seed: int | None
     error: float
     versions: Mapping[str, str]
     cases: tuple[ReportedCase, ...]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Final
 
 from markupsafe import Markup
@@ -24,10 +25,10 @@ _BEFORE_END_S: Final = 4.0
 class _Link:
     """A link that plays an episode.
 
-    ``index`` is the index of the episode. ``description`` says in words what the link plays.
+    ``text`` is the index of the episode, or the name of a trace. ``description`` says in words what the link plays.
     """
 
-    index: int
+    text: str
     address: str
     description: str
 
@@ -55,7 +56,7 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
 def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) -> Markup | None:
     """Return links to the pictures of the drawn ``traces`` of a finding; None if it has none."""
     links = [
-        _Link(index, f"#{anchor(slug, index)}", f"show the trace {traces[index].name}")
+        _Link(Path(traces[index].name).name, f"#{anchor(slug, index)}", f"show the trace {traces[index].name}")
         for index in finding.episodes
         if index in traces
     ]
@@ -70,4 +71,4 @@ def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) 
 def _link(index: int, episode: RecordedEpisode, slug: str) -> _Link:
     before_end = round(_BEFORE_END_S / registered_game().clock_s)
     step = 0 if episode.success else max(0, len(episode.actions) - before_end)
-    return _Link(index, episode_link(slug, index, step), f"play {'the end of ' * (step > 0)}episode {index}")
+    return _Link(str(index), episode_link(slug, index, step), f"play {'the end of ' * (step > 0)}episode {index}")

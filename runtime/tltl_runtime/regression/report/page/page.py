@@ -36,12 +36,14 @@ def html_report(suite: SuiteReport) -> str:
     pictures: dict[Fspa | None, AutomatonPicture] = {
         fspa: draw_automaton(fspa) for fspa in automata if fspa is not None
     }
+    has_maps = any(case.level is not None for case in suite.cases)
     script = "\n".join(_file_text(name) for name in _SCRIPTS)
     return render(
         "report.html",
         suite=suite.suite,
         digest=_digest(script),
-        style=Markup(_style(has_maps=any(case.level for case in suite.cases))),
+        style=Markup(_style(has_maps=has_maps)),
+        has_maps=has_maps,
         summary=summary(suite, names),
         sections=[
             *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),

@@ -86,7 +86,7 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]
     facts = [
-        f"seed {suite.seed}",
+        *([] if suite.seed is None else [f"seed {suite.seed}"]),
         f"probability that any certain fail or review is wrong, or any pass has too low a rate: at most "
         f"{suite.error:.3g}",
         *(f"{name} {version}" for name, version in suite.versions.items()),

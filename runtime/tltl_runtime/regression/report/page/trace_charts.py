@@ -62,7 +62,7 @@ def _chart(fspa: Fspa, curves: TraceCurves) -> Markup:
     parts += _state_strip(fspa, curves)
     for row, name in enumerate(names):
         parts += _atom_row(name, [values[row] for values in curves.atoms], _STATES + _ROW * row)
-    parts += _axis(curves.steps, height - _AXIS)
+    parts += _axis(fspa, curves.steps, height - _AXIS)
     return element("svg", *parts, class_="diagram trace", viewBox=f"0 0 {_WIDTH} {height}", role="img")
 
 
@@ -96,8 +96,9 @@ def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
     points = list(_points(values))
     for first, last in _stretches(values):
         left, width = _x(first, steps), _x(last, steps) - _x(first, steps)
+        when = f"at step {last}" if last == first + 1 else f"from step {first + 1} to {last}"
         box = {"x": coordinate(left), "width": coordinate(max(0.5, width)), "y": top + 2, "height": _ROW - 4}
-        yield element("rect", element("title", f"`{name}` holds, steps {first + 1} to {last}"), class_="holds", **box)
+        yield element("rect", element("title", f"{name} holds {when}"), class_="holds", **box)
     path = " ".join(f"{coordinate(_x(step, steps))},{coordinate(zero - height * value)}" for step, value in points)
     yield element("polyline", class_="atom", points=path)
 
@@ -124,11 +125,15 @@ def _points(values: Sequence[float]) -> Iterator[tuple[float, float]]:
         yield float(end), group[-1]
 
 
-def _axis(steps: int, top: int) -> Iterator[Markup]:
-    spacings = (unit * 10**exponent for exponent in range(9) for unit in (1, 2, 5))
-    spacing = next(spacing for spacing in spacings if 8 * spacing >= steps)
-    for step in range(0, steps + 1, spacing):
-        x = coordinate(_x(step, steps))
+def _axis(fspa: Fspa, steps: int, top: int) -> Iterator[Markup]:
+    """Yield the time axis: in seconds if the spec has a clock, else in steps."""
+    step_s = fspa.clock_s or 1.0
+    end = steps * step_s
+    spacings = (unit * 10.0**exponent for exponent in range(-4, 9) for unit in (1, 2, 5))
+    spacing = next(spacing for spacing in spacings if spacing >= max(end / 8, step_s))
+    for tick in range(int(end / spacing + 1e-9) + 1):
+        x = coordinate(_x(tick * spacing / step_s, steps))
         yield element("line", class_="grid", x1=x, x2=x, y1=0, y2=top)
-        yield element("text", str(step), class_="tick x", x=x, y=top + 14)
-    yield element("text", "step", class_="tick x", x=coordinate((_LEFT + _WIDTH - _RIGHT) / 2), y=top + 27)
+        yield element("text", f"{tick * spacing:g}", class_="tick x", x=x, y=top + 14)
+    label = "time, s" if fspa.clock_s else "step"
+    yield element("text", label, class_="tick x", x=coordinate((_LEFT + _WIDTH - _RIGHT) / 2), y=top + 27)

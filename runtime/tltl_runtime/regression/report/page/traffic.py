@@ -12,7 +12,7 @@ from tltlc.api import record
 
 @record
 class Traffic:
-    """How ``episodes`` episodes moved through an automaton.
+    """How ``episodes`` episodes, or recorded traces, moved through an automaton; ``noun`` names them.
 
     ``visited`` and ``failed`` count, for each state, the episodes that visited it and the episodes
     that failed in it. ``edges`` has, for each episode, the edges (source, target) that it took,
@@ -24,9 +24,10 @@ class Traffic:
     visited: Mapping[int, int]
     failed: Mapping[int, int]
     edges: tuple[frozenset[tuple[int, int]], ...]
+    noun: str = "episodes"
 
 
-def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
+def traffic(episodes: Sequence[ExplainedEpisode], noun: str = "episodes") -> Traffic:
     """Count how episodes moved through their automaton.
 
     An episode that visited a state, or took an edge, several times counts once for it.
@@ -38,4 +39,4 @@ def traffic(episodes: Sequence[ExplainedEpisode]) -> Traffic:
         visited.update(set(states))
         edges.append(frozenset(pairwise(states)))
     failed = Counter(episode.summary.unmet for episode in episodes if not episode.summary.success)
-    return Traffic(len(episodes), visited, failed, tuple(edges))
+    return Traffic(len(episodes), visited, failed, tuple(edges), noun)
