@@ -1,15 +1,15 @@
 """What are the values of the atoms, the progress and the reward of a step?
 
 ``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
-the robustness of a guard, and ``nearest_edge`` the step that came nearest to an edge towards
-acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the
-names of the reward modes; ``mode_function`` returns the function of a mode, which rewards a
-``Transition``. ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
+the robustness of a guard, and ``nearest_edge`` finds the step that came nearest to an edge towards
+acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the names of the reward
+modes; ``mode_function`` returns the function of a mode, which rewards a ``Transition``.
+``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness
-from tltlc.monitor.nearest_edge import NearestEdge, nearest_edge
+from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.progress_and_reward import MODES, Mode, TerminalPenalty, Termination, ends_episode, terminal_penalty
 from tltlc.monitor.reward_modes import Transition, mode_function
 from tltlc.monitor.samples import (
@@ -29,7 +29,6 @@ __all__ = [
     "ROUNDING",
     "SUGGESTIONS",
     "Mode",
-    "NearestEdge",
     "Samples",
     "TerminalPenalty",
     "Termination",

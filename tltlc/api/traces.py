@@ -7,20 +7,17 @@ the samples of one trace.
 
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.traces import read_trace
-from tltlc.tools.judge.clauses import Clauses, clauses_of
+from tltlc.tools.judge.clauses import clauses_of
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.pool import judge_files
-from tltlc.tools.judge.trace_files import TraceFiles, find_traces
-from tltlc.tools.judge.verdict import Cause, JudgedTrace, Kind, TraceDetails, TraceVerdict
+from tltlc.tools.judge.trace_files import ENDINGS, find_traces
+from tltlc.tools.judge.verdict import JudgedTrace, Kind, TraceVerdict
 
 __all__ = [
-    "Cause",
-    "Clauses",
+    "ENDINGS",
     "Judge",
     "JudgedTrace",
     "Kind",
-    "TraceDetails",
-    "TraceFiles",
     "TraceVerdict",
     "as_text",
     "clauses_of",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,6 +14,7 @@ from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import Function, output_folder
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
+from tltl_runtime.cli.support.trace_options import TraceOptions, path_option, spec_label, threshold_option
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import is_standard_output
 from tltlc.api import TltlError, cli, fileio
@@ -33,7 +34,7 @@ def _report_option(name: str, help_text: str) -> Callable[[Function], Function]:
 def _threshold_option(name: str, help_text: str, default: str) -> Callable[[Function], Function]:
     limits = cli.FiniteRange(min=0, max=0.999)
     help_text = f"With --spec: {help_text[0].lower()}{help_text[1:]} (default: {default})."
-    return click.option(f"--{name.replace('_', '-')}", name, metavar="R", type=limits, help=help_text)
+    return click.option(threshold_option(name), name, metavar="R", type=limits, help=help_text)
 
 
 @click.command(
@@ -63,7 +64,8 @@ Examples:
 @click.option(
     "--baseline",
     metavar="PATH",
-    type=click.Path(path_type=Path),
+    type=click.Path(),
+    callback=path_option,
     help="The baseline to compare with (default: SUITE.baseline.json, next to the suite); with --spec, a recorded "
     "trace or a folder of them.",
 )
@@ -72,7 +74,9 @@ Examples:
     metavar="SPEC",
     help="Judge recorded traces by this spec, without a suite, a game and a policy; needs --now and --baseline.",
 )
-@click.option("--now", metavar="PATH", type=click.Path(path_type=Path), help="The traces to judge: a file or a folder.")
+@click.option(
+    "--now", metavar="PATH", type=click.Path(), callback=path_option, help="The traces to judge: a file or a folder."
+)
 @click.option(
     "--judged-as",
     type=click.Choice(["episodes", "traces"]),
@@ -131,7 +135,8 @@ def command(
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes works only with --retrain: add --retrain")
     thresholds = {name: rate for name, rate in (("pass_rate", pass_rate), ("fail_rate", fail_rate)) if rate is not None}
-    _check_trace_options(spec, now, baseline, suite, changed, thresholds, judged_as=judged_as, retrain=retrain)
+    others = {f"`{suite}`": suite is not None, "--changed": bool(changed), "--retrain": retrain, "--fresh": fresh}
+    TraceOptions(spec, now, baseline, judged_as, thresholds, others).check()
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` counts as a file of --changed: put the suite before --changed")
     with cli.Report() as report, name_missing_extra("`tltlc regress`"), ignore_closed_pipe():
@@ -167,42 +172,6 @@ def _is_suite(word: str) -> bool:
         return False
 
 
-def _check_trace_options(
-    spec: str | None,
-    now: Path | None,
-    baseline: Path | None,
-    suite: Path | None,
-    changed: tuple[str, ...],
-    thresholds: Mapping[str, float],
-    *,
-    judged_as: str | None,
-    retrain: bool,
-) -> None:
-    """Raise UsageError unless the options for recorded traces fit together."""
-    if spec is None:
-        needs_spec = {
-            "--now": now is not None,
-            "--judged-as": judged_as is not None,
-            **{f"--{name.replace('_', '-')}": True for name in thresholds},
-        }
-        if used := next((option for option, is_used in needs_spec.items() if is_used), None):
-            in_suite = "" if used == "--now" else "; in a suite, write it as a key of the case"
-            raise click.UsageError(
-                f"{used} works only with --spec, which names the spec that judges recorded traces{in_suite}"
-            )
-        return
-    if missing := next((name for name, path in (("--now", now), ("--baseline", baseline)) if path is None), None):
-        which = "to judge" if missing == "--now" else "to compare with"
-        raise click.UsageError(f"--spec needs {missing}: name the recorded traces {which}, a file or a folder")
-    excluded = {"SUITE": suite is not None, "--changed": bool(changed), "--retrain": retrain}
-    if used := next((option for option, is_used in excluded.items() if is_used), None):
-        hint = "; put several traces into one folder" if used == "SUITE" else ""
-        named = f"`{suite}`" if used == "SUITE" else used
-        raise click.UsageError(f"--spec judges recorded traces without a suite: leave out {named}{hint}")
-    if thresholds.get("fail_rate", 0.5) > thresholds.get("pass_rate", 0.85):
-        raise click.UsageError("--fail-rate must be at most --pass-rate (defaults: 0.5 and 0.85)")
-
-
 def _default_folder(suite: Path | None, spec: str | None) -> Path:
     """Return the default folder of a run: `regression/levels/game` for `levels/game.toml`.
 
@@ -211,8 +180,7 @@ def _default_folder(suite: Path | None, spec: str | None) -> Path:
     name of the spec.
     """
     if spec is not None:
-        file, name = fileio.split_spec_name(spec)
-        return Path("regression", name or Path(file).name.partition(".")[0])
+        return Path("regression", spec_label(spec))
     if suite is None:
         return Path("regression", "shipped")
     try:

@@ -35,8 +35,11 @@ _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 
 _EDITED: Final = "TLT0905"
-WORKER_ERRORS: Final = frozenset({"TLT0007", "TLT0730", "TLT0850", "TLT0852"})
+WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
 """The codes of errors of worker processes. They stop the run, because the case is not at fault."""
+
+_LOST_PROCESS: Final = "TLT0007"
+"""The code of the error of a process that judges traces and ends too early; it is no fault of the case."""
 
 WRITABLE: Final = "make sure that there is room and that you may write there, or name another folder with --out"
 """The help if a file cannot be written to the folder of a run."""
@@ -158,7 +161,7 @@ def _judge_traces(suite: Suite, case: TraceCase, pool: Pool, on_trace: OnTrace) 
     try:
         judged = judge_traces(case, suite.error / len(suite.cases), workers, on_trace)
     except TltlError as fault:
-        if {diagnostic.code for diagnostic in fault.diagnostics} & WORKER_ERRORS:
+        if any(diagnostic.code == _LOST_PROCESS for diagnostic in fault.diagnostics):
             raise
         return FinishedCase(report_on_broken_traces(case, fault), is_cached=False)
     return FinishedCase(report_on_traces(judged), is_cached=False, traces=judged)

@@ -13,7 +13,18 @@ from tests.interfaces.cli.conftest import EXAMPLE
 from tltlc.interfaces.cli.command_line import BUILT_IN, RUNTIME_COMMANDS, cli
 from tltlc.interfaces.cli.paths import OutputPath
 
-READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "policy", "suite", "baseline", "libraries"}
+READ: Final = {
+    "library",
+    "pyodide",
+    "resume",
+    "config",
+    "demonstrations",
+    "policy",
+    "suite",
+    "baseline",
+    "now",
+    "libraries",
+}
 """Parameters whose paths are read, not written."""
 
 

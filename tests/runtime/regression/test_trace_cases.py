@@ -13,6 +13,9 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
+from tltl_runtime.cli.support.trace_options import spec_label
+from tltl_runtime.regression.explain.explain import findings
+from tltl_runtime.regression.report.trace_curves import example_curves
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.judged_traces import judge_traces
@@ -101,11 +104,21 @@ def test_a_trace_that_cannot_be_judged_needs_a_review(tltlc: Run, here: Path) ->
     assert "1 of 101 traces of the baseline cannot be judged" in result.out
 
 
-def test_folders_without_a_trace_that_can_be_judged_fail(tltlc: Run, here: Path) -> None:  # noqa: F811
+@pytest.mark.parametrize(("baseline", "now"), [("old", "bad"), ("bad", "old")])
+def test_without_a_trace_that_can_be_judged_a_review_is_needed(
+    baseline: str,
+    now: str,
+    tltlc: Run,  # noqa: F811
+    here: Path,
+) -> None:
     (here / "bad").mkdir()
     (here / "bad" / "bad.csv").write_text("time\n0.0\n", encoding="utf-8")
-    result = regress(tltlc, "--baseline", "old", "--now", "bad")
-    assert (result.status, result.out.splitlines()[0]) == (1, "fetch  fail")
+    result = regress(tltlc, "--baseline", baseline, "--now", now)
+    assert (result.status, result.out.splitlines()[0]) == (1, "fetch  review")
+    assert "1 of 1 traces" in result.out
+
+
+def test_a_folder_of_a_suite_without_a_trace_fails(tltlc: Run, here: Path) -> None:  # noqa: F811
     (here / "empty").mkdir()
     suite_file(here, '[[case]]\nspec = "fetch.tltl"\ntraces = "empty"\nbaseline = "old"\n')
     result = tltlc("regress", "suite.toml")
@@ -113,12 +126,34 @@ def test_folders_without_a_trace_that_can_be_judged_fail(tltlc: Run, here: Path)
     assert "TLT0001, the folder `empty` contains no trace" in result.out
 
 
+@pytest.mark.parametrize(("burnt", "unread", "verdict"), [(30, 100, "review"), (60, 2, "fail")])
+def test_traces_that_cannot_be_judged_may_meet_the_spec(
+    burnt: int,
+    unread: int,
+    verdict: str,
+    tltlc: Run,  # noqa: F811
+    here: Path,
+) -> None:
+    """A fail stands only if it is one even with all of these traces counted as met."""
+    folder = write_traces(here / "hidden", (burnt, BURNT))
+    for number in range(unread):
+        (folder / f"unread{number}.csv").write_text("time\n0.0\n", encoding="utf-8")
+    result = regress(tltlc, "--baseline", "old", "--now", "hidden", "--json", "report.json")
+    assert result.out.startswith(f"fetch  {verdict} ")
+    (case,) = json.loads((here / "report.json").read_text(encoding="utf-8"))["cases"]
+    assert case["certain"] == (verdict == "fail")
+    assert case["rate_interval"][1] > unread / (burnt + unread)
+    if verdict == "review":
+        assert case["headline"].startswith("100 of 130 traces cannot be judged")
+
+
 def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F811
     words = ("--baseline", "new", "--now", "new")
     assert regress(tltlc, *words).out.startswith("fetch  fail ")
     assert regress(tltlc, *words, "--pass-rate", "0.15", "--fail-rate", "0.1").out.startswith("fetch  pass ")
     rejected = regress(tltlc, *words, "--pass-rate", "0.3")
-    assert (rejected.status, "--fail-rate must be at most --pass-rate" in rejected.err) == (2, True)
+    message = "--fail-rate is 0.5, above --pass-rate, 0.3: give --fail-rate a value of at most 0.3"
+    assert (rejected.status, message in " ".join(rejected.err.split())) == (2, True), rejected.err
 
 
 def test_a_trace_ends_at_the_goal_unless_it_is_judged_as_a_whole(tltlc: Run, here: Path) -> None:  # noqa: F811
@@ -218,6 +253,45 @@ thresholds = { pass_rate = 0.8 }
 """
 
 
+def test_the_default_name_is_that_of_the_folder_or_file(here: Path) -> None:
+    for name in ("1.2.3", "1.2.4"):
+        write_traces(here / "v" / name, (1, WON))
+    rows = [f'[[case]]\nspec = "fetch.tltl"\nbaseline = "old"\ntraces = "{name}"\n' for name in NAMED]
+    assert [case.name for case in read_suite(suite_file(here, "".join(rows))).cases] == list(NAMED.values())
+
+
+NAMED = {"v/1.2.3": "1.2.3", "v/1.2.4": "1.2.4", "old/000.csv": "000"}
+
+
+@pytest.mark.parametrize(
+    ("spec", "label"),
+    [("a b.v1.tltl", "a b.v1"), ("x/fetch.tltl:fast", "fast"), ("fetch.fspa.json", "fetch"), (".tltl", "spec")],
+)
+def test_the_case_is_called_after_the_spec(spec: str, label: str) -> None:
+    assert spec_label(spec) == label
+
+
+def test_a_long_trace_has_a_small_picture(tltlc: Run, here: Path) -> None:  # noqa: F811
+    folder = write_traces(here / "long", (1, ["000", "001"] * 20_000))
+    for number in range(1, 26):
+        (folder / f"{number:03}.csv").write_text((here / "old" / "000.csv").read_text(encoding="utf-8"))
+    regress(tltlc, "--baseline", "old", "--now", "long", "--html", "report.html")
+    page = (here / "report.html").read_text(encoding="utf-8")
+    assert "long/000.csv" in page
+    assert len(page) < 500_000
+
+
+def test_a_trace_that_changes_after_the_judgement_is_not_drawn(here: Path) -> None:
+    judged = judge_traces(TraceCase("it", "fetch.tltl", ("new",), ("old",)), 0.05, 1, lambda *_: None)
+    explanation = findings(None, judged.fspa, judged.now.accounts, judged.before.accounts)
+    drawn = example_curves(judged, explanation)
+    assert {"new/000.csv", "new/030.csv"} <= {curves.name for curves in drawn.values()}
+    (here / "new" / "030.csv").write_text((here / "new" / "000.csv").read_text(encoding="utf-8"))
+    (here / "new" / "031.csv").unlink()
+    left = {curves.name for curves in example_curves(judged, explanation).values()}
+    assert left == {curves.name for curves in drawn.values()} - {"new/030.csv", "new/031.csv"}
+
+
 def test_no_baseline_is_recorded_for_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
     suite_file(here, SUITE)
     result = tltlc("baseline", "suite.toml")
@@ -237,8 +311,10 @@ def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
         ["lava", "fail"],
         ["old", "pass"],
     ]
-    changed = tltlc("regress", "suite.toml", "--changed", "new/003.csv")
-    assert "left out, because it depends on none of the named files: old" in changed.err
+    for name in ("new/003.csv", "new/removed.csv", "new"):
+        changed = tltlc("regress", "suite.toml", "--changed", name)
+        assert changed.out.startswith("lava  fail"), name
+        assert "left out, because it depends on none of the named files: old" in changed.err
 
 
 @pytest.mark.parametrize(
@@ -256,6 +332,16 @@ def test_a_suite_lists_traces(tltlc: Run, here: Path) -> None:  # noqa: F811
             '[[case]]\nspec = "fetch.tltl"\ntraces = "new"\nbaseline = "old"\nlevel = "navigation"\n',
             "TLT0802",
             "`[[case]]` has no key `level`",
+        ),
+        (
+            '[[case]]\nspec = "fetch.tltl"\ntraces = []\nbaseline = "old"\n',
+            "TLT0803",
+            "`traces`",
+        ),
+        (
+            '[[case]]\nspec = "fetch.tltl"\ntraces = "new"\nbaseline = ["old", ""]\n',
+            "TLT0803",
+            "`baseline`",
         ),
         (
             '[[case]]\nspec = "fetch.tltl:gone"\ntraces = "new"\nbaseline = "old"\n',
@@ -285,9 +371,15 @@ def test_errors_of_a_suite(text: str, code: str, message: str, here: Path) -> No
             "leave out `suite.toml`; put several traces into one folder",
         ),
         (("--spec", "fetch.tltl", "--now", "new", "--baseline", "old", "--retrain"), "leave out --retrain"),
+        (("--spec", "fetch.tltl", "--now", "new", "--baseline", "old", "--fresh"), "leave out --fresh"),
+        (("--spec", "", "--now", "new", "--baseline", "old"), "--spec is empty"),
+        (("--spec", "fetch.tltl", "--now", "", "--baseline", "old"), "it is empty"),
+        (("suite.toml", "--baseline", "old"), "--baseline has no effect"),
+        (("suite.toml", "--retrain"), "--retrain has no effect"),
     ],
 )
 def test_options_that_do_not_fit_together(words: Sequence[str], message: str, tltlc: Run, here: Path) -> None:  # noqa: F811
+    suite_file(here, SUITE)
     result = tltlc("regress", *words)
     assert (result.status, message in result.err) == (2, True), result.err
 

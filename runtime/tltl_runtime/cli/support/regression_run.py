@@ -15,6 +15,7 @@ from tltl_runtime.cli.support.printable import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_files import REPORTS, SuiteRun, write_reports
 from tltl_runtime.cli.support.regression_text import case_lines, summary_line
+from tltl_runtime.cli.support.trace_options import spec_label, threshold_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_no_training, check_writable, is_standard_output
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.report.github import workflow_commands
@@ -71,11 +72,6 @@ class RegressOptions:
         return {option: path for option, path in self.files.items() if not is_standard_output(path)}
 
 
-def option_of(threshold: str) -> str:
-    """Return the option that sets a threshold: ``--pass-rate`` for ``pass_rate``."""
-    return f"--{threshold.replace('_', '-')}"
-
-
 def run(options: RegressOptions) -> int:
     """Judge the requested cases, report on them, and return the exit status.
 
@@ -120,11 +116,13 @@ def _suite(options: RegressOptions) -> Suite:
         TltlError: the errors of the suite or of the spec; TLT0001, a path has no trace.
     """
     if options.spec is None:
-        return read_suite(options.suite or SHIPPED, options.baseline)
+        suite = read_suite(options.suite or SHIPPED, options.baseline)
+        _check_has_played_cases(suite, options)
+        return suite
     assert options.now is not None
     assert options.baseline is not None
     read_spec(options.spec)
-    file, name = fileio.split_spec_name(options.spec)
+    file, _ = fileio.split_spec_name(options.spec)
     for option, path in (("--now", options.now), ("--baseline", options.baseline)):
         if not fileio.exists(path):
             title, help_ = (
@@ -135,7 +133,7 @@ def _suite(options: RegressOptions) -> Suite:
         if errors := traces.find_traces([str(path)]).errors:
             raise TltlError(errors)
     case = TraceCase(
-        name=name or Path(file).name.partition(".")[0],
+        name=spec_label(options.spec),
         spec=options.spec,
         traces=(str(options.now),),
         baseline=(str(options.baseline),),
@@ -143,6 +141,14 @@ def _suite(options: RegressOptions) -> Suite:
         as_episodes=options.judged_as != "traces",
     )
     return Suite(Path(file), 0, DEFAULT_ERROR, (case,), options.baseline)
+
+
+def _check_has_played_cases(suite: Suite, options: RegressOptions) -> None:
+    """Raise UsageError for an option that has no effect because all cases of the suite are recorded traces."""
+    given = {"--baseline": options.baseline is not None, "--retrain": options.minutes is not None}
+    if not suite.played_cases and (used := next((name for name, is_given in given.items() if is_given), None)):
+        why = "no policy plays in this suite: all of its cases are recorded traces"
+        raise click.UsageError(f"{used} has no effect, because {why}")
 
 
 def _select_cases(suite: Suite, options: RegressOptions) -> Selection:
@@ -250,7 +256,7 @@ def _resume_words(options: RegressOptions) -> list[str]:
     for name, value in values.items():
         words += [] if value is None else [name, str(value)]
     words += [] if options.judged_as is None else ["--judged-as", options.judged_as]
-    words += [word for name, value in options.thresholds.items() for word in (option_of(name), f"{value:g}")]
+    words += [word for name, value in options.thresholds.items() for word in (threshold_option(name), repr(value))]
     words += ["--github"] if options.github else []
     return words if options.changed is None else [*words, "--changed", *options.changed]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from typing import Final
 
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.explain.explained_episode import Arrival
@@ -12,7 +13,7 @@ from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltl_runtime.regression.verdict.judged_traces import JudgedTraces
 from tltlc.api import Fspa, TltlError, fileio, monitors, record, traces
 
-_EXAMPLES = 3
+_EXAMPLES: Final = 3
 """At most this many traces of each finding are drawn."""
 
 
@@ -38,7 +39,7 @@ class TraceCurves:
 def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[int, TraceCurves]:
     """Return the curves of example traces, by index: some of each finding, and the first accepted trace.
 
-    A trace that was removed or changed since it was judged is left out.
+    A trace that was removed since it was judged, or that now takes other states, is left out.
     """
     accepted = [account.summary.index for account in judged.now.accounts if account.summary.success]
     wanted = {*(index for finding in findings for index in finding.episodes[:_EXAMPLES]), *accepted[:1]}
@@ -48,17 +49,20 @@ def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[in
 def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
     name, account, fspa = judged.now.names[index], judged.now.accounts[index], judged.fspa
     with suppress(TltlError):
-        rows = tuple(_atom_values(fspa, name, account.summary.steps))
-        if len(rows) == account.summary.steps:
-            failed = trace_end_text(fspa, account.cause, account.by, [account])
-            yield TraceCurves(name, "accepted" if account.summary.success else failed, rows, account.arrivals)
+        data = fileio.read_bytes(name, name, fileio.limits.JUDGED_TRACE.size)
+        judge = traces.Judge(fspa, episodes=judged.case.as_episodes, details=True)
+        verdict = judge.judge(name, data).verdict
+        arrivals = tuple((arrival.state, arrival.step) for arrival in account.arrivals)
+        if verdict is None or verdict.details is None or verdict.details.arrivals != arrivals:
+            return
+        rows = tuple(_atom_values(fspa, name, data, account.summary.steps))
+        failed = trace_end_text(fspa, account.cause, account.by, [account])
+        yield TraceCurves(name, "accepted" if account.summary.success else failed, rows, account.arrivals)
 
 
-def _atom_values(fspa: Fspa, path: str, steps: int) -> Iterator[tuple[float, ...]]:
+def _atom_values(fspa: Fspa, name: str, data: bytes, steps: int) -> Iterator[tuple[float, ...]]:
     """Yield the values of all atoms at each of the first ``steps`` samples of a trace."""
-    limit = fileio.limits.JUDGED_TRACE
-    text = traces.as_text(fileio.read_bytes(path, path, limit.size), path, fspa.signals)
     samples = monitors.Samples(fspa, None, [])
-    read = traces.read_trace(io.BytesIO(text), path, fspa.signals, fspa.clock_s)
+    read = traces.read_trace(io.BytesIO(traces.as_text(data, name, fspa.signals)), name, fspa.signals, fspa.clock_s)
     for number, sample in zip(range(1, steps + 1), read, strict=False):
         yield samples.atom_values(sample, number)

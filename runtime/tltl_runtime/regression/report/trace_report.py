@@ -28,7 +28,7 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
     names = _case_traces(case, fspa.name, judged.now.names, judged.before.names)
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
     if judgement is None:
-        return CaseReport(case.name, "", "", "fail", unread, traces=names)
+        return CaseReport(case.name, "", "", "review", unread, certain=False, traces=names)
     now, before = judged.now.accounts, judged.before.accounts
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     few = tuple(_too_few_texts(judged))
@@ -46,8 +46,9 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
         figures=figures,
         baseline=baseline,
         changes=judgement.changes,
-        causes=(*few, *statistics, *unread),
-        told=next(iter(few), "") or headline(judgement, judged.thresholds, statistics, most_frequent),
+        causes=(*few, *unread, *statistics),
+        told=next(iter((*few, *(unread if judgement.verdict == "review" else ()))), "")
+        or headline(judgement, judged.thresholds, statistics, most_frequent),
         explanation=findings(None, fspa, now, before),
         accounts=now,
         traces=names,

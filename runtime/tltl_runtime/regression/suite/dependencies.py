@@ -74,7 +74,9 @@ def dependencies(suite: Suite, case: SuiteCase) -> tuple[Path, ...]:
     without a file counts, too, if a file there would be read instead of one of the others.
     """
     if isinstance(case, TraceCase):
-        files = [suite.path, *map(Path, traces.find_traces((*case.traces, *case.baseline)).traces)]
+        named = (*case.traces, *case.baseline)
+        # A trace that was removed is below a named folder, too.
+        files = [suite.path, *map(Path, (*named, *traces.find_traces(named).traces))]
     else:
         files = [suite.path, suite.baseline, policy_file(case.policy)]
         files += registered_game().level_files.dependencies(case.level, case.variant)
@@ -91,12 +93,13 @@ def files_of(suite: Suite) -> frozenset[Path]:
 
 
 def _matches_any(name: str, paths: Iterable[Path]) -> bool:
-    """Whether a name matches one of the paths, as :func:`select` describes."""
+    """Whether a name matches one of the paths, as :func:`select` describes, or lies in one of them."""
     named_path = Path(_unquote(name))
     resolved, parts = named_path.resolve(), named_path.parts
     return any(
         resolved == path
         or resolved in path.parents
+        or path in resolved.parents
         or path.parts[-len(parts) :] == parts
         or any((*path.parts[-len(parts) : -1], stem) == parts for stem in (path.stem, path.name.partition(".")[0]))
         for path in paths

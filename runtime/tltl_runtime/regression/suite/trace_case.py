@@ -7,8 +7,8 @@ from typing import Final
 
 from tltl_runtime.regression.suite.named_files import spec_diagnostics
 from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
-from tltl_runtime.support.checked_table import CheckedTable
-from tltlc.api import Diagnostic, Label, fileio, record
+from tltl_runtime.support.checked_table import CheckedTable, wrong_value
+from tltlc.api import Diagnostic, Label, fileio, record, traces
 
 JUDGED_AS: Final = ("episodes", "traces")
 """The values of the key ``judged_as``; the first is the default."""
@@ -38,15 +38,20 @@ def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -
     """
     before = len(table.log)
     spec = _spec(table, folder)
-    traces, baseline = _paths(table, folder, "traces"), _paths(table, folder, "baseline")
+    now, baseline = _paths(table, folder, "traces"), _paths(table, folder, "baseline")
     thresholds = read_thresholds(table, thresholds)
     judged_as = table.text("judged_as", JUDGED_AS[0], one_of=JUDGED_AS)
     name = table.text("name", "")
     table.report_unknown_keys()
     if len(table.log) > before:
         return None
-    name = name or Path(traces[0]).stem
-    return TraceCase(name, spec, traces, baseline, thresholds, judged_as == JUDGED_AS[0]), table.label
+    name = name or _without_ending(Path(now[0]).name)
+    return TraceCase(name, spec, now, baseline, thresholds, judged_as == JUDGED_AS[0]), table.label
+
+
+def _without_ending(name: str) -> str:
+    """Remove the ending of a trace from the name of a file; the name of a folder stays as it is."""
+    return next((name[: -len(ending)] for ending in traces.ENDINGS if name.lower().endswith(ending)), name)
 
 
 def _spec(table: CheckedTable, folder: Path) -> str:
@@ -72,6 +77,10 @@ def _paths(table: CheckedTable, folder: Path, key: str) -> tuple[str, ...]:
         table.log.append(Diagnostic("TLT0803", title, (table.label,), help_))
         return ()
     names = table.names(key) if isinstance(entry.value, list) else (table.text(key),)
+    if entry.value == [] or "" in names:
+        expected = "the path of a file or a folder, or a list of them, none of them empty"
+        if not isinstance(entry.value, str):
+            table.log.append(wrong_value(entry, key, expected))
     for name in names:
         if name and not fileio.exists(folder / name):
             title, help_ = f"there is no file or folder `{name}`", "paths are relative to the suite"

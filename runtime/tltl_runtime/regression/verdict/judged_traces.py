@@ -48,7 +48,7 @@ class TraceSet:
 class JudgedTraces:
     """A case of recorded traces with its verdict.
 
-    ``judgement`` is None if there is no trace, now or in the baseline, that can be judged.
+    ``judgement`` is None if none of the traces now, or none of the baseline, can be judged.
     ``thresholds`` are those of the case; if traces are not judged as episodes, or the spec has no limit,
     no change of the reward counts, because the reward then is the progress.
     """
@@ -99,15 +99,23 @@ def _files(paths: Sequence[str]) -> tuple[str, ...]:
 
 
 def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: TraceSet) -> Judgement | None:
+    """Return the verdict on the traces ``now``; None if none of them, or none of ``before``, can be judged.
+
+    A trace that cannot be judged may or may not meet the spec: the interval of the pass rate allows for
+    both, and a verdict that depends on it is ``review``.
+    """
     if not now.accounts or not before.accounts:
         return None
     summaries, summaries_before = summaries_of(now.accounts), summaries_of(before.accounts)
     judgement = judge(summaries, summaries_before, len(summaries), thresholds, error, paired=False)
+    passed, unread = sum(summary.success for summary in summaries), len(now.unread)
+    failed = len(summaries) - passed
+    interval = rate_interval(passed, failed + unread, error)[0], rate_interval(passed + unread, failed, error)[1]
     if judgement is None or len(summaries_before) < LEAST_EPISODES:
-        passed = sum(summary.success for summary in summaries)
-        return Judgement("review", False, rate_interval(passed, len(summaries) - passed, error), ())
-    # A trace that cannot be judged could have changed the verdict.
-    return replace(judgement, verdict="review") if now.unread and judgement.verdict == "pass" else judgement
+        return Judgement("review", False, interval, ())
+    if unread and not (judgement.verdict == "fail" and interval[1] < thresholds.fail_rate):
+        return replace(judgement, verdict="review", certain=False, rate_interval=interval)
+    return replace(judgement, rate_interval=interval)
 
 
 def _trace_set(fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool) -> TraceSet:

@@ -73,7 +73,10 @@ def _x(step: float, steps: int) -> float:
 def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
     """Yield a box for each stay in a state, with the number of the state where it fits."""
     yield element("text", "state", class_="tick y", x=_LEFT - 6, y=15)
-    starts = [*((arrival.state, arrival.step) for arrival in curves.arrivals), (0, curves.steps)]
+    size = _group_size(curves.steps)
+    # Of several stays that begin in a group of samples, the last one is drawn.
+    drawn = {arrival.step // size: (arrival.state, arrival.step) for arrival in curves.arrivals}
+    starts = [*drawn.values(), (0, curves.steps)]
     for (state, start), (_, end) in pairwise(starts):
         left, right = _x(start, curves.steps), _x(end, curves.steps)
         title = element("title", f"state {state}, from step {start}: {label_text(fspa, state)}")
@@ -104,19 +107,29 @@ def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
 
 
 def _stretches(values: Sequence[float]) -> Iterator[tuple[int, int]]:
-    """Yield the stretches of samples at which an atom holds: the first index, and the one after the last."""
+    """Yield the stretches of samples at which an atom holds: the first index, and the one after the last.
+
+    In a long trace, stretches that are nearer to each other than two points of the curve are one.
+    """
+    size = _group_size(len(values))
     start = None
-    for index, value in enumerate((*values, -1.0)):
-        if value > 0.0 and start is None:
-            start = index
-        elif value <= 0.0 and start is not None:
-            yield start, index
+    for group in range(0, len(values) + size, size):
+        holds = any(value > 0.0 for value in values[group : group + size])
+        if holds and start is None:
+            start = group
+        elif not holds and start is not None:
+            yield start, min(group, len(values))
             start = None
+
+
+def _group_size(steps: int) -> int:
+    """Return how many samples are drawn as one, so that a picture has no more than ``_MOST_POINTS`` of them."""
+    return max(1, -(-steps // _MOST_POINTS))
 
 
 def _points(values: Sequence[float]) -> Iterator[tuple[float, float]]:
     """Yield the corners of a curve that keeps each value until the next sample."""
-    size = -(-len(values) // _MOST_POINTS)
+    size = _group_size(len(values))
     for start in range(0, len(values), size):
         group = values[start : start + size]
         end = min(start + size, len(values))
