@@ -10,7 +10,7 @@ from tltlc.monitor.traces import read_trace
 from tltlc.tools.judge.clauses import clauses_of
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.pool import judge_files
-from tltlc.tools.judge.trace_files import ENDINGS, find_traces
+from tltlc.tools.judge.trace_files import ENDINGS, TraceFiles, find_traces
 from tltlc.tools.judge.verdict import JudgedTrace, Kind, TraceVerdict
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "Judge",
     "JudgedTrace",
     "Kind",
+    "TraceFiles",
     "TraceVerdict",
     "as_text",
     "clauses_of",

@@ -55,7 +55,7 @@ Examples:
     "--changed",
     metavar="ASSET…",
     multiple=True,
-    help="Play only the cases that depend on these files. All words up to the next option are files.",
+    help="Judge only the cases that depend on these files. All words up to the next option are files.",
 )
 @_report_option("json", "Write the report as JSON, too")
 @_report_option("junit", "Write the report as JUnit XML, too")

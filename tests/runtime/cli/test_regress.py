@@ -228,7 +228,7 @@ def test_changed_runs_only_the_cases_that_depend_on_the_files(tltlc: Run, game: 
 @pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
 def test_changed_may_select_no_case(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
-    assert (result.status, result.out) == (0, "there was no case to play\n")
+    assert (result.status, result.out) == (0, "there was no case to judge\n")
     # The page is replaced; the page of an earlier run could be mistaken for the page of this run.
     why = "it depends on none of the files that --changed names" if words else "--changed names no file"
     assert Path("regression/game/report.html").read_text(encoding="utf-8").count(why) == 2 * len(NAMES)
@@ -240,7 +240,7 @@ def test_changed_may_select_no_case(tltlc: Run, game: Path, words: list[str]) ->
 
 def test_a_similar_file_is_suggested_for_a_name_after_changed(tltlc: Run, game: Path) -> None:  # noqa: F811
     result = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
-    assert (result.status, result.out) == (0, "there was no case to play\n")
+    assert (result.status, result.out) == (0, "there was no case to judge\n")
     lines = result.err.splitlines()
     assert lines[:2] == [
         "no case depends on gaurd, assets/hopeles.toml",

@@ -22,7 +22,7 @@ def test_verdicts_are_counted() -> None:
     assert summary_line([report("pass")]) == "1 case: 1 pass"
     assert summary_line([report("fail"), report("review"), report("fail")]) == "3 cases: 1 review, 2 fail"
     assert summary_line([], ["a"]) == "no case was judged"
-    assert summary_line([]) == "there was no case to play"
+    assert summary_line([]) == "there was no case to judge"
 
 
 def test_outcomes_of_retraining_are_counted() -> None:

@@ -147,6 +147,45 @@ def test_traces_that_cannot_be_judged_may_meet_the_spec(
         assert case["headline"].startswith("100 of 130 traces cannot be judged")
 
 
+def test_files_that_are_no_traces_are_named(tltlc: Run, here: Path) -> None:  # noqa: F811
+    (here / "old" / "notes.txt").write_text("played by Ana\n", encoding="utf-8")
+    result = regress(tltlc, "--baseline", "old", "--now", "new")
+    assert "fetch: not traces, by their names: old/notes.txt\n" in result.err
+
+
+def test_warnings_of_traces_are_counted(tltlc: Run, here: Path) -> None:  # noqa: F811
+    (here / "fetch.tltl").write_text(
+        SPEC.replace(
+            "spec fetch {", "predicate near in [-1, 1] = 5 * heat\nsignal heat in [0, 1]\nspec fetch { keep near"
+        ).replace("= 5 * heat", "= min(1, 5 * heat)"),
+        encoding="utf-8",
+    )
+    header = "time,on_lava,has_key,at_exit,heat"
+    folder = here / "hot"
+    folder.mkdir()
+    for number in range(30):
+        rows = [f"{step / 10:.1f},{','.join(digits)},{1.5 if number < 2 else 1}" for step, digits in enumerate(WON)]
+        (folder / f"{number:03}.csv").write_text("\n".join([header, *rows]) + "\n", encoding="utf-8")
+    result = regress(tltlc, "--baseline", "hot", "--now", "hot", "--json", "report.json")
+    (case,) = json.loads((here / "report.json").read_text(encoding="utf-8"))["cases"]
+    assert result.out.startswith("fetch  pass")
+    assert any(
+        reason.startswith("2 of 30 traces have warnings: first `hot/000.csv` (TLT0") for reason in case["reasons"]
+    )
+
+
+def test_json_lines_are_judged(tltlc: Run, here: Path) -> None:  # noqa: F811
+    folder = here / "lines"
+    folder.mkdir()
+    for number in range(30):
+        rows = [
+            {"time": step / 10, "on_lava": int(lava), "has_key": int(key), "at_exit": int(at_exit)}
+            for step, (lava, key, at_exit) in enumerate(WON)
+        ]
+        (folder / f"{number:03}.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
+    assert regress(tltlc, "--baseline", "old", "--now", "lines").out.startswith("fetch  pass     30 of 30")
+
+
 def test_the_thresholds_can_be_set(tltlc: Run, here: Path) -> None:  # noqa: F811
     words = ("--baseline", "new", "--now", "new")
     assert regress(tltlc, *words).out.startswith("fetch  fail ")

@@ -225,6 +225,9 @@ def _play(
             display.clear()
             for line in case_lines(case.report, width, is_cached=case.is_cached):
                 click.echo(line, err=options.printed_option is not None)
+            if case.traces is not None and (others := (*case.traces.now.others, *case.traces.before.others)):
+                names = plain_text(short_list(others, _MOST_NAMED))
+                click.echo(f"{plain_text(case.report.name)}: not traces, by their names: {names}", err=True)
 
 
 def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase]) -> None:

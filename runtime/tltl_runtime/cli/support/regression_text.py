@@ -34,7 +34,7 @@ def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> 
     reports.
     """
     if not reports:
-        return "no case was judged" if missing else "there was no case to play"
+        return "no case was judged" if missing else "there was no case to judge"
     text = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([report.verdict for report in reports], _COLORS)}"
     outcomes = [OUTCOMES[report.retrained.outcome] for report in reports if report.retrained]
     return f"{text}; retrained: {_counts(outcomes, OUTCOMES.values())}" if outcomes else text

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.explain.explain import findings, most_frequent_end
@@ -19,7 +19,7 @@ from tltl_runtime.regression.report.reasons import reasons
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.judged_traces import JudgedTraces, TraceSet
-from tltlc.api import TltlError, fileio
+from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def report_on_traces(judged: JudgedTraces) -> CaseReport:
@@ -27,6 +27,7 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
     case, fspa, judgement = judged.case, judged.fspa, judged.judgement
     names = _case_traces(case, fspa.name, judged.now.names, judged.before.names)
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
+    warnings = (*_warning_texts(judged.now, ""), *_warning_texts(judged.before, " of the baseline"))
     if judgement is None:
         return CaseReport(case.name, "", "", "review", unread, certain=False, traces=names)
     now, before = judged.now.accounts, judged.before.accounts
@@ -46,7 +47,7 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
         figures=figures,
         baseline=baseline,
         changes=judgement.changes,
-        causes=(*few, *unread, *statistics),
+        causes=(*few, *unread, *statistics, *warnings),
         told=next(iter((*few, *(unread if judgement.verdict == "review" else ()))), "")
         or headline(judgement, judged.thresholds, statistics, most_frequent),
         explanation=findings(None, fspa, now, before),
@@ -83,7 +84,16 @@ def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:
 
 def _unread_texts(traces: TraceSet, of: str) -> Iterator[str]:
     """Yield a sentence that counts the traces that cannot be judged, with the first error."""
-    if traces.unread:
-        name, diagnostic = traces.unread[0]
-        count, total = len(traces.unread), len(traces.unread) + len(traces.names)
-        yield f"{count} of {total} traces{of} cannot be judged: first `{name}` ({one_line(diagnostic)})"
+    yield from _count_texts(traces, of, traces.unread, "cannot be judged")
+
+
+def _warning_texts(traces: TraceSet, of: str) -> Iterator[str]:
+    """Yield a sentence that counts the traces with warnings, with the first warning."""
+    yield from _count_texts(traces, of, traces.warnings, "have warnings")
+
+
+def _count_texts(traces: TraceSet, of: str, diagnostics: Sequence[tuple[str, Diagnostic]], verb: str) -> Iterator[str]:
+    if diagnostics:
+        name, diagnostic = diagnostics[0]
+        total = len(traces.unread) + len(traces.names)
+        yield f"{len(diagnostics)} of {total} traces{of} {verb}: first `{name}` ({one_line(diagnostic)})"

@@ -36,12 +36,15 @@ class TraceSet:
     """Judged traces: their ``names``, and how each went, in the same order.
 
     ``unread`` has the traces that cannot be judged, which are not in ``names``: their names, and the
-    errors.
+    errors. ``warnings`` has the names of judged traces with warnings, and the first warning of each.
+    ``others`` are the files in the folders that are no traces, by their names.
     """
 
     names: tuple[str, ...]
     accounts: tuple[ExplainedEpisode, ...]
     unread: tuple[tuple[str, Diagnostic], ...]
+    warnings: tuple[tuple[str, Diagnostic], ...] = ()
+    others: tuple[str, ...] = ()
 
 
 @record
@@ -74,28 +77,29 @@ def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: O
     """
     fspa, spec = read_spec(case.spec)
     clauses = traces.clauses_of(fspa, spec)
-    files = [_files(paths) for paths in (case.traces, case.baseline)]
-    total = sum(map(len, files))
+    found_now, found_before = (_found(paths) for paths in (case.traces, case.baseline))
+    count_now = len(found_now.traces)
+    files = (*found_now.traces, *found_before.traces)
     # The same process or pool judges both, because the start of a pool takes longer than many traces.
-    judged = traces.judge_files(fspa, clauses, sum(files, ()), workers, episodes=case.as_episodes, details=True)
+    judged = traces.judge_files(fspa, clauses, files, workers, episodes=case.as_episodes, details=True)
     results = []
     for count, result in enumerate(judged, start=1):
         results.append(result)
-        on_trace(case, count, total)
+        on_trace(case, count, len(files))
     now, before = (
-        _trace_set(fspa, part, as_episodes=case.as_episodes)
-        for part in (results[: len(files[0])], results[len(files[0]) :])
+        _trace_set(fspa, part, found.others, as_episodes=case.as_episodes)
+        for part, found in ((results[:count_now], found_now), (results[count_now:], found_before))
     )
     has_limit = case.as_episodes and fspa.limit_steps is not None
     thresholds = case.thresholds if has_limit else replace(case.thresholds, reward=_NEVER)
     return JudgedTraces(case, thresholds, fspa, _judgement(thresholds, error, now, before), now, before)
 
 
-def _files(paths: Sequence[str]) -> tuple[str, ...]:
+def _found(paths: Sequence[str]) -> traces.TraceFiles:
     found = traces.find_traces(paths)
     if found.errors:
         raise TltlError(found.errors)
-    return found.traces
+    return found
 
 
 def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: TraceSet) -> Judgement | None:
@@ -118,12 +122,16 @@ def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: Trac
     return replace(judgement, rate_interval=interval)
 
 
-def _trace_set(fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool) -> TraceSet:
+def _trace_set(
+    fspa: Fspa, judged: Sequence[traces.JudgedTrace], others: tuple[str, ...], *, as_episodes: bool
+) -> TraceSet:
     read = [trace for trace in judged if trace.verdict is not None]
     return TraceSet(
         tuple(trace.name for trace in read),
         tuple(_accounts(fspa, read, as_episodes=as_episodes)),
         tuple((trace.name, trace.diagnostics[0]) for trace in judged if trace.verdict is None),
+        tuple((trace.name, trace.diagnostics[0]) for trace in read if trace.diagnostics),
+        others,
     )
 
 
