@@ -263,6 +263,7 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     assert "100 recorded traces of new · compared with 100 recorded traces of old · spec fetch" in page
     assert page.count('<figure class="trace"') == 7
     assert "<title>on_lava holds at step 2</title>" in page
+    assert page.count('class="stay violated') == 3
     assert "On the map" not in page
 
 

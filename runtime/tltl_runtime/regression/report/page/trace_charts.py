@@ -74,12 +74,13 @@ def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
     """Yield a box for each stay in a state, with the number of the state where it fits."""
     yield element("text", "state", class_="tick y", x=_LEFT - 6, y=15)
     size = _group_size(curves.steps)
+    # A sample is drawn with the state that it leads to, so that the last state can be seen, too.
+    stays = [(arrival.state, max(0, arrival.step - 1)) for arrival in curves.arrivals]
     # Of several stays that begin in a group of samples, the last one is drawn.
-    drawn = {arrival.step // size: (arrival.state, arrival.step) for arrival in curves.arrivals}
-    starts = [*drawn.values(), (0, curves.steps)]
+    starts = [*{start // size: (state, start) for state, start in stays}.values(), (0, curves.steps)]
     for (state, start), (_, end) in pairwise(starts):
         left, right = _x(start, curves.steps), _x(end, curves.steps)
-        title = element("title", f"state {state}, from step {start}: {label_text(fspa, state)}")
+        title = element("title", f"state {state}, from step {start + 1}: {label_text(fspa, state)}")
         box = {"x": coordinate(left), "width": coordinate(max(0.5, right - left)), "y": 2, "height": _STATES - 6}
         kind = fspa.states[state].verdict
         yield element("rect", title, class_=f"stay {kind} {'odd' if state % 2 else 'even'}", **box)
