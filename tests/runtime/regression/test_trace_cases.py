@@ -37,7 +37,7 @@ SHORT = ["000", "010"]
 
 
 def write_traces(folder: Path, *kinds: tuple[int, Sequence[str]]) -> Path:
-    """Write so many traces of each kind; a trace is a list of rows, and a row has a digit for each signal."""
+    """Write traces into a new folder. Each kind is a count and the rows of a trace; a row has a digit per signal."""
     folder.mkdir(parents=True)
     rows = [rows for count, rows in kinds for _ in range(count)]
     for number, trace in enumerate(rows):

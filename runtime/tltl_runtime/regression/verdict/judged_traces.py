@@ -77,29 +77,29 @@ def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: O
     """
     fspa, spec = read_spec(case.spec)
     clauses = traces.clauses_of(fspa, spec)
-    found_now, found_before = (_found(paths) for paths in (case.traces, case.baseline))
-    count_now = len(found_now.traces)
-    files = (*found_now.traces, *found_before.traces)
+    files_now, files_before = (_files(paths) for paths in (case.traces, case.baseline))
+    count_now = len(files_now.traces)
+    names = (*files_now.traces, *files_before.traces)
     # The same process or pool judges both, because the start of a pool takes longer than many traces.
-    judged = traces.judge_files(fspa, clauses, files, workers, episodes=case.as_episodes, details=True)
+    judged = traces.judge_files(fspa, clauses, names, workers, episodes=case.as_episodes, details=True)
     results = []
     for count, result in enumerate(judged, start=1):
         results.append(result)
-        on_trace(case, count, len(files))
+        on_trace(case, count, len(names))
     now, before = (
-        _trace_set(fspa, part, found.others, as_episodes=case.as_episodes)
-        for part, found in ((results[:count_now], found_now), (results[count_now:], found_before))
+        _trace_set(fspa, part, files.others, as_episodes=case.as_episodes)
+        for part, files in ((results[:count_now], files_now), (results[count_now:], files_before))
     )
     has_limit = case.as_episodes and fspa.limit_steps is not None
     thresholds = case.thresholds if has_limit else replace(case.thresholds, reward=_NEVER)
     return JudgedTraces(case, thresholds, fspa, _judgement(thresholds, error, now, before), now, before)
 
 
-def _found(paths: Sequence[str]) -> traces.TraceFiles:
-    found = traces.find_traces(paths)
-    if found.errors:
-        raise TltlError(found.errors)
-    return found
+def _files(paths: Sequence[str]) -> traces.TraceFiles:
+    files = traces.find_traces(paths)
+    if files.errors:
+        raise TltlError(files.errors)
+    return files
 
 
 def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: TraceSet) -> Judgement | None:
