@@ -102,9 +102,11 @@ class Successors:
         return number
 
     def new_state(self, stands_for: int) -> int:
-        """Return a new obligation for a state of a smaller automaton that was built for a part of the formula.
+        """Return a new obligation that represents a state of a smaller automaton.
 
-        ``stands_for`` is the obligation that remains in this state. Call :meth:`define_state` next.
+        The smaller automaton was built for a part of the formula. ``stands_for`` is an obligation
+        that means the same as the state, and is written with the formula's own variables. Call
+        :meth:`define_state` next to set the transition of the new obligation.
         """
         variable = len(self.formulas)
         self.formulas.append(None)

@@ -1,10 +1,11 @@
 """The alternating cycle decomposition: a tree of sets of edges, each accepted or rejected.
 
 It is from A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Games and Automata
-Using Muller Conditions" (ICALP 2021). A node is a strongly connected set of edges. The children of
-an accepted node are its maximal rejected subsets; the children of a rejected node are its maximal
-accepted subsets. Take the lowest node that contains all edges that a run takes infinitely often:
-the run is accepted if this node is accepted.
+Using Muller Conditions" (ICALP 2021). A set of edges is accepted if a run that takes exactly these
+edges infinitely often is accepted. A node is a strongly connected set of edges. The children of an
+accepted node are its maximal rejected subsets; the children of a rejected node are its maximal
+accepted subsets. To judge a run, take a node that contains all edges that the run takes infinitely
+often, and none of whose children does. The run is accepted if this node is accepted.
 """
 
 from __future__ import annotations

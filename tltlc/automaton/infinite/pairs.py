@@ -71,7 +71,7 @@ def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work
 
 
 def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent | None:
-    """Return the component with a Rabin pair for each clause.
+    """Return the component with a Rabin pair for each clause, and with the same states.
 
     Returns None if a clause needs more than one ``inf`` mark.
     """
@@ -92,7 +92,7 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 
 
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
-    """Return the component with a Rabin pair for each clause.
+    """Return the component with a Rabin pair for each clause, and with more states.
 
     A state of the result also stores, for each clause, which of its marks ``infs`` the run must
     take next. The edge on which the run has taken all of them gets the ``inf`` mark of the pair.

@@ -46,7 +46,7 @@ _Operator = str | tuple[str, int]
 
 
 class _NoFormulaError(Exception):
-    """Raised inside the parser for a text that is no formula."""
+    """Raised inside the parser for a text that is no formula, or whose bounds are too large to expand."""
 
 
 class FormulaParser:

@@ -189,5 +189,5 @@ class HoaTransitions:
 
 
 def _are_duplicates(first: HoaEdge, second: HoaEdge) -> bool:
-    """Whether two edges have the same target and the same sets. A file may contain an edge twice."""
+    """Whether two edges have the same target and acceptance sets. A file may contain an edge twice."""
     return first.targets.states == second.targets.states and set(first.sets.numbers) == set(second.sets.numbers)

@@ -66,9 +66,9 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
 def best_candidates(
     candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits
 ) -> list[tuple[Conjunction, Verdicts]]:
-    """Return the best candidates, sorted by score.
+    """Return the candidates without superfluous ones, the highest score first.
 
-    Of the candidates that accept the same traces, only a few of the shortest are returned.
+    Of the candidates that accept the same traces, at most ``ALIKE`` of the shortest remain.
     """
 
     def score_key(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:

@@ -104,16 +104,16 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 def train_arguments(training: TableTraining) -> list[str]:
     """Return the arguments with which ``tltlc train`` starts or continues a training of the table.
 
-    A training that continues keeps those of its initial limits that are greater than the new ones,
-    because it may already have passed the new ones.
+    A training that continues keeps each of its last limits that is greater than the new one,
+    because it may already have passed the new one. A limit of 0 minutes means no limit.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
     if (training.folder / RUN).exists():
-        initial_stop = read_run(training.folder).settings.stop
+        last_stop = read_run(training.folder).settings.stop
         arguments = ["--resume", str(training.folder)]
         steps, minutes = (
-            max(steps, initial_stop.steps),
-            minutes and initial_stop.minutes and max(minutes, initial_stop.minutes),
+            max(steps, last_stop.steps),
+            minutes and last_stop.minutes and max(minutes, last_stop.minutes),
         )
     else:
         method = ["--method", "imitation"] if training.imitates else []
