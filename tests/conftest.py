@@ -50,6 +50,8 @@ def pytest_configure(config: pytest.Config) -> None:
     for name in LEFT_OUT:
         os.environ.pop(name, None)
     os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
+    # The workers of pytest-xdist inherit the folder of the process that starts them.
+    os.environ.setdefault("TLTLC_TESTS_SHARED", _cache)
     os.environ.update(
         # Use a new cache: results of earlier runs, and of tests in other processes, must not be used.
         TLTLC_CACHE_DIR=_cache,
