@@ -38,20 +38,23 @@ def test_without_tensors_the_rewards_are_the_same(
         patch.setattr("tltl_runtime.spec.batch.monitor.reward_mode", batch_modes.RowByRow)
         row_by_row = BatchMonitor(fspa, 8, reward=options, dtype=dtype)
     names, generator, rewards = batched.signal_names, torch.Generator().manual_seed(2), set[float]()
+    successes = 0
     for _ in range(60):
         rows = 1.0 + 19.0 * torch.rand(8, len(names), generator=generator, dtype=torch.float64)
-        rows[torch.arange(8), torch.randint(len(names), (8,), generator=generator)] -= 1.0
-        alive = torch.rand(8, generator=generator) > 0.1
+        rows[torch.arange(8), torch.randint(len(names), (8,), generator=generator)] *= 0.05
+        alive = torch.rand(8, generator=generator) > 0.05
         rows[:, names.index("health")] = torch.where(alive, 0.5 + rows[:, 0] / 40, 0.0)
         expected, actual = (monitor.step(rows) for monitor in (batched, row_by_row))
         assert actual.reward.dtype == dtype
         assert actual.reward.tolist() == pytest.approx(expected.reward.tolist(), abs=1e-6)
         rewards.update(expected.reward.tolist())
+        successes += int(expected.success.sum())
         # Some episodes are cut off, and some go on after their ends.
         resets = torch.rand(8, generator=generator) > torch.where(expected.done, 0.3, 0.95)
         for monitor in (batched, row_by_row):
             monitor.reset(resets)
-    assert len(rewards) > 2
+    assert successes > 0
+    assert len(rewards) > 1
 
 
 def test_without_tensors_a_mode_is_not_called_after_the_end_of_an_episode(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,10 +74,10 @@ def test_without_tensors_a_mode_is_not_called_after_the_end_of_an_episode(monkey
     assert (rewards, ends) == ([1.0, 1.0, 0.0, 1.0], [False, True, False])
 
 
-def test_the_semantics_page_has_rows_for_modes_that_exist() -> None:
+def test_the_semantics_page_has_a_row_for_each_mode() -> None:
     page = (ROOT / "docs" / "semantics.md").read_text(encoding="utf-8")
     documented = set(re.findall(r'^\| `mode="(\w+)"` \|', page, re.MULTILINE))
-    assert {"edge", "potential", "sparse"} <= documented <= set(MODES)
+    assert documented == MODULES
 
 
 def test_the_default_settings_name_every_mode() -> None:

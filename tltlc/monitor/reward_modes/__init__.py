@@ -2,7 +2,8 @@
 
 A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
 memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
-episode. These modes have no penalties for steps or failures. To add a mode, write its module.
+episode. A mode computes the whole reward: it does not get the penalties of Algorithm 1. To add a
+mode, write its module.
 To compute it faster for many environments, write a module of the same name in
 ``tltl_runtime.spec.batch.reward_modes`` that uses tensors.
 """

@@ -64,10 +64,10 @@ def test_an_invalid_level_gives_the_expected_message(case: Case, folder: Path) -
     assert all(re.search(r"\.toml:\d+:\d+\n", message) for message in messages) or arguments == ["navigaton", "v0"]
 
 
-def test_the_levels_of_the_paper_have_three_variants() -> None:
+def test_the_first_variants_of_the_levels_of_the_paper_are_those_of_its_table() -> None:
     levels = "branching", "cover_and_hide", "navigation"
     assert set(levels) <= set(level_names())
-    assert all(variants(name) == ("v0", "v1", "v2") for name in levels)
+    assert {name: variants(name)[:3] for name in levels} == dict.fromkeys(levels, ("v0", "v1", "v2"))
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
