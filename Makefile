@@ -32,11 +32,11 @@ demo: $(VENV)/.installed-game
 	@echo "Written: the artefact demo/cover_and_hide.fspa.json, its picture demo/cover_and_hide.svg,"
 	@echo "the monitor demo/cover_and_hide_monitor.py and every step of the trace, demo/cover_and_hide_run.csv."
 	@if $(BIN)/python -c "import pybullet" 2> /dev/null; then \
-		echo "The scripted expert plays the level; its recording, and beside it the plan of its way (.png):"; \
+		echo "The scripted expert plays the level; its recording, and beside it a plan of its trajectory (.png):"; \
 		$(BIN)/tltlc demonstrate cover_and_hide -o demo && \
 		echo "The policy that was trained for the level plays four episodes, with actions sampled and with the likeliest:" && \
 		$(BIN)/tltlc evaluate --level cover_and_hide --episodes 4 --out demo && \
-		echo "Written: demo/evaluation.json, and the ways of these episodes, demo/ways-sampled.png and demo/ways-arg-max.png." && \
+		echo "Written: demo/evaluation.json, and the trajectories of these episodes, demo/ways-sampled.png and demo/ways-arg-max.png." && \
 		echo "Do the levels still play as designed, where assets that they share were changed? (a minute or two)" && \
 		rm -f demo/regression/report.html && \
 		{ $(BIN)/tltlc regress -o demo/regression || test -f demo/regression/report.html; }; \

@@ -45,7 +45,7 @@ ENOUGH_FAILURES: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured.
+    """The size of the measurement.
 
     ``requests`` are the edits to make, ``expert_episodes`` the number of episodes of the expert, and
     ``episodes`` the greatest number of episodes of a policy.

@@ -69,7 +69,7 @@ ABLATIONS: Mapping[str, Ablation] = {
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured.
+    """The size of the measurement.
 
     ``minutes`` limits the training of a level; ``ablation_minutes`` and ``ablation_steps`` limit an
     ablation. ``settings`` apply to all cells. Equal numbers of steps make ablations comparable, even

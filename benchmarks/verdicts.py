@@ -112,7 +112,7 @@ def _changed_scenarios() -> Iterator[Scenario]:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: each scenario, with ``trials`` of a case, in suites of ``sizes`` cases.
+    """The size of the measurement: each scenario, with ``trials`` of a case, in suites of ``sizes`` cases.
 
     If verdicts come late, or errors are frequent, only ``few`` trials are made.
     """
