@@ -82,12 +82,13 @@ def check(fspa: Fspa) -> Drawing:
     drawn = [state.id for state in drawing.states]
     assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(full.states)))
     assert 0 not in inner
-    kept = [edge for edge in full.edges if edge.source not in inner]
+    unfolded_edges = [edge for edge in full.edges if edge.source not in inner]
     for first, run in drawing.folded.items():
         assert len(run) >= LEAST_FOLDED
         assert run[0].id == first
         check_run(full, drawing, [state.id for state in run])
-    assert [edge for edge in drawing.edges if edge.source not in inner] == kept, "all others are drawn as they are"
+    remaining_edges = [edge for edge in drawing.edges if edge.source not in inner]
+    assert remaining_edges == unfolded_edges, "all others are drawn as they are"
     assert {edge.source for edge in drawing.edges} | {edge.target for edge in drawing.edges} <= set(drawn)
     return drawing
 

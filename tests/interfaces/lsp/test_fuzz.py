@@ -120,22 +120,23 @@ def text_at(document: Document, where: types.Range, encoding: str) -> str:
 def check_diagnostics(document: Document, encoding: str) -> None:
     """Assert that the diagnostics are at the compiler's positions, in columns of the editor."""
     for diagnostic in document.diagnostics:
-        shown, label = protocol_diagnostic(diagnostic, document, encoding, uri_of), label_in(diagnostic, document)
-        assert shown.message.startswith(diagnostic.title)
+        label = label_in(diagnostic, document)
+        lsp_diagnostic = protocol_diagnostic(diagnostic, document, encoding, uri_of)
+        assert lsp_diagnostic.message.startswith(diagnostic.title)
         if label is not None:
             source, span = document.source, label.span
-            assert text_at(document, shown.range, encoding) == text_at(document, range_of(source, span), "utf-16")
+            assert text_at(document, lsp_diagnostic.range, encoding) == text_at(document, range_of(source, span), "utf-16")
 
 
 def check_symbols(document: Document, encoding: str) -> None:
     """Assert that the name of a declaration is within its range, and that a search finds it."""
-    shown = symbols.symbols(document, encoding)
-    for symbol in shown:
+    declared = symbols.symbols(document, encoding)
+    for symbol in declared:
         own = text_at(document, symbol.selection_range, encoding)
         assert own in text_at(document, symbol.range, encoding)
         assert own == symbol.name or symbol.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
     names = {symbol.name for symbol in symbols.matching_symbols(document, "", encoding, "file:///x")}
-    assert names == {symbol.name for symbol in shown if symbol.kind != types.SymbolKind.Module}
+    assert names == {symbol.name for symbol in declared if symbol.kind != types.SymbolKind.Module}
 
 
 def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]]) -> None:
