@@ -125,7 +125,9 @@ def check_diagnostics(document: Document, encoding: str) -> None:
         assert lsp_diagnostic.message.startswith(diagnostic.title)
         if label is not None:
             source, span = document.source, label.span
-            assert text_at(document, lsp_diagnostic.range, encoding) == text_at(document, range_of(source, span), "utf-16")
+            assert text_at(document, lsp_diagnostic.range, encoding) == text_at(
+                document, range_of(source, span), "utf-16"
+            )
 
 
 def check_symbols(document: Document, encoding: str) -> None:
