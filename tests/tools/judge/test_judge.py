@@ -18,7 +18,7 @@ from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.formulas import formula
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.judge import Judge
-from tltlc.tools.judge.verdict import Cause, TraceDetails, TraceVerdict
+from tltlc.tools.judge.verdict import RejectionCause, TraceDetails, TraceVerdict
 
 LAVA = """
 clock 10 Hz
@@ -43,7 +43,7 @@ def _trace(rows: Iterable[str], header: str = "on_lava,key,out,heat") -> bytes:
     return "\n".join([header, *rows, ""]).encode()
 
 
-def _cause(*rows: str) -> Cause | None:
+def _cause(*rows: str) -> RejectionCause | None:
     judged = Judge(FSPA, CLAUSES).judge("trace", _trace(rows))
     assert judged.verdict is not None
     assert not judged.diagnostics
@@ -61,8 +61,10 @@ def test_an_accepted_trace_has_no_cause() -> None:
 
 
 def test_a_broken_clause_is_named_with_the_step_and_the_atoms() -> None:
-    assert _cause("0,0,0,1", "0,1,0,1", "1,1,0,1", "0,1,1,1") == Cause("broken", 3, ("avoid on_lava",), ("on_lava",))
-    assert _cause("0,0,0,9") == Cause("broken", 1, ("keep heat < 8",), ("heat < 8",))
+    assert _cause("0,0,0,1", "0,1,0,1", "1,1,0,1", "0,1,1,1") == RejectionCause(
+        "broken", 3, ("avoid on_lava",), ("on_lava",)
+    )
+    assert _cause("0,0,0,9") == RejectionCause("broken", 1, ("keep heat < 8",), ("heat < 8",))
 
 
 def test_all_clauses_that_break_at_the_same_step_are_named() -> None:
@@ -72,7 +74,7 @@ def test_all_clauses_that_break_at_the_same_step_are_named() -> None:
 
 
 def test_an_unfinished_clause_is_named() -> None:
-    assert _cause("0,0,0,1", "0,1,0,1") == Cause("unfinished", 2, ("reach key then out",))
+    assert _cause("0,0,0,1", "0,1,0,1") == RejectionCause("unfinished", 2, ("reach key then out",))
 
 
 def test_a_clause_that_others_make_impossible_is_blocked() -> None:
@@ -80,35 +82,35 @@ def test_a_clause_that_others_make_impossible_is_blocked() -> None:
         "signal a: bool\nsignal b: bool\nspec s { reach a  require always (b implies always not a) }"
     )
     verdict = _verdict(Judge(fspa, parts), b"a,b\n0,0\n0,1\n0,0\n")
-    assert verdict.cause == Cause("blocked", 2, ("reach a",), ("b",))
+    assert verdict.cause == RejectionCause("blocked", 2, ("reach a",), ("b",))
 
 
 def test_an_artefact_blames_the_conjuncts_of_its_formula() -> None:
     parts = clauses_of(FSPA, None)
     assert [part.text for part in parts.parts] == ["F(key & X F out)", "G !on_lava", "G(heat < 8)"]
     verdict = _verdict(Judge(FSPA, parts), _trace(["1,0,0,1"]))
-    assert verdict.cause == Cause("broken", 1, ("G !on_lava",), ("on_lava",))
+    assert verdict.cause == RejectionCause("broken", 1, ("G !on_lava",), ("on_lava",))
 
 
 def test_only_clauses_that_have_become_impossible_are_blocked() -> None:
     signals = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
     fspa, parts = _compiled(f"{signals}spec s {{ reach a  reach c  require always (b implies always not a) }}")
     verdict = _verdict(Judge(fspa, parts), b"a,b,c\n0,0,0\n0,1,0\n")
-    assert verdict.cause == Cause("blocked", 2, ("reach a",), ("b",))
+    assert verdict.cause == RejectionCause("blocked", 2, ("reach a",), ("b",))
 
 
 def test_no_clause_is_blamed_if_one_of_them_is_too_large_for_an_automaton() -> None:
     text = "signal a: bool\nsignal b: bool\nspec s { reach a  require always (b implies always not a) }"
     fspa, parts = _compiled(text)
     some = replace(parts, parts=parts.parts[:1], are_all=False)
-    assert _verdict(Judge(fspa, some), b"a,b\n0,1\n").cause == Cause("broken", 1, (), ("b",))
+    assert _verdict(Judge(fspa, some), b"a,b\n0,1\n").cause == RejectionCause("broken", 1, (), ("b",))
 
 
 def test_clauses_that_only_together_have_become_impossible_are_not_named() -> None:
     signals = "signal a: bool\nsignal b: bool\nsignal c: bool\nsignal d: bool\n"
     rule = "require always (b implies ((always not a) or (always not c)))"
     fspa, parts = _compiled(f"{signals}spec s {{ reach a  reach c  reach d  {rule} }}")
-    assert _verdict(Judge(fspa, parts), b"a,b,c,d\n0,0,0,0\n0,1,0,0\n").cause == Cause("broken", 2, (), ("b",))
+    assert _verdict(Judge(fspa, parts), b"a,b,c,d\n0,0,0,0\n0,1,0,0\n").cause == RejectionCause("broken", 2, (), ("b",))
 
 
 def test_comments_are_not_part_of_a_clause() -> None:
@@ -120,7 +122,7 @@ def test_a_spec_over_infinite_traces_is_judged() -> None:
     signals = "signal a: bool\nsignal b: bool\n"
     fspa, parts = _compiled(f"{signals}spec s {{ semantics infinite  require always eventually a  avoid b }}")
     assert _verdict(Judge(fspa, parts), b"a,b\n0,0\n1,0\n").outcome.accepted
-    assert _verdict(Judge(fspa, parts), b"a,b\n1,0\n0,1\n").cause == Cause("broken", 2, ("avoid b",), ("b",))
+    assert _verdict(Judge(fspa, parts), b"a,b\n1,0\n0,1\n").cause == RejectionCause("broken", 2, ("avoid b",), ("b",))
 
 
 @pytest.mark.parametrize("formula", ["true", "false"])
@@ -174,7 +176,7 @@ def test_an_error_after_the_end_of_an_episode_does_not_count() -> None:
 def test_the_cause_is_known_if_the_samples_before_an_error_break_the_spec(end: str) -> None:
     judged = Judge(FSPA, CLAUSES).judge("trace", _trace(["0,0,0,1", "1,0,0,1", "0,0,0,1", end]))
     assert judged.verdict is None
-    assert judged.so_far == Cause("broken", 2, ("avoid on_lava",), ("on_lava",))
+    assert judged.so_far == RejectionCause("broken", 2, ("avoid on_lava",), ("on_lava",))
 
 
 EPISODES = "signal a: bool\nsignal b: bool\nspec s { reach a  avoid b  limit 3 steps }"
@@ -184,14 +186,14 @@ EPISODES = "signal a: bool\nsignal b: bool\nspec s { reach a  avoid b  limit 3 s
     ("rows", "accepted", "cause"),
     [
         ("00 10 01", True, None),
-        ("00 00 00 10", False, Cause("late", 3, ("reach a",))),
+        ("00 00 00 10", False, RejectionCause("late", 3, ("reach a",))),
         ("00 00 10", True, None),
-        ("00 01 10", False, Cause("broken", 2, ("avoid b",), ("b",))),
-        ("00 00", False, Cause("unfinished", 2, ("reach a",))),
+        ("00 01 10", False, RejectionCause("broken", 2, ("avoid b",), ("b",))),
+        ("00 00", False, RejectionCause("unfinished", 2, ("reach a",))),
     ],
 )
 def test_an_episode_ends_at_its_goal_at_a_violation_or_at_the_limit(
-    rows: str, accepted: bool, cause: Cause | None
+    rows: str, accepted: bool, cause: RejectionCause | None
 ) -> None:
     fspa, parts = _compiled(EPISODES)
     data = "a,b\n" + "".join(f"{row[0]},{row[1]}\n" for row in rows.split())

@@ -5,7 +5,7 @@ import pytest
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.run import TraceOutcome
 from tltlc.tools.judge.summary import summary_text, trace_text
-from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceVerdict
+from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceVerdict
 
 LAVA = ("avoid on_lava",)
 
@@ -13,12 +13,12 @@ LAVA = ("avoid on_lava",)
 UNREAD = JudgedTrace("b.csv", None, (Diagnostic("TLT0622", "line 4 of the trace cannot be read"),))
 
 
-def _judged(cause: Cause | None, samples: int = 50) -> JudgedTrace:
+def _judged(cause: RejectionCause | None, samples: int = 50) -> JudgedTrace:
     outcome = TraceOutcome(cause is None, "holding" if cause is None else "violated", 50, 0.5, 0.0)
     return JudgedTrace("a.csv", TraceVerdict(outcome, "Reach the exit.", cause, samples))
 
 
-def _summary(*causes: Cause | None) -> str:
+def _summary(*causes: RejectionCause | None) -> str:
     return summary_text([_judged(cause) for cause in causes])
 
 
@@ -33,17 +33,17 @@ def _summary(*causes: Cause | None) -> str:
     ],
 )
 def test_the_summary_says_at_which_steps_a_clause_breaks(steps: tuple[int, ...], words: str) -> None:
-    causes = [Cause("broken", step, LAVA) for step in steps]
+    causes = [RejectionCause("broken", step, LAVA) for step in steps]
     assert _summary(None, *causes) == f"1 of {len(steps) + 1} accepted; {words}"
 
 
 def test_broken_clauses_come_first_and_then_the_most_frequent_cause() -> None:
     text = _summary(
-        Cause("unfinished", 50, ("reach key", "reach out")),
-        *[Cause("unfinished", 50, ("reach out",))] * 2,
-        Cause("broken", 2, ()),
-        Cause("unfinished", 50, ()),
-        *[Cause("blocked", 7, ("reach out",))] * 2,
+        RejectionCause("unfinished", 50, ("reach key", "reach out")),
+        *[RejectionCause("unfinished", 50, ("reach out",))] * 2,
+        RejectionCause("broken", 2, ()),
+        RejectionCause("unfinished", 50, ()),
+        *[RejectionCause("blocked", 7, ("reach out",))] * 2,
     )
     assert text == (
         "0 of 7 accepted; 1 breaks the spec, at step 2; "
@@ -56,18 +56,18 @@ def test_broken_clauses_come_first_and_then_the_most_frequent_cause() -> None:
     ("cause", "text"),
     [
         (None, "accepted: holding after 50 steps"),
-        (Cause("broken", 3, LAVA), "not accepted: breaks `avoid on_lava` at step 3 of 50"),
-        (Cause("broken", 3, ()), "not accepted: breaks the spec at step 3 of 50"),
-        (Cause("blocked", 3, ("reach a",)), "not accepted: makes `reach a` impossible at step 3 of 50"),
-        (Cause("unfinished", 50, ("reach a",)), "not accepted: `reach a` is not met after 50 steps"),
+        (RejectionCause("broken", 3, LAVA), "not accepted: breaks `avoid on_lava` at step 3 of 50"),
+        (RejectionCause("broken", 3, ()), "not accepted: breaks the spec at step 3 of 50"),
+        (RejectionCause("blocked", 3, ("reach a",)), "not accepted: makes `reach a` impossible at step 3 of 50"),
+        (RejectionCause("unfinished", 50, ("reach a",)), "not accepted: `reach a` is not met after 50 steps"),
         (
-            Cause("unfinished", 50, ("reach a", "reach b")),
+            RejectionCause("unfinished", 50, ("reach a", "reach b")),
             "not accepted: `reach a` and `reach b` are not met after 50 steps",
         ),
-        (Cause("unfinished", 50, ()), "not accepted: it is too short after 50 steps"),
+        (RejectionCause("unfinished", 50, ()), "not accepted: it is too short after 50 steps"),
     ],
 )
-def test_a_line_says_why_a_trace_is_not_accepted(cause: Cause | None, text: str) -> None:
+def test_a_line_says_why_a_trace_is_not_accepted(cause: RejectionCause | None, text: str) -> None:
     assert trace_text(_judged(cause)) == text
 
 
@@ -77,7 +77,7 @@ def test_traces_that_cannot_be_judged_are_counted_by_their_errors() -> None:
 
 def test_what_is_broken_before_an_error_is_said() -> None:
     assert trace_text(UNREAD) == "cannot be judged: line 4 of the trace cannot be read"
-    broken = JudgedTrace("b.csv", None, UNREAD.diagnostics, Cause("broken", 3, LAVA))
+    broken = JudgedTrace("b.csv", None, UNREAD.diagnostics, RejectionCause("broken", 3, LAVA))
     assert trace_text(broken) == (
         "cannot be judged: line 4 of the trace cannot be read; before that, it breaks `avoid on_lava` at step 3"
     )
@@ -85,6 +85,6 @@ def test_what_is_broken_before_an_error_is_said() -> None:
 
 def test_steps_after_the_end_of_an_episode_do_not_count() -> None:
     assert trace_text(_judged(None, 80)) == "accepted: holding after 50 of 80 steps"
-    late = _judged(Cause("late", 50, ("reach a",)), 80)
+    late = _judged(RejectionCause("late", 50, ("reach a",)), 80)
     assert trace_text(late) == "not accepted: `reach a` is not met at the limit, after 50 of 80 steps"
     assert summary_text([late]) == "0 of 1 accepted; 1 reaches the limit before `reach a` is met"

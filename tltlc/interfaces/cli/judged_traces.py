@@ -23,7 +23,7 @@ from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.pool import judge_files
 from tltlc.tools.judge.summary import cause_groups, summary_text, trace_text, unread_codes
 from tltlc.tools.judge.trace_files import find_traces
-from tltlc.tools.judge.verdict import Cause, JudgedTrace
+from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause
 
 _MOST_NAMED: Final = 3
 """At most this many files that are not traces are named. Further ones are counted."""
@@ -153,7 +153,7 @@ def _trace_document(trace: JudgedTrace) -> dict[str, Any]:
     return {**document, "cause": _cause_document(cause), "diagnostics": list(map(entry, trace.diagnostics))}
 
 
-def _cause_document(cause: Cause | None) -> dict[str, Any] | None:
+def _cause_document(cause: RejectionCause | None) -> dict[str, Any] | None:
     if cause is None:
         return None
     return {"kind": cause.kind, "step": cause.step, "clauses": list(cause.clauses), "atoms": list(cause.atoms)}

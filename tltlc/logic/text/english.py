@@ -25,7 +25,7 @@ _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
 _DEEPEST: Final = 5
 """Clauses nested deeper than this are printed as formulas, because such a sentence is unreadable."""
 
-_Clause = tuple[str, int]
+_RankedClause = tuple[str, int]
 """The text of a clause, and its rank."""
 
 
@@ -107,7 +107,7 @@ def without_constants(formula: Formula) -> Formula:
     return simplify(formula) if has_constants else formula
 
 
-def _clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
+def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return the instruction to make ``node`` hold at the moment that ``when`` names, such as
     ``now``.
     """
@@ -161,7 +161,7 @@ def _parts(node: Formula) -> list[Formula]:
     return list(dict.fromkeys(parts))
 
 
-def _join_clauses(clauses: Sequence[_Clause]) -> _Clause:
+def _join_clauses(clauses: Sequence[_RankedClause]) -> _RankedClause:
     """Join clauses to one clause: ``reach a, and keep b throughout``."""
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
@@ -170,7 +170,7 @@ def _join_clauses(clauses: Sequence[_Clause]) -> _Clause:
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
-def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _Clause:
+def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return the clause of a formula ``F p``: a goal, or a sequence of goals."""
     (body,) = node.args
     if _without_negation(body).op == "G":
@@ -238,7 +238,7 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
     return f"a {_step_noun(body, context)}"
 
 
-def _throughout_clause(body: Formula, context: _SentenceContext) -> _Clause:
+def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClause:
     """Return the clause of ``G body``: what to keep, what to avoid, or what to do whenever something holds."""
     if _has_parts(body):
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
@@ -293,7 +293,7 @@ def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
     return None, None
 
 
-def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
+def _until_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
     """Return the clause of a formula with the outermost operator ``U``, ``W``, ``R`` or ``M``."""
     left, right = node.args
     if node.op in ("U", "M"):
@@ -309,7 +309,7 @@ def _until_clause(node: Formula, context: _SentenceContext) -> _Clause:
     return f"{keep} {until} {_step_noun(stop, context)}, or throughout if there is none", _CLAUSE
 
 
-def _next_clause(node: Formula, context: _SentenceContext) -> _Clause:
+def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
     """Return the clause of one ``X`` or ``N``, or of several in a row."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
@@ -327,7 +327,7 @@ def _next_clause(node: Formula, context: _SentenceContext) -> _Clause:
     return f"{moment}, {_last_clause(body, context)}", _CLAUSE
 
 
-def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _Clause:
+def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _RankedClause:
     """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``."""
     steps, body = operator.steps, operator.body
     if operator.op == "F":

@@ -23,7 +23,7 @@ _COMMENT: Final = re.compile(r"//[^\n]*")
 
 
 @record
-class Clause:
+class ClauseAutomaton:
     """A clause of a spec, or a conjunct of its formula, with an automaton for this part alone.
 
     ``text`` is the clause as it is written, on one line with single blanks: ``avoid on_lava``. For
@@ -43,7 +43,7 @@ class Clauses:
     may have at most ``state_budget`` states.
     """
 
-    parts: tuple[Clause, ...]
+    parts: tuple[ClauseAutomaton, ...]
     are_all: bool
     whole: Spec
     state_budget: int
@@ -68,7 +68,7 @@ def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_
     conjuncts = list(_conjuncts_of_artefact(fspa) if spec is None else _conjuncts_of_source(spec))
     whole = replace(_as_spec(fspa) if spec is None else spec, parts=())
     built = [(text, _automaton(whole, formula, state_budget)) for text, formula in conjuncts]
-    parts = tuple(Clause(text, automaton) for text, automaton in built if automaton is not None)
+    parts = tuple(ClauseAutomaton(text, automaton) for text, automaton in built if automaton is not None)
     return Clauses(parts, len(parts) == len(conjuncts) > 0, whole, state_budget)
 
 

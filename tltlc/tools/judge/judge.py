@@ -20,7 +20,7 @@ from tltlc.monitor.traces import Sample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
-from tltlc.tools.judge.verdict import Cause, JudgedTrace, TraceDetails, TraceVerdict
+from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceDetails, TraceVerdict
 
 _MOST_JOINT: Final = 50
 """At most this many automata of several clauses are kept."""
@@ -30,7 +30,7 @@ class Judge:
     """Judges traces by a spec, one after the other.
 
     ``fspa`` is the automaton of the spec. If a trace is not accepted, the
-    :class:`~tltlc.tools.judge.verdict.Cause` in the result names those of ``clauses`` that the
+    :class:`~tltlc.tools.judge.verdict.RejectionCause` in the result names those of ``clauses`` that the
     trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
     ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
     limit do not count. With ``details``, verdicts say how traces moved through the automaton.
@@ -128,13 +128,13 @@ class Judge:
         names = tuple(signal.name for signal in self._fspa.signals)
         return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]
 
-    def _cause(self, samples: Sequence[Sample], run: TraceRun) -> Cause:
+    def _cause(self, samples: Sequence[Sample], run: TraceRun) -> RejectionCause:
         """Return why a trace is not accepted."""
         samples = samples[: run.outcome.steps]
         if run.broken_at is None or run.broken_state is None:
             limit = self._fspa.limit_steps
             is_late = self._episodes and limit is not None and len(samples) >= limit
-            return Cause("late" if is_late else "unfinished", len(samples), self._texts(self._unmet(samples)))
+            return RejectionCause("late" if is_late else "unfinished", len(samples), self._texts(self._unmet(samples)))
         until = samples[: run.broken_at]
         atoms = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
         broken = [
@@ -143,8 +143,8 @@ class Judge:
             if runner.can_break and runner.run(until)[0].broken_at is not None
         ]
         if not broken and (blocked := self._blocked(until)):
-            return Cause("blocked", run.broken_at, self._texts(blocked), atoms)
-        return Cause("broken", run.broken_at, self._texts(broken), atoms)
+            return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms)
+        return RejectionCause("broken", run.broken_at, self._texts(broken), atoms)
 
     def _unmet(self, samples: Sequence[Sample]) -> list[int]:
         """Return the indices of the clauses that would not accept the samples as a whole trace."""

@@ -8,7 +8,7 @@ from statistics import median_low
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.tools.judge.verdict import Cause, JudgedTrace, Kind, TraceVerdict
+from tltlc.tools.judge.verdict import JudgedTrace, Kind, RejectionCause, TraceVerdict
 
 _ORDER: Final[tuple[Kind, ...]] = ("broken", "blocked", "late", "unfinished")
 
@@ -17,7 +17,7 @@ _ORDER: Final[tuple[Kind, ...]] = ("broken", "blocked", "late", "unfinished")
 class CauseGroup:
     """Traces that are not accepted for the same reason.
 
-    ``kind`` and ``clauses`` are those of :class:`~tltlc.tools.judge.verdict.Cause`. ``traces`` are the
+    ``kind`` and ``clauses`` are those of :class:`~tltlc.tools.judge.verdict.RejectionCause`. ``traces`` are the
     names of the traces, and ``steps`` their steps, in the same order.
     """
 
@@ -129,7 +129,7 @@ def _verdict_text(verdict: TraceVerdict) -> str:
     return f"not accepted: {left} after {steps}"
 
 
-def _breaking_text(cause: Cause) -> str:
+def _breaking_text(cause: RejectionCause) -> str:
     clauses = _list_text(cause.clauses)
     what = f"makes {clauses} impossible" if cause.kind == "blocked" else f"breaks {clauses or 'the spec'}"
     return f"{what} at step {cause.step}"

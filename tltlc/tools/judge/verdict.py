@@ -13,7 +13,7 @@ Kind = Literal["broken", "blocked", "late", "unfinished"]
 
 
 @record
-class Cause:
+class RejectionCause:
     """Why a trace is not accepted. ``step`` counts samples from 1.
 
     - ``broken``: from ``step`` on, no continuation can meet the ``clauses``.
@@ -22,7 +22,7 @@ class Cause:
       traces that are judged as episodes.
     - ``unfinished``: the trace ends, after ``step`` samples, before the ``clauses`` are met.
 
-    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.Clause`. They are empty if no
+    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.ClauseAutomaton`. They are empty if no
     single clause is to blame, but only several together, or if the clauses are not known. ``atoms``
     are the atoms that decided the step that broke the spec; empty for ``late`` and ``unfinished``.
     """
@@ -62,7 +62,7 @@ class TraceVerdict:
 
     outcome: TraceOutcome
     remaining: str
-    cause: Cause | None
+    cause: RejectionCause | None
     samples: int
     details: TraceDetails | None = None
 
@@ -79,4 +79,4 @@ class JudgedTrace:
     name: str
     verdict: TraceVerdict | None
     diagnostics: tuple[Diagnostic, ...] = ()
-    so_far: Cause | None = None
+    so_far: RejectionCause | None = None

@@ -28,7 +28,7 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 
 
 @record
-class Expression:
+class ScopedExpression:
     """An expression of a clause, with the environment in which its names are resolved.
 
     Inside a quantifier, the environment also has the entity for the quantifier's variable.
@@ -47,12 +47,12 @@ class Expression:
         """The source text of the expression on one line, without brackets around it."""
         return " ".join(self.source.slice(without_brackets(self.tree).span).split())
 
-    def with_tree(self, tree: Expr) -> Expression:
+    def with_tree(self, tree: Expr) -> ScopedExpression:
         """Return the part ``tree`` of this expression, with the same environment.
 
         ``tree`` must not be inside a quantifier. Use :meth:`parts` for the parts of a quantifier.
         """
-        return Expression(tree, self.env)
+        return ScopedExpression(tree, self.env)
 
     def formula(self) -> Formula | None:
         """Return the resolved formula, or None if the expression is not a formula."""
@@ -69,7 +69,7 @@ class Expression:
         formula = self.formula()
         return formula is not None and is_state(formula) and bool(formula.atoms())
 
-    def parts(self) -> Iterator[Expression]:
+    def parts(self) -> Iterator[ScopedExpression]:
         """Yield the expression and all its subexpressions, outer before inner.
 
         The body of a quantifier is yielded once for each entity.
@@ -80,7 +80,7 @@ class Expression:
             yield part
             pending += reversed(part.children())
 
-    def children(self) -> list[Expression]:
+    def children(self) -> list[ScopedExpression]:
         """Return the operands, in order.
 
         For a quantifier, they are its body, once for each entity.
@@ -88,7 +88,8 @@ class Expression:
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
             return [
-                Expression(body, self.env.with_local(variable, entity(name, self.env))) for name in self.tree.entities
+                ScopedExpression(body, self.env.with_local(variable, entity(name, self.env)))
+                for name in self.tree.entities
             ]
         return [self.with_tree(child) for child in children(self.tree)]
 
@@ -119,16 +120,16 @@ class SpecView:
         """Whether every trace satisfies the spec, or no trace does."""
         return self.fspa.states[0].verdict in ("satisfied", "violated")
 
-    def clauses(self, *kinds: str) -> Iterator[tuple[Clause, Expression]]:
+    def clauses(self, *kinds: str) -> Iterator[tuple[Clause, ScopedExpression]]:
         """Yield the clauses of these kinds and their expressions, in order.
 
         The kinds with formulas are ``reach keep avoid require``.
         """
         for clause in self.declaration.clauses:
             if clause.kind in kinds and not isinstance(clause.value, tuple):
-                yield clause, Expression(clause.value, self.env)
+                yield clause, ScopedExpression(clause.value, self.env)
 
-    def formulas(self) -> Iterator[Expression]:
+    def formulas(self) -> Iterator[ScopedExpression]:
         """Yield the formulas of all clauses, in order."""
         yield from (value for _, value in self.clauses("reach", "keep", "avoid", "require"))
 
@@ -182,7 +183,7 @@ class View:
         return Label(self.source, span, message)
 
 
-def operand_text(part: Expression) -> str:
+def operand_text(part: ScopedExpression) -> str:
     """Return the text of an expression as an operand of ``and`` or of a word like ``eventually``.
 
     The text has brackets if it needs them there.

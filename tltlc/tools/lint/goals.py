@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from tltlc.grammar import walk
 from tltlc.grammar.tree import BinaryExpr, Quantified, Unary
-from tltlc.tools.lint.file_view import Expression, SpecView, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, without_brackets
 
 
-def goals(spec: SpecView) -> Iterator[Expression]:
+def goals(spec: SpecView) -> Iterator[ScopedExpression]:
     """Yield the goals of a spec, which must hold at some step.
 
     They are the operands of ``then`` chains and of ``eventually``, and the expressions of ``reach``
@@ -25,12 +25,12 @@ def goals(spec: SpecView) -> Iterator[Expression]:
             yield from _goals_inside(value)
 
 
-def conjuncts(goal: Expression) -> list[Expression]:
+def conjuncts(goal: ScopedExpression) -> list[ScopedExpression]:
     """Return the conjuncts of a goal, in order.
 
     The conjuncts of an `all` quantifier are those of its body, once for each entity.
     """
-    parts: list[Expression] = []
+    parts: list[ScopedExpression] = []
     for tree in walk.conjuncts(goal.tree):
         part = goal.with_tree(without_brackets(tree))
         if isinstance(part.tree, Quantified) and part.tree.all:
@@ -40,7 +40,7 @@ def conjuncts(goal: Expression) -> list[Expression]:
     return parts
 
 
-def consists_of_implications(value: Expression) -> bool:
+def consists_of_implications(value: ScopedExpression) -> bool:
     """Whether an expression consists of implications only.
 
     As a goal, such an expression is met as soon as the conditions of its implications do not hold.
@@ -49,7 +49,7 @@ def consists_of_implications(value: Expression) -> bool:
     return all(isinstance(tree, BinaryExpr) and tree.op == "implies" for tree in trees)
 
 
-def _goals_inside(value: Expression) -> Iterator[Expression]:
+def _goals_inside(value: ScopedExpression) -> Iterator[ScopedExpression]:
     """Yield the goals in an expression, outer before inner. Does not recurse."""
     pending = [value]
     while pending:

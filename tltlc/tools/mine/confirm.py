@@ -24,8 +24,8 @@ _NAME: Final = "mined_candidate_"
 
 
 @record
-class TraceVerdict:
-    """The verdict of an automaton on a trace.
+class ProposalVerdict:
+    """The verdict of the automaton of a proposal on a trace.
 
     ``violated_at`` is the number of the first sample, counted from 1, after which the verdict is
     ``violated``; None if the trace does not violate the spec.
@@ -42,8 +42,8 @@ class Proposal:
 
     clauses: Conjunction
     fspa: Fspa
-    traces: tuple[TraceVerdict, ...]
-    counterexamples: tuple[TraceVerdict, ...]
+    traces: tuple[ProposalVerdict, ...]
+    counterexamples: tuple[ProposalVerdict, ...]
 
     @property
     def figures(self) -> Support:
@@ -81,7 +81,7 @@ def confirm(
     return tuple(proposals)
 
 
-def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
+def judge(fspa: Fspa, trace: LabelledTrace) -> ProposalVerdict:
     """Return the verdict of an automaton on a trace."""
     run = _Run(fspa)
     violated_at = None
@@ -89,7 +89,7 @@ def judge(fspa: Fspa, trace: LabelledTrace) -> TraceVerdict:
         run.step(letter)
         if violated_at is None and run.state.verdict == "violated":
             violated_at = number
-    return TraceVerdict(trace, run.state.accepting, violated_at)
+    return ProposalVerdict(trace, run.state.accepting, violated_at)
 
 
 class _Run:

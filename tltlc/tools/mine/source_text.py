@@ -11,7 +11,7 @@ from typing import Final
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
 from tltlc.tools.mine.bits import Bits
-from tltlc.tools.mine.confirm import Proposal, TraceVerdict
+from tltlc.tools.mine.confirm import Proposal, ProposalVerdict
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
 from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns
@@ -85,7 +85,7 @@ def _sentence(text: str) -> str:
 def _tests(proposal: Proposal) -> Iterator[str]:
     atoms = {atom.name for atom in proposal.fspa.atoms}
 
-    def lengths(verdict: TraceVerdict) -> tuple[int, int]:
+    def lengths(verdict: ProposalVerdict) -> tuple[int, int]:
         """Return how many lines a trace takes in a test, and how many samples it has."""
         letters = verdict.trace.letters
         return sum(1 for _ in groupby(letter & atoms for letter in letters)), len(letters)

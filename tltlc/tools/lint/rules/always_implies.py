@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, GroupExpr, Unary
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import Expression, View
+from tltlc.tools.lint.file_view import ScopedExpression, View
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -26,11 +26,11 @@ def check(view: View) -> Iterator[Remark]:
                     first, *rest = operands(part.tree.left, "and")
                     if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, GroupExpr):
                         condition = (part.with_tree(first.operand), *map(part.with_tree, rest))
-                        if all(map(Expression.depends_on_one_step, condition)):
+                        if all(map(ScopedExpression.depends_on_one_step, condition)):
                             yield _remark(part, part.tree, first)
 
 
-def _remark(part: Expression, tree: BinaryExpr, first: Unary) -> Remark:
+def _remark(part: ScopedExpression, tree: BinaryExpr, first: Unary) -> Remark:
     def text_between(start: int, end: int) -> str:
         return " ".join(part.source.text[start:end].split())
 

@@ -11,7 +11,7 @@ from tltlc.grammar.tree import Expr, LetDecl, NumberExpr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.resolve.constants import samples
 from tltlc.resolve.values import Env
-from tltlc.tools.lint.file_view import Expression, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
@@ -53,7 +53,7 @@ def _steps(tree: Unary) -> float:
 
 
 def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
-    text = operand_text(Expression(awaited, view.env))
+    text = operand_text(ScopedExpression(awaited, view.env))
     help_ = f"you seldom mean exactly {steps:g} steps later: declare a `clock`, and give the time in seconds"
     if view.env.context.clock_s:
         time = _seconds(steps, view.env.context.clock_s, view.env)

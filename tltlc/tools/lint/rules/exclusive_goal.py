@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct, Spec
-from tltlc.tools.lint.file_view import Expression, SpecView, View, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
                 yield Remark(title, (label,), help_)
 
 
-def _conflicting_atoms(goal: Expression, spec: SpecView) -> list[str]:
+def _conflicting_atoms(goal: ScopedExpression, spec: SpecView) -> list[str]:
     """Return the names of the exclusive atoms that make a goal impossible.
 
     The list is empty if the goal is possible, or if it is impossible for another reason.

@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import GroupExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint import goals
-from tltlc.tools.lint.file_view import Expression, View, operand_text
+from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
@@ -24,7 +24,7 @@ def check(view: View) -> Iterator[Remark]:
     for spec in view.specs:
         for clause, value in spec.clauses("require"):
             parts = [value.with_tree(tree) for tree in conjuncts(value.tree)]
-            if spec.declaration.block and all(map(Expression.depends_on_one_step, parts)):
+            if spec.declaration.block and all(map(ScopedExpression.depends_on_one_step, parts)):
                 label = Label(value.source, clause.span, "required at the first step, and never again")
                 help_ = f"for every step, write `keep {value.text}`"
                 if not goals.consists_of_implications(value):
@@ -32,7 +32,7 @@ def check(view: View) -> Iterator[Remark]:
                 yield Remark("this is only about the first step", (label,), help_)
                 continue
             for place, part in enumerate(parts):
-                following = list(takewhile(Expression.depends_on_one_step, parts[place + 1 :]))
+                following = list(takewhile(ScopedExpression.depends_on_one_step, parts[place + 1 :]))
                 if following and isinstance(part.tree, Unary) and _is_bare(part.tree):
                     yield _remark(part, part.tree, following)
 
@@ -42,7 +42,7 @@ def _is_bare(tree: Unary) -> bool:
     return tree.op in ("F", "G") and not isinstance(tree.operand, GroupExpr)
 
 
-def _remark(temporal: Expression, tree: Unary, following: list[Expression]) -> Remark:
+def _remark(temporal: ScopedExpression, tree: Unary, following: list[ScopedExpression]) -> Remark:
     source = temporal.source
     word = " ".join(source.text[tree.span.start : tree.operand.span.start].split())
     inside = " and ".join(map(operand_text, (temporal.with_tree(tree.operand), *following)))

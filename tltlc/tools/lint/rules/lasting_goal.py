@@ -13,7 +13,7 @@ from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic.formula import FALSE, and_, weak_next
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -38,7 +38,7 @@ def check(view: View) -> Iterator[Remark]:
                     yield from remarks
 
 
-def _goals_of(part: Expression) -> Iterator[Expression]:
+def _goals_of(part: ScopedExpression) -> Iterator[ScopedExpression]:
     """Yield the operand of `eventually`, or a whole `then` chain; nothing for other expressions."""
     if isinstance(part.tree, Unary) and part.tree.op == "F":
         yield part.with_tree(part.tree.operand)
@@ -46,12 +46,12 @@ def _goals_of(part: Expression) -> Iterator[Expression]:
         yield part
 
 
-def _last_parts(goal: Expression) -> list[Expression]:
+def _last_parts(goal: ScopedExpression) -> list[ScopedExpression]:
     """Return the conjuncts that must be met last for a goal to be met.
 
     For a `then` chain, they are those of its last step; for `eventually a`, those of a.
     """
-    parts: list[Expression] = []
+    parts: list[ScopedExpression] = []
     pending = [goal]
     while pending:
         goal = pending.pop()
@@ -62,14 +62,14 @@ def _last_parts(goal: Expression) -> list[Expression]:
     return parts
 
 
-def _is_met_by_one_step(final: list[Expression], spec: SpecView) -> bool:
+def _is_met_by_one_step(final: list[ScopedExpression], spec: SpecView) -> bool:
     """Whether a trace of one step can satisfy all of these expressions."""
-    formulas = (formula for formula in map(Expression.formula, final) if formula is not None)
+    formulas = (formula for formula in map(ScopedExpression.formula, final) if formula is not None)
     at_end = and_(weak_next(FALSE), *formulas)
     return not unsatisfiable((Conjunct(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
-def _remarks(goal: Expression) -> Iterator[Remark]:
+def _remarks(goal: ScopedExpression) -> Iterator[Remark]:
     """Yield a remark for each bounded `always`, or negated bounded `eventually`, in an expression."""
     pending = [(goal, True)]
     while pending:

@@ -11,7 +11,7 @@ from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -27,7 +27,7 @@ def check(view: View) -> Iterator[Remark]:
                 yield from _remarks(goal, spec)
 
 
-def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
+def _remarks(goal: ScopedExpression, spec: SpecView) -> Iterator[Remark]:
     formula = goal.formula()
     if formula is None:
         return
@@ -102,19 +102,19 @@ def _helpful_atoms(state: Formula) -> tuple[list[str], list[str]]:
     return [name for name, holds in atoms if holds], [name for name, holds in atoms if not holds]
 
 
-def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
+def _implications(goal: ScopedExpression) -> list[tuple[ScopedExpression, ScopedExpression]]:
     """Return the condition and the result of each implication that a goal asks for.
 
     The body of `all` counts once, not once for each entity.
     """
-    by_span: dict[Span, tuple[Expression, Expression]] = {}
+    by_span: dict[Span, tuple[ScopedExpression, ScopedExpression]] = {}
     for part in conjuncts(goal):
         if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
             by_span[part.tree.span] = part.with_tree(part.tree.left), part.with_tree(part.tree.right)
     return list(by_span.values())
 
 
-def _remark_on_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
+def _remark_on_implications(implications: list[tuple[ScopedExpression, ScopedExpression]]) -> Remark:
     labels, alternatives = [], []
     for condition, result in implications:
         span = condition.tree.span.to(result.tree.span)

@@ -11,7 +11,7 @@ from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import Expression, SpecView, View, operand_text
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text
 from tltlc.tools.lint.rule import LintRule, Remark
 
 
@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
                 yield from map(_remark, implications)
 
 
-def _implications(value: Expression) -> Iterator[Expression]:
+def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
     """Yield the implications that the expression requires to hold.
 
     Implications in goals, in negations, in conditions and in `iff` are left out.
@@ -45,7 +45,7 @@ def _implications(value: Expression) -> Iterator[Expression]:
         pending += reversed(operands)
 
 
-def _never_together(implication: Expression, spec: SpecView) -> bool:
+def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
     formula = implication.formula()
     if formula is None or formula.op != "implies" or not is_state(formula):
         return False
@@ -58,7 +58,7 @@ def _never_together(implication: Expression, spec: SpecView) -> bool:
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
 
 
-def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
+def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
     formula = value.formula()
     if formula is None:
         return False
@@ -66,7 +66,7 @@ def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
-def _remark(implication: Expression) -> Remark:
+def _remark(implication: ScopedExpression) -> Remark:
     assert isinstance(implication.tree, BinaryExpr)
     condition, result = implication.with_tree(implication.tree.left), implication.with_tree(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")

@@ -8,7 +8,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
-from tltlc.tools.lint.file_view import Expression, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -75,7 +75,7 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
         elif isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
             op = part.op if sign else _DUAL[part.op]
             if op == _DUAL[outer]:
-                awaited = Expression(part.operand, view.env)
+                awaited = ScopedExpression(part.operand, view.env)
                 word = view.source.slice(part.op_span)
                 once = _once(awaited, sign, outer, word, is_whole=part is whole, is_clause=is_clause)
                 yield _remark(Span(begin, part.op_span.end), op, awaited, sign, once)
@@ -84,13 +84,13 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
         ):
             pending += (part.right, sign), (part.left, sign)
         elif isinstance(part, BinaryExpr) and part.op == "U" and sign and outer == "G":
-            goal = Expression(part.right, view.env).text
+            goal = ScopedExpression(part.right, view.env).text
             label = Label(
                 view.source,
                 Span(begin, part.op_span.end),
                 f"required at every step, so `{goal}` must hold at the last one",
             )
-            until = Expression(part, view.env)
+            until = ScopedExpression(part, view.env)
             advice = "take it out of the `always`"
             if is_clause:
                 advice = f"write `require {until.text}`"
@@ -99,7 +99,7 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
             yield Remark("this `until` starts again at every step", (label,), f"if once is enough, {advice}")
 
 
-def _once(awaited: Expression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
+def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
     """Return advice on what to write if it is enough that ``awaited`` holds once.
 
     If ``sign`` is false, the negation of ``awaited`` must hold instead. ``word`` is the operator in
@@ -116,11 +116,11 @@ def _once(awaited: Expression, sign: bool, outer: str, word: str, *, is_whole: b
     return "take it out of the `always`"
 
 
-def _goal(awaited: Expression, sign: bool) -> str:
+def _goal(awaited: ScopedExpression, sign: bool) -> str:
     return awaited.text if sign else f"not {operand_text(awaited)}"
 
 
-def _remark(place: Span, op: str, awaited: Expression, sign: bool, once: str) -> Remark:
+def _remark(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: str) -> Remark:
     """Return the remark that ``awaited``, under operators like `G F`, is only about the last step.
 
     ``op``, `F` or `G`, is the inner operator, and ``place`` the span of the operators. ``sign`` is

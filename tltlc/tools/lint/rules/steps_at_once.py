@@ -11,7 +11,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, TltlError
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
-from tltlc.tools.lint.file_view import Expression, SpecView, View, without_brackets
+from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, Remark
 
@@ -61,7 +61,7 @@ def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
                 yield Remark(title, (label,), help_)
 
 
-def _atom(part: Expression) -> str:
+def _atom(part: ScopedExpression) -> str:
     """Return the name of an atom; an empty string if the expression is anything but an atom."""
     formula = part.formula()
     return formula.name if formula is not None and formula.op == "atom" else ""
