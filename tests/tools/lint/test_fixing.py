@@ -143,7 +143,7 @@ PIECES = (
 def commented_files(draw: st.DrawFn) -> str:
     """Draw a file with documentation, ordinary comments and ``allow`` comments in all places."""
     order = draw(st.permutations(PIECES))
-    lines = st.lists(st.sampled_from(("/// Documented.", "// tltlc: a remark", "", *ALLOWS)), max_size=3)
+    lines = st.lists(st.sampled_from(("/// Documented.", "// tltlc: a comment", "", *ALLOWS)), max_size=3)
     text = ""
     for piece in order:
         text += "".join(f"{line}\n" for line in draw(lines))

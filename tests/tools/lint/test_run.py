@@ -9,7 +9,7 @@ import pytest
 from tests.tools.lint.helpers import APART, block, codes, findings_in
 from tltlc.core.source import SourceFile
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rule import RuleFinding
 from tltlc.tools.lint.run import lint
 
 NO_TRACE, NO_GOAL = "TLT0410", "TLT0414"
@@ -67,8 +67,10 @@ class _Rule:
     code, severity = "TLT0432", "warning"
     reads = 0
 
-    def check(self, view: View) -> list[Remark]:
-        return [Remark("odd", (view.label(declaration.span),), "mend it") for declaration in view.module.declarations]
+    def check(self, view: View) -> list[RuleFinding]:
+        return [
+            RuleFinding("odd", (view.label(declaration.span),), "mend it") for declaration in view.module.declarations
+        ]
 
     @property
     def supersedes(self) -> tuple[str, ...]:

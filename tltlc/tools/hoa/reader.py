@@ -137,8 +137,8 @@ def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_en
         title, help_ = f"`{source.name}` contains several automata", "use a file with only one of them"
         return unsupported_error(source, span, title, help_, "another one")
     expected = sorted(at_end if name == "$END" else _terminal_name(name) for name in error.accepts)
-    remark = f"expected {_alternatives(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
-    return format_error(source, span, title, remark=remark)
+    label_message = f"expected {_alternatives(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
+    return format_error(source, span, title, label_message=label_message)
 
 
 def _shift(span: Span, by: int) -> Span:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @record
-class Remark:
+class RuleFinding:
     """What a rule reports, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
 
     :func:`~tltlc.tools.lint.run.findings` adds the code and the severity of the rule. A fix must
@@ -31,14 +31,14 @@ class Remark:
 class LintRule:
     """A lint rule. The documentation of its code says what it finds, and what to write instead.
 
-    ``check`` is a pure function from a file to remarks. ``supersedes`` lists codes of less specific
+    ``check`` is a pure function from a file to findings. ``supersedes`` lists codes of less specific
     diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a
-    remark of this rule, unless the diagnostic is more severe than the remark.
+    finding of this rule, unless the diagnostic is more severe than the finding.
     """
 
     code: str
     severity: Severity
-    check: Callable[[View], Iterable[Remark]]
+    check: Callable[[View], Iterable[RuleFinding]]
     supersedes: tuple[str, ...] = ()
 
 

@@ -98,9 +98,9 @@ def _with_severity(finding: LintFinding, severity: str) -> LintFinding:
 
 
 def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
-    for remark in rule.check(view):
-        fixes = (remark.fix,) if remark.fix else ()
-        yield LintFinding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
+    for finding in rule.check(view):
+        fixes = (finding.fix,) if finding.fix else ()
+        yield LintFinding(Diagnostic(rule.code, finding.title, finding.labels, finding.help, rule.severity, fixes))
 
 
 def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) -> bool:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import RANGES, labelled_texts_in_block, spec_and_remarks
+from tests.tools.lint.helpers import RANGES, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.strategies import RANGED, World, specs
 from tltlc.tools.lint.rules import apart_by_ranges
 
@@ -35,6 +35,6 @@ def test_clauses_that_contradict_each_other_by_ranges_are_reported(
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}", worlds=[RANGED]))
 def test_no_trace_of_values_satisfies_a_reported_spec(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(apart_by_ranges.check, text)
+    spec, reported = spec_and_findings(apart_by_ranges.check, text)
     for _ in reported:
         assert not any(world.traces.satisfying(spec.spec.formula))

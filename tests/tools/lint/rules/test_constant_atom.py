@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import block, codes, findings_in, spec_and_remarks
+from tests.tools.lint.helpers import block, codes, findings_in, spec_and_findings
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import constant_atom
 
@@ -46,7 +46,7 @@ def test_an_atom_is_reported_once_per_file() -> None:
 @times(40)
 @given(PREDICATES)
 def test_reported_atoms_are_constant_on_all_values(predicate: Predicate) -> None:
-    _, reported = spec_and_remarks(constant_atom.check, block("reach p", before=predicate.declaration))
-    for remark in reported:
+    _, reported = spec_and_findings(constant_atom.check, block("reach p", before=predicate.declaration))
+    for finding in reported:
         truths = {value > 0 for value in predicate.values()}
-        assert truths == {remark.title == "`p` always holds"}
+        assert truths == {finding.title == "`p` always holds"}

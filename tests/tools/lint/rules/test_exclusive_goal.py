@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import APART, PLACES, labelled_texts_in_block, spec_and_remarks
+from tests.tools.lint.helpers import APART, PLACES, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.strategies import EXCLUSIVE, World, specs
 from tltlc.tools.lint.file_view import without_brackets
 from tltlc.tools.lint.goals import goals
@@ -40,10 +40,10 @@ def test_the_warning_of_the_compiler_stays_if_it_has_another_reason() -> None:
 @given(specs("reach {} and {}", "reach {} then ({} and {})", "require F ({} & {})", worlds=[EXCLUSIVE], most=1))
 def test_no_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(exclusive_goal.check, text)
-    for remark in reported:
+    spec, reported = spec_and_findings(exclusive_goal.check, text)
+    for finding in reported:
         (goal,) = (
-            candidate for candidate in goals(spec) if without_brackets(candidate.tree).span == remark.labels[0].span
+            candidate for candidate in goals(spec) if without_brackets(candidate.tree).span == finding.labels[0].span
         )
         formula = goal.formula()
         assert formula and not any(world.traces.holding_at_some_step(formula))

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import block, labelled_texts_in_block, spec_and_remarks
+from tests.tools.lint.helpers import block, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.predicates import PREDICATES, Predicate
 from tltlc.tools.lint.rules import flat_goal
 
@@ -34,6 +34,6 @@ def test_flat_goals_are_reported(clauses: tuple[str, ...], expected: list[str]) 
 @times(40)
 @given(PREDICATES)
 def test_a_reported_atom_is_0_wherever_it_is_false(predicate: Predicate) -> None:
-    _, reported = spec_and_remarks(flat_goal.check, block("reach p", before=predicate.declaration))
+    _, reported = spec_and_findings(flat_goal.check, block("reach p", before=predicate.declaration))
     for _ in reported:
         assert min(predicate.values()) == 0

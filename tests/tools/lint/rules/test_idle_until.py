@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import SIGNALS, codes, spec_and_remarks
+from tests.tools.lint.helpers import SIGNALS, codes, spec_and_findings
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.automaton.compare import are_equivalent
 from tltlc.pipeline import compile_text
@@ -45,8 +45,8 @@ def test_an_until_whose_first_operand_matters_is_not_reported(clause: str) -> No
     ],
 )
 def test_the_suggested_clause_is_judged_at_the_same_moment(clause: str, suggested_clause: str) -> None:
-    (remark,) = spec_and_remarks(idle_until.check, spec(clause))[1]
-    assert remark.help == f"write `{suggested_clause}`"
+    (finding,) = spec_and_findings(idle_until.check, spec(clause))[1]
+    assert finding.help == f"write `{suggested_clause}`"
     original, suggested = (compile_text(spec(source_clause))[0] for source_clause in (clause, suggested_clause))
     assert original.judge == suggested.judge
 
@@ -59,9 +59,9 @@ def spec(clause: str) -> str:
 @given(specs("reach {} until {}", "avoid {} until {}", "reach {} then ({} until {})", worlds=[FREE], most=1))
 def test_the_simplified_clause_is_equivalent(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(idle_until.check, text)
-    for remark in reported:
-        span = remark.labels[0].span
-        goal = remark.labels[0].message.split("`")[1].removeprefix("reach ").removeprefix("avoid ")
-        same, _ = spec_and_remarks(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
+    spec, reported = spec_and_findings(idle_until.check, text)
+    for finding in reported:
+        span = finding.labels[0].span
+        goal = finding.labels[0].message.split("`")[1].removeprefix("reach ").removeprefix("avoid ")
+        same, _ = spec_and_findings(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)

@@ -17,7 +17,7 @@ from tests.tools.lint.helpers import (
     codes,
     findings_in,
     labelled_texts_in_block,
-    spec_and_remarks,
+    spec_and_findings,
 )
 from tests.tools.lint.strategies import SMALL, World, specs
 from tests.tools.lint.traces import includes, intersection
@@ -35,19 +35,19 @@ def automaton(formulas: list[Formula]) -> tltlc.Fspa:
 @given(st.lists(SMALL, min_size=2, max_size=4))
 def test_implied_clauses_can_be_removed(clauses: list[str]) -> None:
     text = block(*(f"require ({clause})" for clause in clauses))
-    view, reported = spec_and_remarks(implied_clause.check, text)
+    view, reported = spec_and_findings(implied_clause.check, text)
     parts = view.spec.parts
     assume(view.fspa.states[0].verdict != "violated")
     at = {part.span: part.formula for part in parts}
-    for remark in reported:
-        part, *reasons = (at[label.span] for label in remark.labels)
+    for finding in reported:
+        part, *reasons = (at[label.span] for label in finding.labels)
         assert is_included(automaton(reasons), automaton([part]))
-    implied = {remark.labels[0].span for remark in reported}
-    duplicates = {remark.labels[0].span for remark in spec_and_remarks(duplicate_clause.check, text)[1]}
+    implied = {finding.labels[0].span for finding in reported}
+    duplicates = {finding.labels[0].span for finding in spec_and_findings(duplicate_clause.check, text)[1]}
     remaining = [part for part in parts if part.span not in implied | duplicates]
     assert are_equivalent(automaton(list(at.values())), automaton([part.formula for part in remaining]))
     # A clause that constrains only the last step is not used as a reason.
-    last = [remark.labels[0].span for remark in spec_and_remarks(recurrence.check, text)[1]]
+    last = [finding.labels[0].span for finding in spec_and_findings(recurrence.check, text)[1]]
     reasons = [part.formula for part in remaining if not any(part.span.covers(span) for span in last)]
     for formula in (part.formula for part in remaining):
         others = [other for other in reasons if other is not formula]
@@ -92,10 +92,10 @@ def test_an_exclusive_atom_may_imply_an_avoid() -> None:
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_meets_the_reasons_and_breaks_the_implied_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(implied_clause.check, text)
+    spec, reported = spec_and_findings(implied_clause.check, text)
     satisfying = {part.span: world.traces.satisfying(part.formula) for part in spec.spec.parts}
-    for remark in reported:
-        needless, *reasons = (satisfying[label.span] for label in remark.labels)
+    for finding in reported:
+        needless, *reasons = (satisfying[label.span] for label in finding.labels)
         common = reduce(intersection, reasons)
         assert any(common) and includes(needless, common)
 

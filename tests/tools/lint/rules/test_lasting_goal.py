@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import codes, labelled_texts, spec_and_remarks
+from tests.tools.lint.helpers import codes, labelled_texts, spec_and_findings
 from tests.tools.lint.strategies import FREE, World, specs
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import compile_text
@@ -75,6 +75,6 @@ LASTING = "(always for 3 steps {} and {})"
 @given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
 def test_some_trace_of_one_step_meets_a_reported_goal(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(lasting_goal.check, text)
+    spec, reported = spec_and_findings(lasting_goal.check, text)
     for _ in reported:
         assert world.traces.satisfying(spec.spec.formula)[0]

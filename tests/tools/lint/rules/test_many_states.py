@@ -28,6 +28,11 @@ def test_a_long_spec_with_a_large_automaton_is_not_reported() -> None:
 def test_without_a_bound_the_goals_are_reported() -> None:
     before = "".join(f"signal {name}: bool\n" for name in "abcdefg")
     text = block(*(f"reach {name}" for name in "abcdefg"), before=before)
-    (remark,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0423")
-    assert [label.source.slice(label.span) for label in remark.labels] == ["reach a", "reach b", "reach c", "reach d"]
-    assert "exclusive" in (remark.help or "")
+    (diagnostic,) = (finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0423")
+    assert [label.source.slice(label.span) for label in diagnostic.labels] == [
+        "reach a",
+        "reach b",
+        "reach c",
+        "reach d",
+    ]
+    assert "exclusive" in (diagnostic.help or "")

@@ -17,14 +17,14 @@ from tests.tools.lint.helpers import (
     findings_in,
     labelled_texts,
     labelled_texts_in_block,
-    spec_and_remarks,
+    spec_and_findings,
 )
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import intersection
 from tltlc.logic.formula import TRUE, Formula, atom
 from tltlc.tools.lint.file_view import SpecView
 from tltlc.tools.lint.goals import goals
-from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rule import RuleFinding
 from tltlc.tools.lint.rules import met_by_nothing
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
@@ -109,21 +109,21 @@ def test_the_formula_that_the_paper_prints_is_reported() -> None:
 @given(specs("reach {}", "reach {} implies {}", "reach {} then ({} or {})", "keep {}", "avoid {}"))
 def test_some_trace_meets_a_reported_goal_while_the_atoms_are_false(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(met_by_nothing.check, text)
+    spec, reported = spec_and_findings(met_by_nothing.check, text)
     satisfying = world.traces.satisfying(spec.spec.formula)
-    for remark in reported:
-        enclosing = [goal for goal in goals(spec) if goal.tree.span.covers(remark.labels[0].span)]
+    for finding in reported:
+        enclosing = [goal for goal in goals(spec) if goal.tree.span.covers(finding.labels[0].span)]
         met = [
-            world.traces.holding_at_some_step(goal.formula() or TRUE, without=list(failing(remark, spec)))
+            world.traces.holding_at_some_step(goal.formula() or TRUE, without=list(failing(finding, spec)))
             for goal in enclosing
         ]
         assert any(any(intersection(traces, satisfying)) for traces in met)
 
 
-def failing(remark: Remark, spec: SpecView) -> Iterator[Formula]:
-    """Yield the formulas that a remark says may be false: conditions of implications, or atoms."""
+def failing(finding: RuleFinding, spec: SpecView) -> Iterator[Formula]:
+    """Yield the formulas that a finding says may be false: conditions of implications, or atoms."""
     trees = {part.tree.span: part.formula() for clause in spec.formulas() for part in clause.parts()}
-    for label in remark.labels:
+    for label in finding.labels:
         formula = trees[label.span]
         if label.message.startswith("true while") and formula:
             yield formula.args[0]

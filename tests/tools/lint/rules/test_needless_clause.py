@@ -15,7 +15,7 @@ from tests.tools.lint.helpers import (
     SIGNALS,
     findings_in,
     labelled_texts_in_block,
-    spec_and_remarks,
+    spec_and_findings,
 )
 from tests.tools.lint.strategies import World, specs
 from tltlc.core.source import SourceFile
@@ -62,9 +62,9 @@ def test_a_clause_that_exclusive_atoms_satisfy_is_reported() -> None:
 @given(specs("keep {}", "avoid {}", "reach {}", "require {}"))
 def test_no_trace_breaks_a_reported_clause(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(needless_clause.check, text)
-    for remark in reported:
-        (formula,) = (part.formula for part in spec.spec.parts if part.span == remark.labels[0].span)
+    spec, reported = spec_and_findings(needless_clause.check, text)
+    for finding in reported:
+        (formula,) = (part.formula for part in spec.spec.parts if part.span == finding.labels[0].span)
         assert world.traces.satisfying(formula) == world.traces.all_traces
 
 

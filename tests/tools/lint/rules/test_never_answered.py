@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import APART, block, codes, labelled_texts_in_block, spec_and_remarks
+from tests.tools.lint.helpers import APART, block, codes, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
 from tltlc.tools.lint.rules import never_answered
@@ -50,9 +50,9 @@ def test_a_clause_that_is_impossible_is_reported_as_a_contradiction_only() -> No
 @given(specs("keep {} implies {}", "require G ({} -> {})", "require {} implies {}", most=1))
 def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tuple[World, str]) -> None:
     world, text = drawn
-    spec, reported = spec_and_remarks(never_answered.check, text)
-    for remark in reported:
+    spec, reported = spec_and_findings(never_answered.check, text)
+    for finding in reported:
         trees = {part.tree.span: part for _, clause in spec.clauses("keep", "require") for part in clause.parts()}
-        formula = trees[remark.labels[0].span].formula()
+        formula = trees[finding.labels[0].span].formula()
         assert formula and not any(world.traces.holding_at_some_step(and_(*formula.args)))
         assert all(any(world.traces.holding_at_some_step(side)) for side in formula.args)

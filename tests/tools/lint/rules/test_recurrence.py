@@ -18,7 +18,7 @@ from tests.tools.lint.helpers import (
     findings_in,
     labelled_texts,
     labelled_texts_in_block,
-    spec_and_remarks,
+    spec_and_findings,
 )
 from tests.tools.lint.strategies import FREE, SMALL, World, specs
 from tltlc.automaton.compare import are_equivalent
@@ -27,7 +27,7 @@ from tltlc.core.source import SourceFile
 from tltlc.grammar.tree import Unary
 from tltlc.pipeline import compile_source
 from tltlc.tools.lint.file_view import SpecView
-from tltlc.tools.lint.rule import Remark
+from tltlc.tools.lint.rule import RuleFinding
 from tltlc.tools.lint.rules import recurrence
 
 CLAUSES = (
@@ -159,17 +159,17 @@ def test_lets_are_checked_if_all_specs_are_finite() -> None:
 def test_a_reported_part_depends_on_the_last_step_only(drawn: tuple[World, str]) -> None:
     """Replacing the part by its condition on the last step gives an equivalent spec."""
     world, text = drawn
-    spec, reported = spec_and_remarks(recurrence.check, text)
+    spec, reported = spec_and_findings(recurrence.check, text)
     for part in last_steps(spec, reported):
         awaited = text[part.operand.span.start : part.operand.span.end]
         alone = f"{text[: part.span.start]}(F ((N false) & ({awaited}))){text[part.span.end :]}"
-        same, _ = spec_and_remarks(recurrence.check, alone)
+        same, _ = spec_and_findings(recurrence.check, alone)
         assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)
 
 
-def last_steps(spec: SpecView, reported: list[Remark]) -> Iterator[Unary]:
-    """Yield the `eventually` and `always` at whose operator the label of a remark ends."""
-    ends = {remark.labels[0].span.end for remark in reported}
+def last_steps(spec: SpecView, reported: list[RuleFinding]) -> Iterator[Unary]:
+    """Yield the `eventually` and `always` at whose operator the label of a finding ends."""
+    ends = {finding.labels[0].span.end for finding in reported}
     for formula in spec.formulas():
         for part in formula.parts():
             if isinstance(part.tree, Unary) and part.tree.op in ("F", "G") and part.tree.op_span.end in ends:

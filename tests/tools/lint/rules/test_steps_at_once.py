@@ -9,7 +9,7 @@ from hypothesis import given
 
 import tltlc
 from tests.fuzzing import times
-from tests.tools.lint.helpers import APART, PLACES, block, findings_in, labelled_texts_in_block, spec_and_remarks
+from tests.tools.lint.helpers import APART, PLACES, block, findings_in, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.strategies import World, specs
 from tests.tools.lint.traces import Traces
 from tltlc.tools.lint.rules import steps_at_once
@@ -103,9 +103,9 @@ NEAR = World("entity x, y, z\nsignal at(e): bool\nsignal b: bool\n", ("at(x)", "
 @given(specs("reach {}", "reach at(x)", "reach at(y) then {}", "require {}", "keep {}", worlds=[NEAR]))
 def test_the_suggested_exclusive_lengthens_the_spec_and_keeps_it_possible(drawn: tuple[World, str]) -> None:
     _, text = drawn
-    spec, reported = spec_and_remarks(steps_at_once.check, text)
-    for remark in reported:
-        excluded = re.search("`(exclusive .*)`", remark.help)
+    spec, reported = spec_and_findings(steps_at_once.check, text)
+    for finding in reported:
+        excluded = re.search("`(exclusive .*)`", finding.help)
         if excluded:
             (apart,) = tltlc.compile_text(f"{excluded[1]}\n{text}")
             assert apart.states[0].verdict != "violated"

@@ -9,15 +9,15 @@ from tltlc.grammar.tree import BinaryExpr, GroupExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.tools.lint.file_view import ScopedExpression, View
 from tltlc.tools.lint.goals import conjuncts
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `implies` or `iff` whose left side begins with a bare `always`.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each `implies` or `iff` whose left side begins with a bare `always`.
 
     An example is `G a -> F b`: the operand of `always` has no brackets. Only `require` clauses are
     checked. If the operand of `always` contains temporal operators, as in `G F a -> G F b`, the
-    author usually means what is written, so there is no remark.
+    author usually means what is written, so there is no finding.
     """
     for spec in view.specs:
         for _, value in spec.clauses("require"):
@@ -27,10 +27,10 @@ def check(view: View) -> Iterator[Remark]:
                     if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, GroupExpr):
                         condition = (part.with_tree(first.operand), *map(part.with_tree, rest))
                         if all(map(ScopedExpression.depends_on_one_step, condition)):
-                            yield _remark(part, part.tree, first)
+                            yield _finding(part, part.tree, first)
 
 
-def _remark(part: ScopedExpression, tree: BinaryExpr, first: Unary) -> Remark:
+def _finding(part: ScopedExpression, tree: BinaryExpr, first: Unary) -> RuleFinding:
     def text_between(start: int, end: int) -> str:
         return " ".join(part.source.text[start:end].split())
 
@@ -43,7 +43,7 @@ def _remark(part: ScopedExpression, tree: BinaryExpr, first: Unary) -> Remark:
     help_ = (
         f"for every step, write `{word} ({corrected})`; if you mean it as it is, write `({condition}) {connective} …`"
     )
-    return Remark(f"`{word}` applies only to the {side}", (label,), help_)
+    return RuleFinding(f"`{word}` applies only to the {side}", (label,), help_)
 
 
 RULE = LintRule("TLT0435", "warning", check)

@@ -11,22 +11,22 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.text.phrases import phrase
 from tltlc.tools.lint.atom_relations import is_impossible, relations
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _MOST_LABELS: Final = 4
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is unsatisfiable because of the ranges of its signals.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec that is unsatisfiable because of the ranges of its signals.
 
     The compiler treats atoms as independent, so it does not report such a spec.
     """
     for spec in view.specs:
         if spec.fspa.states[0].verdict != "violated" and is_impossible(spec):
-            yield _remark(spec)
+            yield _finding(spec)
 
 
-def _remark(spec: SpecView) -> Remark:
+def _finding(spec: SpecView) -> RuleFinding:
     proved = relations(spec, [atom.name for atom in spec.fspa.atoms])
     needed = contradiction(replace(spec.spec, parts=(*proved, *spec.spec.parts)), spec.decision)
     clauses = [part for part in needed if part not in proved]
@@ -35,7 +35,7 @@ def _remark(spec: SpecView) -> Remark:
     excluded = next(part for part in needed if part in proved).formula.args[0].args[0]
     title = f"no trace satisfies `{spec.spec.name}`, because of the values that its signals can have"
     help_ = f"`{phrase(excluded)}` is never true: check the numbers, and the direction of each comparison"
-    return Remark(title, labels, help_)
+    return RuleFinding(title, labels, help_)
 
 
 RULE = LintRule("TLT0431", "warning", check)

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield one remark for each atom that always holds or never holds."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield one finding for each atom that always holds or never holds."""
     checked: set[str] = set()
     for spec in view.specs:
         for atom in spec.fspa.atoms:
@@ -20,11 +20,11 @@ def check(view: View) -> Iterator[Remark]:
             if not can_be("positive", atom, spec.fspa) and is_always("not positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is 0 or less for all values of the signals")
                 help_ = "an atom holds where its value is above 0: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` never holds", (label,), help_)
+                yield RuleFinding(f"`{atom.name}` never holds", (label,), help_)
             elif not can_be("not positive", atom, spec.fspa) and is_always("positive", atom, spec.fspa):
                 label = spec.atom_label(atom.name, "its value is above 0 for all values of the signals")
                 help_ = "an atom fails where its value is 0 or less: check the sign, the range and the units"
-                yield Remark(f"`{atom.name}` always holds", (label,), help_)
+                yield RuleFinding(f"`{atom.name}` always holds", (label,), help_)
 
 
 RULE = LintRule("TLT0416", "error", check)

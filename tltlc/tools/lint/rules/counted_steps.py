@@ -12,11 +12,11 @@ from tltlc.grammar.walk import parts
 from tltlc.resolve.constants import samples
 from tltlc.resolve.values import Env
 from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each chain of `next` that takes two or more steps, in specs and lets.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each chain of `next` that takes two or more steps, in specs and lets.
 
     A `next after N steps` counts as N steps.
     """
@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
             if isinstance(part, Unary) and part.op in ("X", "N") and id(part) not in inside:
                 steps, awaited = _chain(part, inside)
                 if steps > 1:
-                    yield _remark(view, part, steps, awaited)
+                    yield _finding(view, part, steps, awaited)
 
 
 def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
@@ -52,7 +52,7 @@ def _steps(tree: Unary) -> float:
     return tree.bound.high.value if tree.bound.high.unit in (None, "step", "steps") else 0
 
 
-def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
+def _finding(view: View, chain: Unary, steps: float, awaited: Expr) -> RuleFinding:
     text = operand_text(ScopedExpression(awaited, view.env))
     help_ = f"you seldom mean exactly {steps:g} steps later: declare a `clock`, and give the time in seconds"
     if view.env.context.clock_s:
@@ -63,7 +63,7 @@ def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
             help_ = f"give the time in seconds: `next after {time} s {text}`"
             help_ += f", or `eventually within {time} s {text}` if it may come earlier"
     label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
-    return Remark("this counts steps, however long they take", (label,), help_)
+    return RuleFinding("this counts steps, however long they take", (label,), help_)
 
 
 def _seconds(steps: float, period: float, env: Env) -> str:

@@ -14,11 +14,11 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import removal_span
 from tltlc.tools.lint.removal_advice import changes_judge
-from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
+from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause, or conjunct of a clause, that repeats an earlier one.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each clause, or conjunct of a clause, that repeats an earlier one.
 
     Both must have the same formula. Formulas that are merely equivalent are reported as TLT0413.
     """
@@ -35,10 +35,10 @@ def check(view: View) -> Iterator[Remark]:
                     if changes_judge(part, others, spec):
                         # The bound of the later part makes it a goal, for example `F[0,0] a` after `a`.
                         help_ = f"remove one of them and write `judge at {spec.fspa.judge}`"
-                        yield Remark(_TITLE, labels, help_)
+                        yield RuleFinding(_TITLE, labels, help_)
                         continue
                     remaining = others
-                yield Remark(_TITLE, labels, "remove one of them", _fix(clauses.get(part.span), view))
+                yield RuleFinding(_TITLE, labels, "remove one of them", _fix(clauses.get(part.span), view))
 
 
 def _fix(clause: Clause | None, view: View) -> Fix | None:

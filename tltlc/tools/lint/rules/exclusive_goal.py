@@ -12,11 +12,11 @@ from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each goal that asks for two atoms of an ``exclusive`` group at one step."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each goal that asks for two atoms of an ``exclusive`` group at one step."""
     for spec in view.specs:
         for goal in goals(spec) if spec.spec.exclusive else ():
             names = _conflicting_atoms(goal, spec)
@@ -25,7 +25,7 @@ def check(view: View) -> Iterator[Remark]:
                 listed = " and ".join(f"`{name}`" for name in names)
                 label = Label(goal.source, without_brackets(goal.tree).span, f"{listed} are `exclusive`")
                 help_ = "ask for one after the other with `then`, or for either with `or`"
-                yield Remark(title, (label,), help_)
+                yield RuleFinding(title, (label,), help_)
 
 
 def _conflicting_atoms(goal: ScopedExpression, spec: SpecView) -> list[str]:

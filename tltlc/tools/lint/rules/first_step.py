@@ -10,15 +10,15 @@ from tltlc.grammar.tree import GroupExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint import goals
 from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `require` clause that constrains only the first step.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each `require` clause that constrains only the first step.
 
-    There is no such remark for a spec of the form `spec NAME = FORMULA`.
+    There is no such finding for a spec of the form `spec NAME = FORMULA`.
 
-    Also yield a remark for conjuncts like b in `eventually a and b`. They do not belong to the
+    Also yield a finding for conjuncts like b in `eventually a and b`. They do not belong to the
     operand of the temporal operator, but were probably meant to.
     """
     for spec in view.specs:
@@ -29,12 +29,12 @@ def check(view: View) -> Iterator[Remark]:
                 help_ = f"for every step, write `keep {value.text}`"
                 if not goals.consists_of_implications(value):
                     help_ += f"; for some step, write `reach {value.text}`"
-                yield Remark("this is only about the first step", (label,), help_)
+                yield RuleFinding("this is only about the first step", (label,), help_)
                 continue
             for place, part in enumerate(parts):
                 following = list(takewhile(ScopedExpression.depends_on_one_step, parts[place + 1 :]))
                 if following and isinstance(part.tree, Unary) and _is_bare(part.tree):
-                    yield _remark(part, part.tree, following)
+                    yield _finding(part, part.tree, following)
 
 
 def _is_bare(tree: Unary) -> bool:
@@ -42,7 +42,7 @@ def _is_bare(tree: Unary) -> bool:
     return tree.op in ("F", "G") and not isinstance(tree.operand, GroupExpr)
 
 
-def _remark(temporal: ScopedExpression, tree: Unary, following: list[ScopedExpression]) -> Remark:
+def _finding(temporal: ScopedExpression, tree: Unary, following: list[ScopedExpression]) -> RuleFinding:
     source = temporal.source
     word = " ".join(source.text[tree.span.start : tree.operand.span.start].split())
     inside = " and ".join(map(operand_text, (temporal.with_tree(tree.operand), *following)))
@@ -50,7 +50,7 @@ def _remark(temporal: ScopedExpression, tree: Unary, following: list[ScopedExpre
     label = Label(source, span, f"required at the first step: `{word}` ends before it")
     together = "both" if len(following) == 1 else "all of them"
     help_ = f"for {together} together, write `{word} ({inside})`"
-    return Remark("this is only about the first step", (label,), help_)
+    return RuleFinding("this is only about the first step", (label,), help_)
 
 
 RULE = LintRule("TLT0429", "note", check)

@@ -8,11 +8,11 @@ from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.resolve.spec import Atom
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each atom whose value is never negative, if an edge to the goal needs it.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each atom whose value is never negative, if an edge to the goal needs it.
 
     Yield none if the edge also needs an atom whose value can be negative.
     """
@@ -22,7 +22,7 @@ def check(view: View) -> Iterator[Remark]:
             name = spec.fspa.atoms[index].name
             label = spec.atom_label(name, "0 until it holds, so progress cannot tell near from far")
             help_ = "give the predicate negative values where it does not hold: the farther away, the lower"
-            yield Remark(f"the value of `{name}` is never negative", (label,), help_)
+            yield RuleFinding(f"the value of `{name}` is never negative", (label,), help_)
 
 
 def _is_flat(atom: Atom, fspa: Fspa) -> bool:

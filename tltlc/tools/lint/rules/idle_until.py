@@ -8,14 +8,14 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.grammar.walk import operands
 from tltlc.tools.lint.file_view import View, operand_text, without_brackets
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `until` in a `reach` or `avoid` clause.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each `until` in a `reach` or `avoid` clause.
 
     `a until b` holds at every step where b holds, so the clause means the same with b alone. In a
-    chain of goals, only the last `until` gets a remark: an earlier `until` also determines from
+    chain of goals, only the last `until` gets a finding: an earlier `until` also determines from
     which step the next goal counts.
     """
     for spec in view.specs:
@@ -34,7 +34,7 @@ def check(view: View) -> Iterator[Remark]:
             if earlier:
                 previous = operand_text(value.with_tree(earlier[-1]))
                 help_ = f"write `{previous} and ({part.text})`, which counts from that step on"
-            yield Remark("the first half of this `until` has no effect", (label,), help_)
+            yield RuleFinding("the first half of this `until` has no effect", (label,), help_)
 
 
 RULE = LintRule("TLT0433", "warning", check)

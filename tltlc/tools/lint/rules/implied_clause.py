@@ -12,21 +12,21 @@ from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.atom_relations import is_impossible, relations
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.removal_advice import removal_help
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.rules import recurrence
 
 _MOST_PARTS = 24
 """Specs with more clauses are not checked, because each check builds automata from all clauses."""
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that other clauses of its spec imply.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each clause that other clauses of its spec imply.
 
     The first label is on the implied clause. The next labels are on the clauses that imply it. A
     clause that constrains only the last step is usually a mistake, so it never counts as implying
     another.
     """
-    last_step_labels = [remark.labels[0] for remark in recurrence.check(view)]
+    last_step_labels = [finding.labels[0] for finding in recurrence.check(view)]
     for spec in view.specs:
         # Another rule reports duplicate clauses.
         first: dict[Formula, Conjunct] = {}
@@ -34,14 +34,14 @@ def check(view: View) -> Iterator[Remark]:
             first.setdefault(part.formula, part)
         parts = list(first.values())
         if 1 < len(parts) <= _MOST_PARTS and not is_impossible(spec):
-            yield from _remarks(spec, parts, [part for part in parts if not _contains_any(last_step_labels, part)])
+            yield from _findings(spec, parts, [part for part in parts if not _contains_any(last_step_labels, part)])
 
 
 def _contains_any(places: Sequence[Label], part: Conjunct) -> bool:
     return any(part.source == place.source and part.span.covers(place.span) for place in places)
 
 
-def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjunct]) -> Iterator[Remark]:
+def _findings(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjunct]) -> Iterator[RuleFinding]:
     possible_reasons, remaining = list(reasons), list(spec.spec.parts)
     # If two clauses imply each other, report the later one. A reported clause is no reason for others.
     for part in reversed(parts):
@@ -55,7 +55,9 @@ def _remarks(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conjun
             )
             title = f"{'another clause already implies' if len(needed) == 1 else 'other clauses already imply'} this"
             remaining = [other for other in remaining if other.formula is not part.formula]
-            yield Remark(title, labels, f"{removal_help(part, remaining, spec)}, or write what else it should ask for")
+            yield RuleFinding(
+                title, labels, f"{removal_help(part, remaining, spec)}, or write what else it should ask for"
+            )
 
 
 def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:

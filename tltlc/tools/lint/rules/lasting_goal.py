@@ -15,13 +15,13 @@ from tltlc.logic.formula import FALSE, and_, weak_next
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _SUGGESTION = "let a signal count the time, and ask for enough time, as in `reach time_there >= 3 s`"
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each bounded `always` in a clause's last goal, if one step can meet it.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each bounded `always` in a clause's last goal, if one step can meet it.
 
     Only specs whose episodes end with success as soon as the spec is met are checked.
     """
@@ -33,9 +33,9 @@ def check(view: View) -> Iterator[Remark]:
                 [value] if clause.kind == "reach" else [goal for part in conjuncts(value) for goal in _goals_of(part)]
             )
             for final in map(_last_parts, goals):
-                remarks = [remark for last_part in final for remark in _remarks(last_part)]
-                if remarks and _is_met_by_one_step(final, spec):
-                    yield from remarks
+                findings = [finding for last_part in final for finding in _findings(last_part)]
+                if findings and _is_met_by_one_step(final, spec):
+                    yield from findings
 
 
 def _goals_of(part: ScopedExpression) -> Iterator[ScopedExpression]:
@@ -69,8 +69,8 @@ def _is_met_by_one_step(final: list[ScopedExpression], spec: SpecView) -> bool:
     return not unsatisfiable((Conjunct(at_end, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
-def _remarks(goal: ScopedExpression) -> Iterator[Remark]:
-    """Yield a remark for each bounded `always`, or negated bounded `eventually`, in an expression."""
+def _findings(goal: ScopedExpression) -> Iterator[RuleFinding]:
+    """Yield a finding for each bounded `always`, or negated bounded `eventually`, in an expression."""
     pending = [(goal, True)]
     while pending:
         part, holds = pending.pop()
@@ -83,7 +83,7 @@ def _remarks(goal: ScopedExpression) -> Iterator[Remark]:
             lasting = part.with_tree(tree.operand)
             condition = lasting.text if holds else f"not {operand_text(lasting)}"
             message = f"it asks nothing after the end, so one step with `{condition}` is enough"
-            yield Remark("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
+            yield RuleFinding("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
 
 
 RULE = LintRule("TLT0434", "warning", check)

@@ -8,11 +8,11 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.walk import parts
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _FEW: Final = 100
 _PER_PART: Final = 10
-"""There is no remark for up to ``_FEW`` states, or for up to this many states per part of the spec.
+"""There is no finding for up to ``_FEW`` states, or for up to this many states per part of the spec.
 
 The parts of a spec are its operators, names and numbers.
 """
@@ -20,16 +20,16 @@ The parts of a spec are its operators, names and numbers.
 _MOST_LABELS: Final = 4
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec whose automaton has many more states than the spec has parts."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec whose automaton has many more states than the spec has parts."""
     for spec in view.specs:
         part_count = sum(1 for formula in spec.formulas() for _ in parts(formula.tree))
         states = len(spec.fspa.states)
         if states > max(_FEW, _PER_PART * part_count):
-            yield _remark(spec, states)
+            yield _finding(spec, states)
 
 
-def _remark(spec: SpecView, states: int) -> Remark:
+def _finding(spec: SpecView, states: int) -> RuleFinding:
     bounds = [bound for part in spec.spec.parts for bound in part.bounds]
     title = f"the automaton of `{spec.spec.name}` has {states} states"
     if bounds:
@@ -37,11 +37,11 @@ def _remark(spec: SpecView, states: int) -> Remark:
         label = Label(
             worst.source, worst.span, f"this bound counts {worst.samples} samples, and each needs at least one state"
         )
-        return Remark(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
+        return RuleFinding(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember a lot"
     help_ = "split the spec, give an order with `then`, or declare atoms that never hold together `exclusive`"
-    return Remark(title, (Label(first.source, first.span, message), *rest), help_)
+    return RuleFinding(title, (Label(first.source, first.span, message), *rest), help_)
 
 
 RULE = LintRule("TLT0423", "note", check)

@@ -13,21 +13,21 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each goal that can be met while none of the atoms that it asks for holds.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each goal that can be met while none of the atoms that it asks for holds.
 
     Only traces that satisfy the other clauses count.
     """
     for spec in view.specs:
         if not spec.is_settled:
             for goal in goals(spec):
-                yield from _remarks(goal, spec)
+                yield from _findings(goal, spec)
 
 
-def _remarks(goal: ScopedExpression, spec: SpecView) -> Iterator[Remark]:
+def _findings(goal: ScopedExpression, spec: SpecView) -> Iterator[RuleFinding]:
     formula = goal.formula()
     if formula is None:
         return
@@ -53,11 +53,11 @@ def _remarks(goal: ScopedExpression, spec: SpecView) -> Iterator[Remark]:
         conditions = (part.formula() or TRUE for part, _ in implications)
         # If some condition always holds, the implications are not the reason.
         if implications and can_be(and_(met, *map(not_, conditions))):
-            yield _remark_on_implications(implications)
+            yield _finding_on_implications(implications)
         else:
             listed = " and ".join(f"`{name}`" for name in awaited)
             label = Label(goal.source, without_brackets(goal.tree).span, f"can be met without {listed}")
-            yield Remark(_TITLE, (label,), f"use `and` to ask for what must be done, or ask for {listed} alone")
+            yield RuleFinding(_TITLE, (label,), f"use `and` to ask for what must be done, or ask for {listed} alone")
 
 
 def _without_temporal_operators(formula: Formula) -> Formula:
@@ -114,14 +114,14 @@ def _implications(goal: ScopedExpression) -> list[tuple[ScopedExpression, Scoped
     return list(by_span.values())
 
 
-def _remark_on_implications(implications: list[tuple[ScopedExpression, ScopedExpression]]) -> Remark:
+def _finding_on_implications(implications: list[tuple[ScopedExpression, ScopedExpression]]) -> RuleFinding:
     labels, alternatives = [], []
     for condition, result in implications:
         span = condition.tree.span.to(result.tree.span)
         labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
         alternatives.append(f"{operand_text(condition)} and {operand_text(result)}")
     wanted = alternatives[0] if len(alternatives) == 1 else f"({') or ('.join(alternatives)})"
-    return Remark(_TITLE, tuple(labels), f"write `{wanted}`")
+    return RuleFinding(_TITLE, tuple(labels), f"write `{wanted}`")
 
 
 _TITLE: Final = "this goal can be met without doing anything"

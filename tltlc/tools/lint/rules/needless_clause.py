@@ -12,11 +12,11 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import SpecView, View
 from tltlc.tools.lint.removal_advice import removal_help
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each clause that every trace satisfies.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each clause that every trace satisfies.
 
     Yield none if every trace satisfies the whole spec: the compiler reports that.
     """
@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
             if _is_always_met(part, spec):
                 remaining = [candidate for candidate in remaining if candidate is not part]
                 label = Label(part.source, part.span, "every trace satisfies this")
-                yield Remark(
+                yield RuleFinding(
                     "this clause asks nothing of the game",
                     (label,),
                     f"{removal_help(part, remaining, spec)}{_ALTERNATIVE}",

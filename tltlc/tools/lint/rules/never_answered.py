@@ -12,20 +12,20 @@ from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each required implication whose two sides never hold at the same step.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each required implication whose two sides never hold at the same step.
 
-    Each side must be able to hold by itself. There is no remark for a clause that no trace
+    Each side must be able to hold by itself. There is no finding for a clause that no trace
     satisfies, because it does more than forbid one side.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
             implications = [part for part in _implications(value) if _never_together(part, spec)]
             if implications and _can_hold(clause, value, spec):
-                yield from map(_remark, implications)
+                yield from map(_finding, implications)
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
@@ -66,12 +66,12 @@ def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
-def _remark(implication: ScopedExpression) -> Remark:
+def _finding(implication: ScopedExpression) -> RuleFinding:
     assert isinstance(implication.tree, BinaryExpr)
     condition, result = implication.with_tree(implication.tree.left), implication.with_tree(implication.tree.right)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
     help_ = f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
-    return Remark(f"`{result.text}` never holds at the same step as `{condition.text}`", (label,), help_)
+    return RuleFinding(f"`{result.text}` never holds at the same step as `{condition.text}`", (label,), help_)
 
 
 RULE = LintRule("TLT0432", "warning", check)

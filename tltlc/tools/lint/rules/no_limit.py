@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec without a limit.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec without a limit.
 
-    There is no remark for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.
+    There is no finding for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.
     """
     for spec in view.specs:
         if spec.spec.limit_steps is None and spec.declaration.block:
-            yield _remark(spec)
+            yield _finding(spec)
 
 
-def _remark(spec: SpecView) -> Remark:
+def _finding(spec: SpecView) -> RuleFinding:
     if spec.fspa.judge == "limit":
         message = "it is judged at its limit, so without one an episode makes no progress by lasting"
     else:
         message = "an episode that never gets there never ends, and a fast player gets no more than a slow one"
     clause = "limit 400 steps" if spec.spec.clock_s is None else "limit 30 s"
-    return Remark(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), f"add `{clause}`")
+    return RuleFinding(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), f"add `{clause}`")
 
 
 RULE = LintRule("TLT0419", "note", check)

@@ -6,20 +6,20 @@ from collections.abc import Iterator
 
 from tltlc.logic.formula import Formula
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that is judged at its limit only because it has no goal."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec that is judged at its limit only because it has no goal."""
     for spec in view.specs:
         # A block without a limit gets TLT0419, and a settled spec gets a warning of the compiler.
-        has_other_remark = spec.is_settled or spec.spec.limit_steps is None
-        if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_other_remark:
+        has_other_finding = spec.is_settled or spec.spec.limit_steps is None
+        if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_other_finding:
             label = spec.name_label(
                 "it rewards an episode for lasting: progress is the share of its limit that has passed"
             )
             help_ = "add a goal with `reach`, or write `judge at limit` if you mean this"
-            yield Remark(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), help_)
+            yield RuleFinding(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), help_)
 
 
 def _is_judged_at_limit(spec: SpecView) -> bool:

@@ -10,7 +10,7 @@ from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
 from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
 from tltlc.tools.lint.goals import consists_of_implications
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _WORDS = {"F": "it comes again and again", "G": "it lasts from some time on"}
 """What the author usually means by ``G F`` (the key ``F``) and by ``F G`` (the key ``G``)."""
@@ -22,8 +22,8 @@ The second value is False if the operand is the negated formula.
 """
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each `G F p` and `F G p` of a spec over finite traces.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each `G F p` and `F G p` of a spec over finite traces.
 
     A `keep` or `avoid` clause counts as an outer `G`, and a `reach` clause as an outer `F`. Lets
     are checked only if all specs of the file are over finite traces.
@@ -32,31 +32,31 @@ def check(view: View) -> Iterator[Remark]:
     for spec in finite:
         for clause, formula in spec.clauses("reach", "keep", "avoid", "require"):
             is_clause = spec.declaration.block and clause.kind != "avoid"
-            yield from _remarks_inside(formula.tree, view, without_brackets(formula.tree) if is_clause else None)
+            yield from _findings_inside(formula.tree, view, without_brackets(formula.tree) if is_clause else None)
             # In a chain of goals only the last step can be a condition on the end of the trace.
             last = operands(formula.tree, "then")[-1] if clause.kind == "reach" else formula.tree
             start = clause.span.start if last is formula.tree else without_brackets(last).span.start
             if clause.kind in _OF_CLAUSES:
-                yield from _remarks(start, last, *_OF_CLAUSES[clause.kind], view, is_clause=last is formula.tree)
+                yield from _findings(start, last, *_OF_CLAUSES[clause.kind], view, is_clause=last is formula.tree)
     if len(finite) == len(view.specs) > 0:
         for declaration in view.module.declarations:
             if isinstance(declaration, LetDecl):
-                yield from _remarks_inside(declaration.body, view, None)
+                yield from _findings_inside(declaration.body, view, None)
 
 
-def _remarks_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[Remark]:
-    """Yield remarks for the operands of each unbounded `always` and `eventually` in an expression.
+def _findings_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[RuleFinding]:
+    """Yield findings for the operands of each unbounded `always` and `eventually` in an expression.
 
     ``clause`` is ``tree`` without brackets if it is a whole clause, which another clause can
     replace; else it is None.
     """
     for part in parts(tree):
         if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
-            yield from _remarks(part.span.start, part.operand, part.op, True, view, is_clause=part is clause)
+            yield from _findings(part.span.start, part.operand, part.op, True, view, is_clause=part is clause)
 
 
-def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_clause: bool) -> Iterator[Remark]:
-    """Yield remarks for the parts of an operand that constrain only the last step.
+def _findings(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_clause: bool) -> Iterator[RuleFinding]:
+    """Yield findings for the parts of an operand that constrain only the last step.
 
     ``tree`` is the operand, and ``outer``, `F` or `G`, the operator in front of it. If ``holds`` is
     false, the operand is negated. `always` distributes over `and`, and `eventually` over `or`, so
@@ -78,7 +78,7 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
                 awaited = ScopedExpression(part.operand, view.env)
                 word = view.source.slice(part.op_span)
                 once = _once(awaited, sign, outer, word, is_whole=part is whole, is_clause=is_clause)
-                yield _remark(Span(begin, part.op_span.end), op, awaited, sign, once)
+                yield _finding(Span(begin, part.op_span.end), op, awaited, sign, once)
         elif (
             isinstance(part, BinaryExpr) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign)
         ):
@@ -96,7 +96,7 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_
                 advice = f"write `require {until.text}`"
             elif part is whole:
                 advice = f"write `{operand_text(until)}`"
-            yield Remark("this `until` starts again at every step", (label,), f"if once is enough, {advice}")
+            yield RuleFinding("this `until` starts again at every step", (label,), f"if once is enough, {advice}")
 
 
 def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
@@ -120,8 +120,8 @@ def _goal(awaited: ScopedExpression, sign: bool) -> str:
     return awaited.text if sign else f"not {operand_text(awaited)}"
 
 
-def _remark(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: str) -> Remark:
-    """Return the remark that ``awaited``, under operators like `G F`, is only about the last step.
+def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: str) -> RuleFinding:
+    """Return the finding that ``awaited``, under operators like `G F`, is only about the last step.
 
     ``op``, `F` or `G`, is the inner operator, and ``place`` the span of the operators. ``sign`` is
     false if the negation of ``awaited`` is required. ``once`` is the advice from :func:`_once`.
@@ -132,7 +132,7 @@ def _remark(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: s
     help_ = f"if play has no end and {_WORDS[op]}, write `semantics infinite`"
     if not (sign and consists_of_implications(awaited)):
         help_ += f"; if once is enough, {once}"
-    return Remark("this is only about the last step", (label,), help_)
+    return RuleFinding("this is only about the last step", (label,), help_)
 
 
 RULE = LintRule("TLT0424", "warning", check)

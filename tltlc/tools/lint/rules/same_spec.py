@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.tools.lint.file_view import SpecView, View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _WORK: Final = 200_000
 """The most steps of work for the comparison of two specs.
@@ -16,8 +16,8 @@ Specs that need more count as different, because a note must not take longer tha
 """
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec that accepts the same traces as an earlier spec.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec that accepts the same traces as an earlier spec.
 
     Both must be judged the same way. Specs that every trace or no trace satisfies are left out,
     because the compiler already warns of them.
@@ -33,7 +33,7 @@ def check(view: View) -> Iterator[Remark]:
             continue
         title = f"`{spec.spec.name}` means the same as `{earlier.spec.name}`"
         labels = (spec.name_label("this spec"), earlier.name_label("the other spec"))
-        yield Remark(title, labels, "remove one of them, or write what makes them different")
+        yield RuleFinding(title, labels, "remove one of them, or write what makes them different")
 
 
 def _form(fspa: Fspa) -> object:

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.tools.lint.file_view import View
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each spec whose goal needs more steps than its limit allows."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each spec whose goal needs more steps than its limit allows."""
     for spec in view.specs:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance
         if limit is not None and least is not None and least > limit:
             clause = next(clause for clause in spec.declaration.clauses if clause.kind == "limit")
             label = view.label(clause.span, f"the goal takes at least {least} steps, and this is {limit}")
             title = f"`{spec.spec.name}` cannot be met within its limit"
-            yield Remark(title, (label,), f"allow more: at least `limit {least} steps`")
+            yield RuleFinding(title, (label,), f"allow more: at least `limit {least} steps`")
 
 
 RULE = LintRule("TLT0428", "warning", check)

@@ -13,7 +13,7 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
 from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
-from tltlc.tools.lint.rule import LintRule, Remark
+from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _MOST_LABELS: Final = 4
 _MOST_STATES: Final = 1_000
@@ -23,11 +23,11 @@ A note must not take longer than the compilation.
 """
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each group of goals over one predicate that one step can meet.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each group of goals over one predicate that one step can meet.
 
-    An example is ``near(s1)`` and ``near(s2)``. There is a remark only if the path to the goal gets
-    longer once these atoms are declared exclusive. Also yield a remark for each goal that asks for
+    An example is ``near(s1)`` and ``near(s2)``. There is a finding only if the path to the goal gets
+    longer once these atoms are declared exclusive. Also yield a finding for each goal that asks for
     several of these atoms at one step.
     """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
@@ -40,11 +40,11 @@ def check(view: View) -> Iterator[Remark]:
         for group in groups:
             indices = sorted(set().union(*(_atoms_together(edge, group) for edge in spec.fspa.edges)))
             if indices and _is_shortened(spec, indices):
-                yield _remark(spec, [spec.fspa.atoms[index].name for index in indices])
+                yield _finding(spec, [spec.fspa.atoms[index].name for index in indices])
 
 
-def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
-    """Yield a remark for each goal that asks for several atoms of a group at one step.
+def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[RuleFinding]:
+    """Yield a finding for each goal that asks for several atoms of a group at one step.
 
     The author may mean several goals, one after the other.
     """
@@ -58,7 +58,7 @@ def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[Remark]:
                 title = f"this goal asks for `{member_names[0]}` and `{member_names[1]}` at the same step"
                 label = Label(goal.source, without_brackets(goal.tree).span, "all of this at once")
                 help_ = f"if one comes after the other, write `{' then '.join(member_names)}`"
-                yield Remark(title, (label,), help_)
+                yield RuleFinding(title, (label,), help_)
 
 
 def _atom(part: ScopedExpression) -> str:
@@ -96,13 +96,13 @@ def _with_exclusive(spec: Spec, indices: list[int]) -> Spec:
     return replace(spec, exclusive=(*spec.exclusive, tuple(indices)))
 
 
-def _remark(spec: SpecView, names: list[str]) -> Remark:
+def _finding(spec: SpecView, names: list[str]) -> RuleFinding:
     parts = [part for part in spec.spec.parts if set(names).intersection(part.formula.atoms())]
     labels = (Label(part.source, part.span) for part in parts[:_MOST_LABELS])
     others = f" and {len(names) - 2} more" if len(names) > 2 else ""
     title = f"`{names[0]}` and `{names[1]}`{others} may be met at the same step, so progress counts them as one"
     help_ = f"if at most one of them holds at a time, write `exclusive {', '.join(names)}`"
-    return Remark(title, (spec.name_label(), *labels), help_)
+    return RuleFinding(title, (spec.name_label(), *labels), help_)
 
 
 def _same_predicate(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:

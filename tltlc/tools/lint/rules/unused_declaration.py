@@ -9,14 +9,14 @@ from tltlc.core.source import Span
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
-from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
+from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 _KINDS: Final = {SignalDecl: "signal", ParamDecl: "param", PredicateDecl: "predicate", LetDecl: "let"}
 NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each signal, param, entity, predicate and let that is not used.
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each signal, param, entity, predicate and let that is not used.
 
     A use is a mention of the name in this file or in a file that imports it.
     """
@@ -30,10 +30,10 @@ def check(view: View) -> Iterator[Remark]:
             declaration.name in used_names or _is_refined(declaration, view)
         ):
             removed = removal_span(view.source, declaration.span, view.module.comments)
-            yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
+            yield _finding(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
 
 
-def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -> Iterator[Remark]:
+def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -> Iterator[RuleFinding]:
     spans = [name.span for name in declaration.names]
     unused = [index for index, name in enumerate(declaration.names) if name.name not in used_names]
     for index in unused:
@@ -41,12 +41,12 @@ def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -
             removed: tuple[Span, ...] = (removal_span(view.source, declaration.span, view.module.comments),)
         else:
             removed = item_removal_spans(spans, index, view.module.comments)
-        yield _remark("entity", declaration.names[index].name, spans[index], removed, view)
+        yield _finding("entity", declaration.names[index].name, spans[index], removed, view)
 
 
-def _remark(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: View) -> Remark:
+def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: View) -> RuleFinding:
     title = f"nothing uses the {kind} `{name}`"
-    return Remark(title, (view.label(place),), "remove it, or use it", removal_fix("Remove it", removed))
+    return RuleFinding(title, (view.label(place),), "remove it, or use it", removal_fix("Remove it", removed))
 
 
 def _is_refined(declaration: NamedDeclaration, view: View) -> bool:

@@ -10,11 +10,11 @@ from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, Sign
 from tltlc.resolve.imports import LoadedModule
 from tltlc.tools.lint.file_view import View
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
-from tltlc.tools.lint.rule import LintRule, Remark, removal_fix
+from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 
-def check(view: View) -> Iterator[Remark]:
-    """Yield a remark for each unused import, and for each unused name in an import list."""
+def check(view: View) -> Iterator[RuleFinding]:
+    """Yield a finding for each unused import, and for each unused name in an import list."""
     if not view.specs:
         return
     used_names = view.used_names
@@ -26,19 +26,21 @@ def check(view: View) -> Iterator[Remark]:
             removed = removal_span(view.source, declaration.span, view.module.comments)
             title = f"nothing from `{declaration.target}` is used"
             label = view.label(declaration.target_span)
-            yield Remark(title, (label,), "remove the import, or use it", removal_fix("Remove the import", (removed,)))
+            yield RuleFinding(
+                title, (label,), "remove the import, or use it", removal_fix("Remove the import", (removed,))
+            )
         else:
             yield from _unused_names(declaration, used_names, view)
 
 
-def _unused_names(declaration: Import, used_names: Container[str], view: View) -> Iterator[Remark]:
+def _unused_names(declaration: Import, used_names: Container[str], view: View) -> Iterator[RuleFinding]:
     names = declaration.names or ()
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used_names:
             removed = item_removal_spans([entry.span for entry in names], index, view.module.comments)
             title = f"`{name.name}` from `{declaration.target}` is not used"
             fix = removal_fix("Remove it from the import", removed)
-            yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
+            yield RuleFinding(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
 def _used_by_target(used_names: Container[str], view: View) -> dict[str, list[str]]:
