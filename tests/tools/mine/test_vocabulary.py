@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.columns import columns, common_columns
 from tltlc.tools.mine.trace_letters import TraceFile, read_traces
-from tltlc.tools.mine.vocabulary import vocabulary_of_columns, vocabulary_of_library
+from tltlc.tools.mine.vocabulary import signal_declarations, vocabulary_of_columns, vocabulary_of_library
 
 LIBRARY = """\
 import spatial
@@ -57,6 +57,14 @@ def test_columns_that_cannot_name_an_atom_are_left_out(column: str) -> None:
     vocabulary = vocabulary_of_columns({"alive": True, column: True})
     assert [atom.name for atom in vocabulary.reader.atoms] == ["alive"]
     assert (vocabulary.left_out, vocabulary.misnamed) == ((column,), {column})
+
+
+def test_signals_are_declared_once_with_the_entities_that_they_are_about() -> None:
+    signals = [("near", ("s1", "s2")), ("near", ("s2", "s3")), ("alive", ())]
+    expected = "entity s1, s2, s3\nsignal near(x1: entity, x2: entity): bool\nsignal alive: bool\n"
+    assert signal_declarations(signals) == expected
+    columns_of_traces = dict.fromkeys(("alive", "near(s1, s2)", "near(s2, s3)"), True)
+    assert vocabulary_of_columns(columns_of_traces).library.text == expected
 
 
 def test_a_duplicate_column_is_reported() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from textwrap import wrap
@@ -14,7 +13,7 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.confirm import Proposal, ProposalVerdict
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
-from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns
+from tltlc.tools.mine.vocabulary import MiningVocabulary, signal_declarations
 from tltlc.tools.witness.blocks import expectations, test_block
 
 _WIDTH: Final = 96
@@ -51,18 +50,15 @@ def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, im
     Without a library, the columns are declared as signals. With a library, return ``import_text``,
     the line that imports it, and declare the entities that the library does not declare.
     """
-    texts = [clause.text for proposal in proposals for clause in proposal.clauses]
-    texts += [atom.name for proposal in proposals for atom in proposal.fspa.atoms]
-    text = "\n".join(texts)
-
-    def is_used(name: str) -> bool:
-        return re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.(])", text, re.ASCII) is not None
-
+    used = {atom.name: atom for proposal in proposals for atom in proposal.fspa.atoms}
     if import_text is None:
-        return vocabulary_of_columns(
-            {atom.name: True for atom in vocabulary.reader.atoms if is_used(atom.name)}
-        ).library.text
-    entities = [name for name in vocabulary.entities if is_used(name)]
+        atoms = [atom for atom in vocabulary.reader.atoms if atom.name in used]
+        # Signals with arguments come first, after the entities that are their arguments.
+        return signal_declarations(
+            (atom.base, atom.arguments) for atom in sorted(atoms, key=lambda atom: not atom.arguments)
+        )
+    arguments = {argument for atom in used.values() for argument in atom.arguments}
+    entities = [name for name in vocabulary.entities if name in arguments]
     return import_text + (f"\nentity {', '.join(entities)}\n" if entities else "")
 
 

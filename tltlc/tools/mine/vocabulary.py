@@ -12,24 +12,21 @@ from typing import Final
 
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
+from tltlc.core.names import full_name, split_name
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.expression.tree import SignalValue, nodes
-from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.problem import Log
 from tltlc.resolve.resolution import resolve_atoms
-from tltlc.resolve.scope import Binding, build_scopes
+from tltlc.resolve.scope import Binding
 from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.mine.column_diagnostics import first_names
 
-_CALL: Final = re.compile(r"([A-Za-z_][\w.]*)\s*\(([^()]*)\)\Z", re.ASCII)
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
 _MOST: Final = WORK["mined columns"]
 _MOST_INSTANCES: Final = WORK["mined instances"]
@@ -65,14 +62,14 @@ def vocabulary_of_library(library: SourceFile, columns: Collection[str], options
     """
     session = Session(library, CompileOptions(library_dirs=options.library_dirs, params=options.params))
     stop_at_errors(session.syntax_errors)
-    names = _visible_names(session.module, options)
+    stop_at_errors(session.resolution.diagnostics)
+    names = session.resolution.env.scope.names
     missing = tuple(name for name in _entities(columns) if name not in names and _declares(f"entity {name}\n"))
     own = [name for name, binding in names.items() if binding.kind == "entity"]
-    stop_at_errors(session.resolution.diagnostics)
     spec_atoms = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
 
     extended = _with_entities(library, missing)
-    module = _parse(extended)
+    module = _module(extended)
     module = replace(
         module,
         declarations=tuple(
@@ -114,13 +111,8 @@ def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    entities = list(dict.fromkeys(entity for _, arguments in calls.values() for entity in arguments))
-    signals = {signal: len(arguments) for signal, arguments in calls.values()}
-    text = f"entity {', '.join(entities)}\n" if entities else ""
-    text += "".join(_signal(name, number) for name, number in signals.items())
-    text += "".join(f"signal {name}: bool\n" for name in simple)
-    library = SourceFile("<traces>", text)
-    readable = _readable_atoms(_parse(library), [name for name in names if name in simple or name in calls], columns)
+    library = SourceFile("<traces>", signal_declarations([*calls.values(), *((name, ()) for name in simple)]))
+    readable = _readable_atoms(_module(library), [name for name in names if name in simple or name in calls], columns)
     if readable is None:
         raise _no_columns(names)
     reader = _reader(readable)
@@ -164,10 +156,7 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
             continue
         if any(argument in taken or argument in lengths for argument in arguments):
             continue
-        text = "".join(f"entity {argument}\n" for argument in dict.fromkeys(arguments)) + _signal(
-            signal, len(arguments)
-        )
-        if lengths.get(signal, len(arguments)) == len(arguments) and _declares(text):
+        if lengths.get(signal, len(arguments)) == len(arguments) and _declares(signal_declarations([call])):
             lengths[signal] = len(arguments)
             entities.update(arguments)
             calls[name] = call
@@ -187,18 +176,10 @@ def _reader(vocabulary: Vocabulary) -> Fspa:
     return build(spec)
 
 
-def _parse(source: SourceFile) -> Module:
-    module, diagnostics = parse(source)
-    stop_at_errors(diagnostics)
-    return module
-
-
-def _visible_names(module: Module, options: ResolveOptions) -> dict[str, Binding]:
-    """Return the names that a module can use: its own and those of its imports."""
-    log = Log()
-    names = build_scopes(load(module, options, log), log)[-1].names
-    stop_at_errors(log.diagnostics())
-    return names
+def _module(source: SourceFile) -> Module:
+    session = Session(source)
+    stop_at_errors(session.syntax_errors)
+    return session.module
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
@@ -212,7 +193,8 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
     """Return the texts of all predicates and `bool` signals with entities as arguments.
 
-    Also returns how many of them the limit left out.
+    They are texts because mined specs are written as source text: an atom counts only if its text
+    has a meaning there. Also returns how many of them the limit left out.
     """
     instances: list[str] = []
     left_out = 0
@@ -221,7 +203,7 @@ def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[
             instances.append(name)
             continue
         chosen = islice(product(entities, repeat=parameters), _MOST_INSTANCES)
-        instances += [f"{name}({', '.join(arguments)})" for arguments in chosen]
+        instances += [full_name(name, arguments) for arguments in chosen]
         left_out += max(0, len(entities) ** parameters - _MOST_INSTANCES)
     return instances, left_out
 
@@ -291,20 +273,31 @@ def _entities(columns: Iterable[str]) -> list[str]:
 
 def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
     """Return the name and the arguments of `near(s1)`, or None if a column does not have that form."""
-    call = _CALL.match(column.strip())
-    if call is None:
-        return None
-    arguments = tuple(argument.strip() for argument in call[2].split(","))
-    return (call[1], arguments) if all(_WORD.match(argument) for argument in arguments) else None
+    name, arguments = split_name(column)
+    return (name, arguments) if arguments and all(map(_WORD.match, (name, *arguments))) else None
 
 
-def _signal(name: str, entities: int) -> str:
-    """Return the declaration of a `bool` signal with this many entities."""
-    parameters = ", ".join(f"x{number}: entity" for number in range(1, entities + 1))
-    return f"signal {name}({parameters}): bool\n"
+def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]]) -> str:
+    """Return declarations of `bool` signals, and of the entities that are their arguments.
+
+    Each of ``signals`` is a name with its arguments. Signals with the same name have the same number
+    of arguments, and are declared together.
+    """
+    lengths: dict[str, int] = {}
+    entities: dict[str, None] = {}
+    for name, arguments in signals:
+        lengths[name] = len(arguments)
+        entities |= dict.fromkeys(arguments)
+    text = f"entity {', '.join(entities)}\n" if entities else ""
+    return text + "".join(f"signal {name}{_parameters(length)}: bool\n" for name, length in lengths.items())
+
+
+def _parameters(count: int) -> str:
+    """Return the parameters of a signal with this many entities."""
+    return f"({', '.join(f'x{number}: entity' for number in range(1, count + 1))})" if count else ""
 
 
 def _declares(text: str) -> bool:
     """Whether a text parses as a declaration. It does not if a name in it is a keyword."""
-    _, problems = parse(SourceFile("<column>", text))
-    return not any(problem.severity == "error" for problem in problems)
+    errors = Session(SourceFile("<column>", text)).syntax_errors
+    return not any(error.severity == "error" for error in errors)
