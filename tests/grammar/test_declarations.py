@@ -112,6 +112,18 @@ def test_words_of_tests_are_names_elsewhere() -> None:
     assert test.items[1].value == 0.5
 
 
+def test_numbers_of_a_test_keep_their_place_and_spelling() -> None:
+    source = SourceFile("a.tltl", 'test "t" for x { step x step 007x x expect progress >= 5.0% expect pending }')
+    (test,) = parse(source)[0].declarations
+    assert isinstance(test, tree.TestDecl)
+    steps = [item for item in test.items if isinstance(item, tree.TestStep)]
+    assert [step.times_span and source.slice(step.times_span) for step in steps] == [None, "007"]
+    progress, verdict = (item for item in test.items if isinstance(item, tree.TestExpect))
+    assert progress.number is not None
+    assert (progress.number.value, source.slice(progress.number.span), progress.value) == (5, "5.0%", 0.05)
+    assert verdict.number is None
+
+
 def test_comments_are_kept_in_order() -> None:
     module, _ = parse(SourceFile("a.tltl", "// one \n/// two\nentity a // three"))
     assert [comment.text for comment in module.comments] == ["// one", "/// two", "// three"]

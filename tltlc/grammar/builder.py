@@ -163,10 +163,10 @@ class Builder:
                 title = f"a step cannot be repeated {times.text} times"
                 advice = f"write a whole number from 1 to {MOST_REPETITIONS}, as in `step 3x alive`"
                 self._error("TLT0109", title, times.span, advice)
-        return tree.TestStep(count, atoms, span)
+        return tree.TestStep(count, atoms, times.span if times else None, span)
 
     def make_expect(self, span: Span, _expect: Token, verdict: Token) -> tree.TestExpect:
-        return tree.TestExpect("verdict", verdict.text, None, span)
+        return tree.TestExpect("verdict", verdict.text, None, None, span)
 
     def make_expect_number(
         self, span: Span, _expect: Token, name: Token, comparator: Token, number: tree.NumberExpr
@@ -176,12 +176,12 @@ class Builder:
         value = number.value / 100 if number.unit == "%" else number.value
         if number.unit not in (None, "%"):
             self._error("TLT0108", "progress has no unit", number.span, "progress runs from 0 to 1")
-        return tree.TestExpect("progress", value, OPERATORS[comparator.type], span)
+        return tree.TestExpect("progress", value, OPERATORS[comparator.type], number, span)
 
     def make_expect_state(self, span: Span, _expect: Token, name: Token, label: Token) -> tree.TestExpect:
         if name.text != "state":
             self._error("TLT0108", f"a test cannot expect a text for `{name.text}`", name.span, _EXPECT_HELP)
-        return tree.TestExpect("state", label.text[1:-1], None, span)
+        return tree.TestExpect("state", label.text[1:-1], None, None, span)
 
     # --- expressions ----------------------------------------------------------------------------
 

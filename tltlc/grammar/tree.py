@@ -298,11 +298,13 @@ class SpecDecl:
 class TestStep:
     """A line of a test with a sample, to be repeated ``times`` times.
 
-    An example is ``step 3x alive, not near(s1)``.
+    An example is ``step 3x alive, not near(s1)``. ``times_span`` is the place of the number ``3``;
+    None if the line has no number.
     """
 
     times: int
     atoms: tuple[Expr, ...]
+    times_span: Span | None
     span: Span
 
 
@@ -310,13 +312,15 @@ class TestStep:
 class TestExpect:
     """A line of a test: ``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
 
-    ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the number or the
-    label. ``comparison`` is one of ``< <= > >=`` for progress, else None.
+    ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the progress as a
+    share of 1, or the label. For progress, ``comparison`` is one of ``< <= > >=``, and ``number`` is
+    the number as it is written, perhaps in percent; both are None for other kinds.
     """
 
     kind: str
     value: str | float
     comparison: str | None
+    number: NumberExpr | None
     span: Span
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence, Set
-from typing import Final
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import tree
@@ -12,9 +10,6 @@ from tltlc.grammar.tree import Expr
 from tltlc.tools.fmt.expressions import Expressions, Item, name_item
 from tltlc.tools.fmt.flat import OneLinePrinter
 from tltlc.tools.fmt.page import STEP, Page
-
-_AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
-"""Matches the end of ``expect progress >= 50 %``."""
 
 
 class DeclarationPrinter:
@@ -188,22 +183,12 @@ class DeclarationPrinter:
 
     def _repetitions(self, item: tree.TestStep) -> str:
         """Return the repetitions of a step, such as `` 3x``; empty if the source gives none."""
-        head = self._without_comments(Span(item.span.start, item.atoms[0].span.start))
-        times = re.search("[0-9]+", head)
-        return f" {times[0]}x" if times else ""
+        return f" {self._source.slice(item.times_span)}x" if item.times_span else ""
 
     def _expectation(self, item: tree.TestExpect) -> str:
-        if item.kind == "state":
-            return f'state "{item.value}"'
-        if item.kind == "verdict":
-            return str(item.value)
-        amount = _AMOUNT.search(self._without_comments(item.span))
-        assert amount is not None
-        unit = f" {amount[3]}" if amount[3] else ""
-        return f"progress{self._one_line.infix(item.comparison or '>=')}{amount[2]}{unit}"
-
-    def _without_comments(self, span: Span) -> str:
-        return re.sub("//[^\n]*", "", self._source.slice(span))
+        if item.number is not None and item.comparison is not None:
+            return f"progress{self._one_line.infix(item.comparison)}{self._one_line.number(item.number)}"
+        return f'state "{item.value}"' if item.kind == "state" else str(item.value)
 
 
 def _keyword(clause: tree.Clause) -> str:
