@@ -121,7 +121,7 @@ class Echo:
         assert len(body) == (head.length or 0)
         return Response(HTTPStatus.OK, {}, body)
 
-    def refusal(self, status: HTTPStatus) -> Response:
+    def error_response(self, status: HTTPStatus) -> Response:
         assert status.value >= 400
         return Response(status, {}, b"refused")
 

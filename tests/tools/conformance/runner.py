@@ -15,7 +15,7 @@ from tltlc import backends
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.tools.conformance.check import differences
-from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput
+from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput
 
 LONGEST_BUILD_S = LONGEST_RUN_S = HANG_S
 
@@ -141,5 +141,5 @@ def _output_by_trace(text: str) -> dict[str, str]:
 
 def output_differences(outcome: Outcome, expected: ExpectedOutput, tolerance: float) -> Iterator[str]:
     """Yield the differences between a program's outcome and the expected one, on one trace."""
-    error = expected.refusal and expected.refusal.document()
+    error = expected.rejection and expected.rejection.document()
     return differences(*outcome, [COLUMNS, *expected.rows], expected.warnings, error, tolerance)

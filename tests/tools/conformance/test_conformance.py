@@ -23,7 +23,7 @@ from tests.tools.conformance.runner import (
 from tests.tools.conformance.runners.c import OPTIMIZED
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
-from tltlc.tools.conformance.expected import ExpectedOutput, expected_output
+from tltlc.tools.conformance.expected_output import ExpectedOutput, expected_output
 
 ALONE = ("by_zero", "exclusive_many", "names_of_code")
 """Cases whose programs are built one by one and started once per trace, as a user does;

@@ -28,7 +28,7 @@ from tltlc.pipeline import CompileOptions, compile_text, read_artefact
 from tltlc.tools.conformance import borders
 from tltlc.tools.conformance.corpus import CASES, files
 from tltlc.tools.conformance.draw import Draw
-from tltlc.tools.conformance.expected import COLUMNS, Kind
+from tltlc.tools.conformance.expected_output import COLUMNS, RejectionKind
 from tltlc.tools.conformance.traces import random_trace
 
 FLAGS = ("true", "false")
@@ -204,7 +204,7 @@ def test_the_corpus_has_every_kind_of_row() -> None:
 
 def test_the_corpus_has_every_kind_of_error() -> None:
     kinds = [text.splitlines()[0].removeprefix("kind: ") for text in texts(".error.txt").values()]
-    assert set(kinds) == set(get_args(Kind))
+    assert set(kinds) == set(get_args(RejectionKind))
     cases = json.loads(corpus()["index.json"])["cases"]
     assert any(trace["warnings"] for case in cases for trace in case["traces"] if not trace["error"])
 

@@ -11,7 +11,7 @@ from tests.monitor.odd_bytes import csv_traces
 from tests.tools.conformance.runner import Runner, build_program, output_differences, runners
 from tltlc.automaton.fspa import Fspa
 from tltlc.tools.conformance.corpus import CASES
-from tltlc.tools.conformance.expected import expected_output
+from tltlc.tools.conformance.expected_output import expected_output
 from tltlc.tools.conformance.odd_traces import CELLS, LINES, MORE_VALUES, VALUES
 
 NAME = "trace_values"

@@ -11,12 +11,12 @@ import pytest
 from tests.tools.conformance.runner import Runner, build_program, output_differences, run_monitor, runners
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.logic import formula as f
-from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput, Refusal
+from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput, Rejection
 
 RIGHT = ("1", "0", "pending", "false", "false", "0.10000000000000001", "0", "0.5", "a, b")
 HEADER = ",".join(COLUMNS)
 ROW = ",".join((*RIGHT[:-1], '"a, b"'))
-REFUSED = Refusal("by zero", 2, ("a",))
+REJECTED = Rejection("by zero", 2, ("a",))
 MESSAGE = "error: step 2: the atom `a` divides by zero"
 
 
@@ -72,12 +72,14 @@ def test_wrong_rows_are_detected(
     ],
 )
 def test_wrong_errors_are_detected(out: str, err: str, status: int, right: bool, tmp_path: Path) -> None:
-    assert (not differences_of(out, err, status, ExpectedOutput((RIGHT,), REFUSED, 0), tmp_path)) == right
+    assert (not differences_of(out, err, status, ExpectedOutput((RIGHT,), REJECTED, 0), tmp_path)) == right
 
 
 def test_the_header_may_be_missing_before_a_rejected_first_sample(tmp_path: Path) -> None:
     for out in ("", f"{HEADER}\n", "Engine v3\n\n"):
-        assert not differences_of(out, "error: no sample", 1, ExpectedOutput((), Refusal("no sample", 1), 0), tmp_path)
+        assert not differences_of(
+            out, "error: no sample", 1, ExpectedOutput((), Rejection("no sample", 1), 0), tmp_path
+        )
 
 
 def test_runners_have_unique_names_and_report_why_they_are_skipped() -> None:

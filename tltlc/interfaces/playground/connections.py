@@ -54,8 +54,8 @@ class Site(Protocol):
         Return None if the client no longer waits.
         """
 
-    def refusal(self, status: HTTPStatus) -> Response:
-        """Return the response for a refused request."""
+    def error_response(self, status: HTTPStatus) -> Response:
+        """Return the response for a rejected request."""
 
 
 class ConnectionState(Enum):
@@ -312,7 +312,7 @@ class Connection(asyncio.Protocol):
         self._closes = True
         self._buffer.clear()
         if not self._hung_up.is_set():
-            self._send(self._site.refusal(status), with_body=head is None or head.method != "HEAD")
+            self._send(self._site.error_response(status), with_body=head is None or head.method != "HEAD")
 
     def _send(self, response: Response, *, with_body: bool = True) -> None:
         headers = {

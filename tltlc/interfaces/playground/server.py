@@ -105,8 +105,8 @@ class PageHandler:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
         return _response(HTTPStatus.OK, text.encode(), "application/json")
 
-    def refusal(self, status: HTTPStatus) -> Response:
-        """Return the response for a refused request."""
+    def error_response(self, status: HTTPStatus) -> Response:
+        """Return the response for a rejected request."""
         allowed = {"Allow": "GET, HEAD, POST"} if status is HTTPStatus.METHOD_NOT_ALLOWED else {}
         return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
 

@@ -149,7 +149,7 @@ def _function_case(number: int, name: str) -> ConformanceCase:
     return ConformanceCase(fspa, f"Predicates: {name.replace('_', ' ')}.", (random_trace(fspa, draw, 40, pools),))
 
 
-_REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float], ...]]]] = {
+_REJECTED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float], ...]]]] = {
     "by_zero": (
         _divided(_SHARE, 8.0),
         _op("tanh", _op("/", _X, _op("-", _Y, 1.0))),
@@ -175,8 +175,8 @@ _REFUSED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, float
 """Cases by name: two predicates, and pairs of x and y at which a predicate has no value."""
 
 
-def _refused_case(name: str) -> ConformanceCase:
-    first, second, samples = _REFUSED[name]
+def _rejected_case(name: str) -> ConformanceCase:
+    first, second, samples = _REJECTED[name]
     fspa = _two_atom_case(name, first, second).fspa
     columns = [signal.name for signal in fspa.signals]
     before = [(1, 2), (1.5, 2.5)]
@@ -225,6 +225,6 @@ def _branching_case(name: str) -> ConformanceCase:
 
 CASES: Final[CaseBuilders] = {
     **{name: partial(_function_case, number, name) for number, name in enumerate(_EXPRESSIONS)},
-    **{name: partial(_refused_case, name) for name in _REFUSED},
+    **{name: partial(_rejected_case, name) for name in _REJECTED},
     **{name: partial(_branching_case, name) for name in ("deep_values", "deep_conditions")},
 }

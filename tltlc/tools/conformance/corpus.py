@@ -16,7 +16,7 @@ from tltlc.expression.tree import Const, Op, nodes
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.tools.conformance import arithmetic, borders, file_cases, odd_traces, operators, random_cases, shapes
 from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
-from tltlc.tools.conformance.expected import COLUMNS, ExpectedOutput, Refusal, expected_output
+from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput, Rejection, expected_output
 
 CASES: Final[CaseBuilders] = {
     **file_cases.CASES,
@@ -87,15 +87,15 @@ def _case_files(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> ba
     for number, (trace, outcome) in enumerate(zip(case.traces, outcomes, strict=True), start=1):
         contents[f"{name}.{number}.csv"] = trace
         contents[f"{name}.{number}.expected.csv"] = outcome.table()
-        if outcome.refusal is not None:
-            contents[f"{name}.{number}.error.txt"] = _refusal_text(outcome.refusal)
+        if outcome.rejection is not None:
+            contents[f"{name}.{number}.error.txt"] = _rejection_text(outcome.rejection)
     return {f"{name}/{file}": content for file, content in contents.items()}
 
 
-def _refusal_text(refusal: Refusal) -> str:
-    lines = [f"kind: {refusal.kind}", f"step: {refusal.step}", *(f"name: {name}" for name in refusal.names)]
-    if refusal.line is not None:
-        lines.insert(2, f"line: {refusal.line}")
+def _rejection_text(rejection: Rejection) -> str:
+    lines = [f"kind: {rejection.kind}", f"step: {rejection.step}", *(f"name: {name}" for name in rejection.names)]
+    if rejection.line is not None:
+        lines.insert(2, f"line: {rejection.line}")
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -104,8 +104,8 @@ def _index_entry(case: ConformanceCase, outcomes: Sequence[ExpectedOutput]) -> d
     fspa, name = case.fspa, case.fspa.name
     traces = []
     for number, outcome in enumerate(outcomes, start=1):
-        refusal = outcome.refusal
-        error = refusal and refusal.document()
+        rejection = outcome.rejection
+        error = rejection and rejection.document()
         stem = f"{name}/{name}.{number}"
         row: dict[str, Any] = {"trace": f"{stem}.csv", "expected": f"{stem}.expected.csv", "rows": len(outcome.rows)}
         traces.append(row | {"warnings": outcome.warnings, "error": error})

@@ -21,7 +21,7 @@ class OddTrace:
     """A trace, and how it must be read.
 
     ``samples`` has the values of the signals ``x`` and ``seen`` in each sample that must be read.
-    ``line`` is the number of the line, from 1, that must be refused. It is None if the whole trace
+    ``line`` is the number of the line, from 1, that must be rejected. It is None if the whole trace
     must be read, and 0 if the trace has no sample.
     """
 
@@ -36,14 +36,14 @@ _TWO: Final = ((0.5, 1.0), (-0.25, 0.0))
 
 
 def _bad_row(row: bytes) -> OddTrace:
-    """Return a trace whose second row is ``row`` and must be refused."""
+    """Return a trace whose second row is ``row`` and must be rejected."""
     return OddTrace(_HEAD + b"0.5,1\n" + row + b"\n0.5,1\n", _ONE, 3)
 
 
 def _x_cell(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with this cell for ``x`` in its second row.
 
-    ``value`` is the value of the cell; None if the cell is refused.
+    ``value`` is the value of the cell; None if the cell is rejected.
     """
     if value is None:
         return _bad_row(cell + b",1")
@@ -53,7 +53,7 @@ def _x_cell(cell: bytes, value: float | None) -> OddTrace:
 def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
     """Return a trace with this cell for ``seen`` in its second row.
 
-    ``value`` is the value of the cell; None if the cell is refused.
+    ``value`` is the value of the cell; None if the cell is rejected.
     """
     if value is None:
         return _bad_row(b"0.5," + cell)
@@ -66,7 +66,7 @@ def _note(cell: bytes) -> OddTrace:
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
-    """Return a trace that must be refused at ``line``, for a cell in a column that is not a signal."""
+    """Return a trace that must be rejected at ``line``, for a cell in a column that is not a signal."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 

@@ -40,7 +40,7 @@ def _predicates_case(name: str, seed: int) -> ConformanceCase:
     draw = Draw(seed)
     expressions = {atom: predicate(draw) for atom in _ATOMS}
     fspa = _automaton(name, draw, False, expressions)
-    traces = (lively_trace(fspa, draw, 30), random_trace(fspa, draw, 12, refused=True))
+    traces = (lively_trace(fspa, draw, 30), random_trace(fspa, draw, 12, rejected=True))
     return ConformanceCase(fspa, f"Random predicates under {fspa.formula}.", traces)
 
 

@@ -152,7 +152,7 @@ _INFINITE: Final = ("nan", "inf", "-inf", "1e400", "-1e999", "NaN", "Infinity")
 
 
 def _cells_case() -> ConformanceCase:
-    """Return a case of traces written in several ways, some of which must be refused."""
+    """Return a case of traces written in several ways, some of which must be rejected."""
     expressions: dict[str, Expression] = {
         "a": SignalValue("x"),
         "b": Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0))),

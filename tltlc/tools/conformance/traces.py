@@ -36,17 +36,17 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
     return text.getvalue().encode()
 
 
-def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, refused: bool = False) -> bytes:
+def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, rejected: bool = False) -> bytes:
     """Return a random trace of ``length`` samples that a monitor reads without an error.
 
-    ``pools`` gives, for some signals, the values to draw from. With ``refused``, a sample that the
-    monitor refuses follows. The search for each sample is limited; if it finds none, the last
+    ``pools`` gives, for some signals, the values to draw from. With ``rejected``, a sample that the
+    monitor rejects follows. The search for each sample is limited; if it finds none, the last
     sample that was tried is taken anyway.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
     samples = [_sample(fspa, atoms, draw, pools, accepted=True) for _ in range(length)]
-    if refused:
+    if rejected:
         samples.append(_sample(fspa, atoms, draw, pools, accepted=False))
     rows = [[_text(draw, signal, sample[signal.name]) for signal in fspa.signals] for sample in samples]
     return table([signal.name for signal in fspa.signals], rows)

@@ -100,7 +100,7 @@ class Judge:
         return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
 
     def _faultless(self, samples: Sequence[Sample]) -> Sequence[Sample]:
-        """Return the samples before the first one that the monitor refuses; all if it refuses none."""
+        """Return the samples before the first one that the monitor rejects; all if it rejects none."""
         with suppress(MonitorError):
             if samples:
                 self._runner.run(samples)

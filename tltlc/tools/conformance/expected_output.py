@@ -1,4 +1,4 @@
-"""The expected output of a monitor on a trace: rows, and the reason if it refuses a sample."""
+"""The expected output of a monitor on a trace: rows, and the reason if it rejects a sample."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from tltlc.monitor import Monitor, Step
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, read_rows
 from tltlc.monitor.traces import Sample, read_trace
 
-Kind = Literal["no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"]
+RejectionKind = Literal[
+    "no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"
+]
 
 COLUMNS: Final = (
     *("step", "state", "verdict", "accepting", "done", "progress", "reward"),
@@ -25,29 +27,29 @@ COLUMNS: Final = (
 
 
 @record
-class Refusal:
-    """The refusal of a trace: its reason (``kind``), its step, and the signals or atoms at fault.
+class Rejection:
+    """The rejection of a trace: its reason (``kind``), its step, and the signals or atoms at fault.
 
     ``step`` counts from 1. ``line`` is the line of the file (from 1) that cannot be read. It is
-    None if the monitor refuses a sample.
+    None if the monitor rejects a sample.
     """
 
-    kind: Kind
+    kind: RejectionKind
     step: int
     names: tuple[str, ...] = ()
     line: int | None = None
 
     def document(self) -> dict[str, Any]:
-        """Return the refusal as it appears in the index of the corpus."""
+        """Return the rejection as it appears in the index of the corpus."""
         return {"kind": self.kind, "step": self.step, "names": list(self.names), "line": self.line}
 
 
 @record
 class ExpectedOutput:
-    """The expected rows without the header, the refusal or None, and the number of warnings."""
+    """The expected rows without the header, the rejection or None, and the number of warnings."""
 
     rows: tuple[tuple[str, ...], ...]
-    refusal: Refusal | None
+    rejection: Rejection | None
     warnings: int
 
     def table(self) -> str:
@@ -62,13 +64,13 @@ class ExpectedOutput:
 def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
     """Return what every monitor of the automaton must print for the CSV file ``trace``."""
     monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
-    refusal = None
+    rejection = None
     try:
         for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
             rows.append(_row_cells(len(rows) + 1, monitor.step(sample)))
     except TltlError as error:
-        refusal = _refusal(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
-    return ExpectedOutput(tuple(rows), refusal, len(monitor.notices))
+        rejection = _rejection(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
+    return ExpectedOutput(tuple(rows), rejection, len(monitor.notices))
 
 
 def _row_cells(number: int, step: Step) -> tuple[str, ...]:
@@ -77,25 +79,25 @@ def _row_cells(number: int, step: Step) -> tuple[str, ...]:
     return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
 
 
-def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Refusal:
-    """Return the refusal that a diagnostic reports.
+def _rejection(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Rejection:
+    """Return the rejection that a diagnostic reports.
 
     Its names are computed from the sample or the trace, not read from the text of the diagnostic.
     """
     if error.code == "TLT0620":
-        return Refusal("no sample", step)
+        return Rejection("no sample", step)
     if error.code == "TLT0612":
-        return Refusal("not finite", step, tuple(_infinite_signals(fspa, sample)[:1]))
+        return Rejection("not finite", step, tuple(_infinite_signals(fspa, sample)[:1]))
     if error.code == "TLT0613":
         kind, atom = _without_value(fspa, sample)
-        return Refusal(kind, step, (atom,))
+        return Rejection(kind, step, (atom,))
     if error.code == "TLT0614":
-        return Refusal("together", step, _conflicting_atoms(fspa, sample))
+        return Rejection("together", step, _conflicting_atoms(fspa, sample))
     label = error.labels[0]
     line, _ = label.source.position(label.span.start)
     if error.code == "TLT0621":
-        return Refusal("missing signal", step, _missing_signals(fspa, trace), line)
-    return Refusal("bad cell", step, line=line)
+        return Rejection("missing signal", step, _missing_signals(fspa, trace), line)
+    return Rejection("bad cell", step, line=line)
 
 
 def _missing_signals(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
@@ -110,7 +112,7 @@ def _infinite_signals(fspa: Fspa, sample: Sample) -> list[str]:
     return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
 
 
-def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:
+def _without_value(fspa: Fspa, sample: Sample) -> tuple[RejectionKind, str]:
     """Return why an atom has no value, and the name of this atom: the one that monitors report."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
