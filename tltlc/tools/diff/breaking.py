@@ -21,7 +21,7 @@ from tltlc.tools.diff.renaming import new_signal_names, rename_signals, with_old
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.tools.diff.library import OfferedName
+    from tltlc.tools.diff.library import Export
     from tltlc.tools.diff.library_settings import Rules
 
 _SHARED: Final = ("clock", "signal", "param", "atom")
@@ -32,13 +32,13 @@ _SHARED: Final = ("clock", "signal", "param", "atom")
 class Version:
     """One version of a file: its automata, and the places of its specs by name, for messages.
 
-    A file without specs is a library. Then ``offers`` has the declarations that importers can use,
+    A file without specs is a library. Then ``exports`` has the declarations that importers can use,
     and ``rules`` the clock and the exclusive atoms that it sets for all specs that import it.
     """
 
     automata: tuple[Fspa, ...] = ()
     places: Mapping[str, Label] = EMPTY
-    offers: Mapping[str, OfferedName] = EMPTY
+    exports: Mapping[str, Export] = EMPTY
     rules: Rules | None = None
 
 
@@ -77,9 +77,9 @@ def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagn
     """
     old, new = change.old, change.new
     if not (old.automata or new.automata or change.moves):
-        from tltlc.tools.diff.offers import changed_offers
+        from tltlc.tools.diff.export_changes import export_changes
 
-        return (*changed_offers(old.offers, new.offers), *_changed_rules(old, new))
+        return (*export_changes(old.exports, new.exports), *_changed_rules(old, new))
     return tuple(_spec_changes(old, new, change.moves, work))
 
 

@@ -1,4 +1,4 @@
-"""The declarations that a library offers to its importers, and what its predicates mean."""
+"""The declarations that a library exports, and what its predicates mean."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tltlc.resolve.spec import Param, Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, Value
 from tltlc.tools.diff.values import Meaning, meaning_of
 
-Kind = Literal["signal", "param", "predicate", "let", "entity"]
+ExportKind = Literal["signal", "param", "predicate", "let", "entity"]
 
 
 @record
-class OfferedName:
-    """The declaration behind a name that a library offers.
+class Export:
+    """A name that a library exports, with its declaration.
 
     ``is_own`` is true if the library itself declares the name, and false if it imports the name.
     ``value`` is set for a signal or param. ``meanings`` is set for a predicate that the library
@@ -33,7 +33,7 @@ class OfferedName:
     """
 
     name: str
-    kind: Kind
+    kind: ExportKind
     parameters: tuple[Parameter, ...]
     place: Label
     is_own: bool
@@ -41,27 +41,27 @@ class OfferedName:
     meanings: Mapping[int, Meaning] = EMPTY
 
 
-def offers(env: Env) -> Mapping[str, OfferedName]:
-    """Return the names that a module offers to importers.
+def exports(env: Env) -> Mapping[str, Export]:
+    """Return the names that a module exports: its own and those that it imports.
 
     ``env`` is the environment of the module, which must have resolved without errors.
     """
-    return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
+    return {name: _export(name, binding, env) for name, binding in env.scope.names.items()}
 
 
-def _offer(name: str, binding: Binding, env: Env) -> OfferedName:
+def _export(name: str, binding: Binding, env: Env) -> Export:
     declaration, context = binding.declaration, env.context
     parameters = declaration.parameters if isinstance(declaration, (SignalDecl, PredicateDecl, LetDecl)) else ()
     place = Label(binding.scope.source, binding.span)
-    offer = OfferedName(name, binding.kind, parameters, place, binding.scope is env.scope)
+    export = Export(name, binding.kind, parameters, place, binding.scope is env.scope)
     if binding.kind == "signal":
         info = context.signal_infos[binding.name]
-        return replace(offer, value=info.signal_of(info.parameters))
+        return replace(export, value=info.signal_of(info.parameters))
     if binding.kind == "param":
-        return replace(offer, value=context.params[binding.name])
-    if binding.kind == "predicate" and offer.is_own:
-        return replace(offer, meanings=dict(_meanings(binding, parameters, env)))
-    return offer
+        return replace(export, value=context.params[binding.name])
+    if binding.kind == "predicate" and export.is_own:
+        return replace(export, meanings=dict(_meanings(binding, parameters, env)))
+    return export
 
 
 def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> Iterator[tuple[int, Meaning]]:

@@ -36,7 +36,7 @@ def version_of_library(session: Session) -> Version:
 
     The library must compile without errors.
     """
-    from tltlc.tools.diff.library import offers
+    from tltlc.tools.diff.library import exports
     from tltlc.tools.diff.library_settings import rules
 
-    return Version(offers=offers(session.resolution.env), rules=rules(session.module, session.program))
+    return Version(exports=exports(session.resolution.env), rules=rules(session.module, session.program))

@@ -1,4 +1,4 @@
-"""Find the changes in the declarations that a library offers to its importers."""
+"""Find the changes in the declarations that a library exports."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from tltlc.tools.diff.values import value_difference
 
 if TYPE_CHECKING:
     from tltlc.resolve.spec import ValueType
-    from tltlc.tools.diff.library import OfferedName
+    from tltlc.tools.diff.library import Export
 
 
-def changed_offers(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
+def export_changes(old: Mapping[str, Export], new: Mapping[str, Export]) -> Iterator[Diagnostic]:
     """Yield a diagnostic for each changed or removed declaration.
 
     Those about params come first, and then the others in the order of the old declarations. New
@@ -34,9 +34,9 @@ def changed_offers(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName
             yield from _declaration_changes(before, after)
 
 
-def _param_changes(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName]) -> Iterator[Diagnostic]:
+def _param_changes(old: Mapping[str, Export], new: Mapping[str, Export]) -> Iterator[Diagnostic]:
     old_params, new_params = (
-        [offer.value for offer in offers.values() if isinstance(offer.value, Param)] for offers in (old, new)
+        [export.value for export in exports.values() if isinstance(export.value, Param)] for exports in (old, new)
     )
     params = tuple(declared_differences("param", old_params, new_params))
     new_names = new_param_names(params)
@@ -50,7 +50,7 @@ def _param_changes(old: Mapping[str, OfferedName], new: Mapping[str, OfferedName
             yield findings.param_changed(difference, None, new[name].place)
 
 
-def _declaration_changes(before: OfferedName, after: OfferedName) -> Iterator[Diagnostic]:
+def _declaration_changes(before: Export, after: Export) -> Iterator[Diagnostic]:
     """Yield diagnostics for the changes between two versions of a signal, predicate or let."""
     why = _why_uses_break(before, after)
     if why:
@@ -77,7 +77,7 @@ def _declaration_changes(before: OfferedName, after: OfferedName) -> Iterator[Di
                 return
 
 
-def _why_uses_break(before: OfferedName, after: OfferedName) -> str | None:
+def _why_uses_break(before: Export, after: Export) -> str | None:
     """Return why some use of a declaration is no longer valid; None if all uses are still valid."""
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
