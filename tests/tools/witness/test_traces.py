@@ -27,9 +27,9 @@ from tltlc.pipeline import compile_source
 from tltlc.tools.witness import blocks
 from tltlc.tools.witness import text as witness_text
 from tltlc.tools.witness.cover import Cover, cover
-from tltlc.tools.witness.nearest import NearestEdges
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
+from tltlc.tools.witness.wanted_edges import WantedEdges
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
@@ -232,12 +232,12 @@ ANY_ORDER = "F a & F b & F c & F d & F e & F f & F g"
 def test_a_cover_visits_few_edges_per_step(spec: str) -> None:
     signals = "".join(f"signal {name}: bool  " for name in "abcdefgh")
     (fspa,) = tltlc.compile_text(f"{signals} spec s = {spec}")
-    nearest, state, steps = NearestEdges(edges_leaving(fspa)), 0, 0
-    while path := nearest.take(state) or (nearest.take(0) if state else ()):
+    wanted, state, steps = WantedEdges(edges_leaving(fspa)), 0, 0
+    while path := wanted.take(state) or (wanted.take(0) if state else ()):
         steps += len(path)
         state = fspa.edges[path[-1]].target
     # A search from each state would visit the edges of most states again for each trace.
-    assert nearest.visited_edges <= 5 * (steps + len(fspa.edges))
+    assert wanted.visited_edges <= 5 * (steps + len(fspa.edges))
 
 
 @pytest.mark.parametrize("bound", [20, 80])

@@ -8,7 +8,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
 from tltlc.tools.fmt.expressions import Expressions, Item, name_item
-from tltlc.tools.fmt.flat import OneLinePrinter
+from tltlc.tools.fmt.one_line import OneLinePrinter
 from tltlc.tools.fmt.page import STEP, Page
 
 

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from tltlc.core.source import Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt.flat import OneLinePrinter, chain, is_speed
+from tltlc.tools.fmt.one_line import OneLinePrinter, chain, is_speed
 from tltlc.tools.fmt.page import STEP, WIDTH, Page
 
 _ENDLESS: Final = 1 << 30

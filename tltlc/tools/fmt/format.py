@@ -10,8 +10,8 @@ from tltlc.grammar import tree
 from tltlc.grammar.lexer import MAX_TOKENS
 from tltlc.grammar.parser import is_too_large, parse
 from tltlc.tools.fmt.declarations import DeclarationPrinter
-from tltlc.tools.fmt.flat import OneLinePrinter
 from tltlc.tools.fmt.layout_constraints import NO_CONSTRAINTS, LayoutConstraints, required_constraints
+from tltlc.tools.fmt.one_line import OneLinePrinter
 from tltlc.tools.fmt.page import Page
 from tltlc.tools.fmt.style import DEFAULT, STYLES, Style
 

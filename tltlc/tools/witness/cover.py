@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from tltlc.core.record import record
-from tltlc.tools.witness.nearest import NearestEdges
 from tltlc.tools.witness.samples import UnsatisfiedLiterals
 from tltlc.tools.witness.traces import Witness
 from tltlc.tools.witness.transitions import Moves, SampledEdge
+from tltlc.tools.witness.wanted_edges import WantedEdges
 
 
 @record
@@ -41,11 +41,11 @@ def cover(moves: Moves) -> Cover:
     none. If the spec is over infinite traces, the result has finite beginnings of traces.
     """
     edges = moves.fspa.edges
-    nearest = NearestEdges(
+    wanted = WantedEdges(
         [[(edge, edges[edge].target) for edge in leaving if moves.move(edge)] for leaving in moves.leaving]
     )
     traces: list[tuple[SampledEdge, ...]] = []
-    while trace := tuple(_trace(moves, nearest)):
+    while trace := tuple(_trace(moves, wanted)):
         traces.append(trace)
     traces.sort(key=len)
     taken = {move.edge for trace in traces for move in trace}
@@ -53,13 +53,13 @@ def cover(moves: Moves) -> Cover:
     return Cover(tuple(_witnesses(traces)), tuple(untaken))
 
 
-def _trace(moves: Moves, nearest: NearestEdges) -> Iterator[SampledEdge]:
+def _trace(moves: Moves, wanted: WantedEdges) -> Iterator[SampledEdge]:
     """Yield the moves of a trace from the initial state to one untaken edge after another.
 
     Nothing is yielded if no untaken edge can be reached.
     """
     state = 0
-    while path := nearest.take(state):
+    while path := wanted.take(state):
         for edge in path:
             move = moves.move(edge)
             assert move is not None

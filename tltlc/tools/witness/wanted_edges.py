@@ -1,4 +1,4 @@
-"""Find the nearest edge that no trace has taken, without a new search for each path."""
+"""Find the nearest edge that is still wanted, without a new search for each path."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tltlc.automaton.infinite.graphs import components
 
 
-class NearestEdges:
+class WantedEdges:
     """Finds paths to the nearest wanted edge.
 
     At first every edge is wanted. Once a path ends with an edge, the edge is no longer wanted.
