@@ -13,7 +13,9 @@ from tltlc.core.record import record
 _TOKEN: Final = re.compile(r'//[^\n]*|"(?P<text>[^"\n]*)"?|(?P<name>[A-Za-z_][\w.]*)')
 """Matches a comment, a quoted text or a name.
 
-Each match consumes all of its characters, so the scan takes linear time.
+Each match consumes all of its characters, so the scan takes linear time. The lexer is no substitute:
+it takes four times as long, and it stops at the limit on tokens, so the names after it in a large
+file would be missed, and their declarations removed as unused.
 """
 
 
