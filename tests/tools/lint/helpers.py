@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from tltlc.core.source import SourceFile
 from tltlc.pipeline import CompileOptions
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.fix_application import FixedFile, fix
 from tltlc.tools.lint.rule import LintFinding, RuleFinding
 from tltlc.tools.lint.run import lint, view_of
@@ -34,7 +34,9 @@ def labelled_texts(text: str, code: str) -> list[str]:
     return [label.source.slice(label.span) for label in labels]
 
 
-def spec_and_findings(check: Callable[[View], Iterable[RuleFinding]], text: str) -> tuple[SpecView, list[RuleFinding]]:
+def spec_and_findings(
+    check: Callable[[FileView], Iterable[RuleFinding]], text: str
+) -> tuple[SpecView, list[RuleFinding]]:
     """Return the only spec of a text, and the findings of one rule on it, without duplicates."""
     view = view_of(SourceFile("example.tltl", text), CompileOptions())
     (spec,) = view.specs

@@ -8,7 +8,7 @@ import pytest
 
 from tests.tools.lint.helpers import APART, block, codes, findings_in
 from tltlc.core.source import SourceFile
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.rule import RuleFinding
 from tltlc.tools.lint.run import lint
 
@@ -67,7 +67,7 @@ class _Rule:
     code, severity = "TLT0432", "warning"
     reads = 0
 
-    def check(self, view: View) -> list[RuleFinding]:
+    def check(self, view: FileView) -> list[RuleFinding]:
         return [
             RuleFinding("odd", (view.label(declaration.span),), "mend it") for declaration in view.module.declarations
         ]

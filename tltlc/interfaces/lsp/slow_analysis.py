@@ -13,7 +13,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import unsaved_texts
 from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
 from tltlc.tools.lint.neighbours import neighbours
 from tltlc.tools.lint.rule import LintFinding
@@ -84,7 +84,7 @@ def analyse(request: Request) -> DocumentAnalysis:
         return _with_tests(view, file_findings)
 
 
-def _seems_unused(view: View) -> bool:
+def _seems_unused(view: FileView) -> bool:
     """Whether a file has a declaration or an import that it does not use itself."""
     return any(True for rule in rules() if rule.code in _USE_RULES for _ in rule.check(view))
 
@@ -106,7 +106,7 @@ def _elsewhere(request: Request) -> Container[str]:
     return names_used_elsewhere(name, [importer_names(path, text) for path, text in neighbour_texts.items()])
 
 
-def _with_tests(view: View, file_findings: tuple[LintFinding, ...]) -> DocumentAnalysis:
+def _with_tests(view: FileView, file_findings: tuple[LintFinding, ...]) -> DocumentAnalysis:
     results = run_tests(view.program, (compiled.fspa for compiled in view.specs))
     figures = []
     for compiled in view.specs:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 DifferenceKind = Literal["semantics", "judge", "limit", "level", "clock", "exclusive", "atom", "signal", "param"]
-Value = Union[Signal, Param, Atom, tuple[str, ...], str, int, float, None]
+DifferingValue = Union[Signal, Param, Atom, tuple[str, ...], str, int, float, None]
 
 _SETTINGS: Final[tuple[tuple[DifferenceKind, str], ...]] = (
     ("semantics", "semantics"),
@@ -38,8 +38,8 @@ class Difference:
 
     kind: DifferenceKind
     name: str
-    a: Value
-    b: Value
+    a: DifferingValue
+    b: DifferingValue
     value_difference: ValueDifference | None = None
 
 
@@ -92,7 +92,7 @@ def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> 
     return all(atoms == frozenset((name,)).union(*common) for name, common in common_groups.items())
 
 
-def type_and_range(value: Value) -> object:
+def type_and_range(value: DifferingValue) -> object:
     """Return the type, range and param value of a signal or param; None for other values."""
     if not isinstance(value, (Signal, Param)):
         return None

@@ -7,10 +7,10 @@ from typing import Union
 
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 
-Leaf = Union[Const, SignalValue, ParamValue]
+ExpressionLeaf = Union[Const, SignalValue, ParamValue]
 
 
-def replace_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expression:
+def replace_leaves(node: Expression, change: Callable[[ExpressionLeaf], ExpressionLeaf]) -> Expression:
     """Return the expression with ``change`` applied to each leaf."""
     match node:
         case Op():
@@ -22,7 +22,7 @@ def replace_leaves(node: Expression, change: Callable[[Leaf], Leaf]) -> Expressi
             return change(node)
 
 
-def _condition(node: Condition, change: Callable[[Leaf], Leaf]) -> Condition:
+def _condition(node: Condition, change: Callable[[ExpressionLeaf], ExpressionLeaf]) -> Condition:
     return Condition(
         node.op,
         tuple(

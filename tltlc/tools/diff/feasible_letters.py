@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from tltlc.automaton.compare import Literals, Trace, separating
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, ParamValue
-from tltlc.tools.diff.expression_shapes import Leaf, replace_leaves
+from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 from tltlc.tools.witness.samples import SampleFinder
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _atoms_without_params(fspa: Fspa) -> list[Atom]:
     """Return the atoms with params replaced by their values."""
     values = {param.name: param.value for param in fspa.params}
 
-    def bind(leaf: Leaf) -> Leaf:
+    def bind(leaf: ExpressionLeaf) -> ExpressionLeaf:
         return Const(values[leaf.name]) if isinstance(leaf, ParamValue) else leaf
 
     return [replace(atom, expression=replace_leaves(atom.expression, bind)) for atom in fspa.atoms]

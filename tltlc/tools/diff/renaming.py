@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tltlc.core.record import replace
 from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When, nodes
 from tltlc.tools.diff.differences import type_and_range
-from tltlc.tools.diff.expression_shapes import Leaf, replace_leaves
+from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -78,7 +78,7 @@ def rename_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
 
 
 def _rename_signals(expression: Expression, names: Mapping[str, str]) -> Expression:
-    def rename(leaf: Leaf) -> Leaf:
+    def rename(leaf: ExpressionLeaf) -> ExpressionLeaf:
         return SignalValue(names.get(leaf.name, leaf.name)) if isinstance(leaf, SignalValue) else leaf
 
     return replace_leaves(expression, rename)

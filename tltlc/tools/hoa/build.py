@@ -26,7 +26,7 @@ from tltlc.tools.hoa.tree import Hoa
 _MOST_PROBLEMS: Final = 5
 """The most errors that are reported about states that are not deterministic or not complete."""
 
-Moves = dict[int, int]
+_StateFunctions = dict[int, int]
 """Maps the number of each reachable state to a node in the decision diagrams.
 
 The node stands for a function that maps each letter to a ``Move`` or ``NOT_ALLOWED``.
@@ -83,7 +83,7 @@ def automaton_of(
     return (_finite_automaton if is_finite(hoa) else _infinite_automaton)(hoa, moves, letters)
 
 
-def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
+def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> _StateFunctions:
     """Return the moves of all reachable states: a target and acceptance sets for each letter.
 
     Raises:
@@ -93,7 +93,7 @@ def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
     """
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
-    moves: Moves = {}
+    moves: _StateFunctions = {}
     reached = set(queue)
     problems: list[Diagnostic] = []
     for number in queue:
@@ -111,7 +111,9 @@ def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> Moves:
     return moves
 
 
-def _finite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _finite_automaton(
+    hoa: Hoa, moves: _StateFunctions, letters: Diagrams[Any]
+) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     def leaf(move: Move | None) -> Any:
         return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
 
@@ -124,7 +126,9 @@ def _finite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[R
     return automaton, FiniteAnalysis(automaton, goals)
 
 
-def _infinite_automaton(hoa: Hoa, moves: Moves, letters: Diagrams[Any]) -> tuple[Rabin, Analysis | FiniteAnalysis]:
+def _infinite_automaton(
+    hoa: Hoa, moves: _StateFunctions, letters: Diagrams[Any]
+) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     acceptance = Acceptance(hoa, letters.work)
 
     def targets(number: int) -> list[int]:

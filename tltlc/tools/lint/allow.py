@@ -15,7 +15,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, Severity
 from tltlc.grammar.allow_comments import Allowance, codes, is_allowing
 from tltlc.grammar.allow_index import AllowIndex
 from tltlc.grammar.tree import Comment
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import removal_span
 from tltlc.tools.lint.rule import LintFinding, removal_fix
 
@@ -25,7 +25,7 @@ _LIKE_ALLOW: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}
 """Matches ``allow`` comments, and comments that are probably misspelt ``allow`` comments."""
 
 
-def apply_allow_comments(view: View, findings: Iterable[LintFinding]) -> list[LintFinding]:
+def apply_allow_comments(view: FileView, findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings that no comment silences, plus findings about the comments themselves.
 
     A comment silences findings in its own file. In the linted file, there is a finding for
@@ -70,7 +70,7 @@ class _SettledSpecs:
     corrected, even if it silences nothing now.
     """
 
-    def __init__(self, view: View) -> None:
+    def __init__(self, view: FileView) -> None:
         self._specs = sorted(
             (spec.declaration.span for spec in view.specs if spec.is_settled), key=lambda span: span.start
         )

@@ -152,7 +152,7 @@ class SpecView:
 
 
 @record
-class View:
+class FileView:
     """A file that compiles without errors.
 
     ``diagnostics`` are those of the compiler. ``modules`` are the imported modules, followed by the

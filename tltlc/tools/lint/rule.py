@@ -10,7 +10,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, Label, Severity
 
 if TYPE_CHECKING:
-    from tltlc.tools.lint.file_view import View
+    from tltlc.tools.lint.file_view import FileView
 
 
 @record
@@ -38,7 +38,7 @@ class LintRule:
 
     code: str
     severity: Severity
-    check: Callable[[View], Iterable[RuleFinding]]
+    check: Callable[[FileView], Iterable[RuleFinding]]
     supersedes: tuple[str, ...] = ()
 
 

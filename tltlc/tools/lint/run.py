@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint.allow import apply_allow_comments
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintFinding, LintRule
 from tltlc.tools.lint.rules import rules
 
@@ -38,7 +38,7 @@ def lint(
     return findings(replace(view_of(source, options or CompileOptions()), used_elsewhere=used_elsewhere), levels)
 
 
-def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
+def findings(view: FileView, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and of all rules, in the order of the text.
 
     Findings that comments or ``levels`` silence are left out. So are findings that
@@ -75,7 +75,7 @@ def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str])
     )
 
 
-def view_of(source: SourceFile, options: CompileOptions) -> View:
+def view_of(source: SourceFile, options: CompileOptions) -> FileView:
     """Compile all specs of a file, and return what rules see of it.
 
     Raises:
@@ -90,14 +90,14 @@ def view_of(source: SourceFile, options: CompileOptions) -> View:
         SpecView(declared[spec.name], spec, fspa, resolved.env)
         for spec, fspa in zip(session.specs, automata, strict=True)
     )
-    return View(module, resolved.env, resolved.modules, specs, session.reported, program=session.program)
+    return FileView(module, resolved.env, resolved.modules, specs, session.reported, program=session.program)
 
 
 def _with_severity(finding: LintFinding, severity: str) -> LintFinding:
     return replace(finding, diagnostic=replace(finding.diagnostic, severity=severity))
 
 
-def _rule_findings(rule: LintRule, view: View) -> Iterator[LintFinding]:
+def _rule_findings(rule: LintRule, view: FileView) -> Iterator[LintFinding]:
     for finding in rule.check(view):
         fixes = (finding.fix,) if finding.fix else ()
         yield LintFinding(Diagnostic(rule.code, finding.title, finding.labels, finding.help, rule.severity, fixes))

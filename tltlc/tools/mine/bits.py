@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
-Samples = int
+SampleMask = int
 """A set of samples of the traces: one bit for each sample."""
-Verdicts = int
+TraceMask = int
 """A set of traces: one byte for each trace, 0x80 if the trace is in the set, else 0."""
 
 
@@ -36,15 +36,15 @@ class Bits:
         self._low = sum(1 << width * number for number in range(len(traces)))
         self._top = self._low << (width - 1)
         self._carry = self._top - self._low
-        self.all: Samples = self._mask(traces, None, backwards)
-        self.holds: dict[str, Samples] = {name: self._mask(traces, name, backwards) for name in evidence.atoms()}
+        self.all: SampleMask = self._mask(traces, None, backwards)
+        self.holds: dict[str, SampleMask] = {name: self._mask(traces, name, backwards) for name in evidence.atoms()}
         self._length = len(traces)
         accepted = len(evidence.traces)
-        self.traces: Verdicts = _set(0, accepted)
-        self.counterexamples: Verdicts = _set(accepted, len(traces))
-        self.all_traces: Verdicts = self.traces | self.counterexamples
+        self.traces: TraceMask = _set(0, accepted)
+        self.counterexamples: TraceMask = _set(accepted, len(traces))
+        self.all_traces: TraceMask = self.traces | self.counterexamples
 
-    def _mask(self, traces: Sequence[LabelledTrace], name: str | None, backwards: bool) -> Samples:
+    def _mask(self, traces: Sequence[LabelledTrace], name: str | None, backwards: bool) -> SampleMask:
         """Return the samples at which an atom holds, or all samples for None."""
         segments = []
         for trace in traces:
@@ -54,36 +54,36 @@ class Bits:
             segments.append(int(digits, 2).to_bytes(self._bytes, "little"))
         return int.from_bytes(b"".join(segments), "little")
 
-    def traces_with(self, samples: Samples) -> Verdicts:
+    def traces_with(self, samples: SampleMask) -> TraceMask:
         """Return the traces that contain at least one of the samples."""
         tops = (samples + self._carry) & self._top
         return int.from_bytes(
             tops.to_bytes(self._bytes * self._length, "little")[self._bytes - 1 :: self._bytes], "little"
         )
 
-    def traces_without(self, samples: Samples) -> Verdicts:
+    def traces_without(self, samples: SampleMask) -> TraceMask:
         """Return the traces that contain none of the samples."""
         return self.all_traces & ~self.traces_with(samples)
 
-    def complement(self, samples: Samples) -> Samples:
+    def complement(self, samples: SampleMask) -> SampleMask:
         """Return all samples that are not in the set."""
         return self.all & ~samples
 
-    def after_first(self, samples: Samples) -> Samples:
+    def after_first(self, samples: SampleMask) -> SampleMask:
         """Return the samples of each trace that come after its first sample in ``samples``.
 
         For a trace without any of ``samples``, these are none.
         """
         return self.all & ~self._up_to_first(samples)
 
-    def before_first(self, samples: Samples) -> Samples:
+    def before_first(self, samples: SampleMask) -> SampleMask:
         """Return the samples of each trace that come before its first sample in ``samples``.
 
         For a trace without any of ``samples``, these are all its samples.
         """
         return self.all & self._up_to_first(samples) & ~samples
 
-    def within(self, samples: Samples, steps: int) -> Samples:
+    def within(self, samples: SampleMask, steps: int) -> SampleMask:
         """Return ``samples``, and the samples that are at most ``steps`` before one of them."""
         result = samples
         reached = 0
@@ -93,17 +93,17 @@ class Bits:
             reached += shift
         return result
 
-    def _earlier(self, samples: Samples, steps: int) -> Samples:
+    def _earlier(self, samples: SampleMask, steps: int) -> SampleMask:
         """Return the samples that are exactly ``steps`` before one of ``samples``."""
         start = self._start(steps)
         return (samples & ~start) >> steps
 
-    def _start(self, steps: int) -> Samples:
+    def _start(self, steps: int) -> SampleMask:
         """Return the first ``steps`` samples of each trace."""
         width = 8 * self._bytes
         return self._low * ((1 << min(steps, width)) - 1)
 
-    def _up_to_first(self, samples: Samples) -> Samples:
+    def _up_to_first(self, samples: SampleMask) -> SampleMask:
         """Return the bits of each trace up to and including its first sample in ``samples``.
 
         For a trace without any of ``samples``, return all of its bits.
@@ -112,11 +112,11 @@ class Bits:
         return with_end ^ (with_end - self._low)
 
 
-def count(verdicts: Verdicts) -> int:
+def count(verdicts: TraceMask) -> int:
     """Return the number of traces in a set."""
     return verdicts.bit_count()
 
 
-def _set(first: int, end: int) -> Verdicts:
+def _set(first: int, end: int) -> TraceMask:
     """Return the set of the traces with numbers from ``first`` up to, but not including, ``end``."""
     return int.from_bytes(b"\0" * first + b"\x80" * (end - first), "little")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.io.limits import WORK
-from tltlc.tools.mine.bits import Bits, Verdicts
+from tltlc.tools.mine.bits import Bits, TraceMask
 from tltlc.tools.mine.clause import Conjunction, count_atoms
 from tltlc.tools.mine.score import figures
 
@@ -26,10 +26,10 @@ class Candidates:
 
     def __init__(self, bits: Bits) -> None:
         self._bits = bits
-        self._groups: dict[Verdicts, list[Conjunction]] = {}
+        self._groups: dict[TraceMask, list[Conjunction]] = {}
         self.is_cut = False
 
-    def add(self, conjunction: Conjunction, accepts: Verdicts) -> None:
+    def add(self, conjunction: Conjunction, accepts: TraceMask) -> None:
         """Add a conjunction, unless a shorter one accepts the same traces.
 
         At most ``ALIKE`` conjunctions are kept for one set of traces.
@@ -46,14 +46,14 @@ class Candidates:
         if len(self._groups) > 2 * _MOST:
             self._cut()
 
-    def items(self) -> Iterator[tuple[Conjunction, Verdicts]]:
+    def items(self) -> Iterator[tuple[Conjunction, TraceMask]]:
         """Yield the conjunctions, each with the traces that it accepts."""
         return ((conjunction, accepts) for accepts, alike in self._groups.items() for conjunction in alike)
 
     def _cut(self) -> None:
         """Keep only the sets of accepted traces whose conjunctions have the best scores."""
 
-        def score(group: tuple[Verdicts, list[Conjunction]]) -> float:
+        def score(group: tuple[TraceMask, list[Conjunction]]) -> float:
             accepts, alike = group
             return -figures(self._bits, accepts).score(count_atoms(alike[0]))
 

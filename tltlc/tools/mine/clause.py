@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tltlc.core.record import record
-from tltlc.tools.mine.bits import Bits, Verdicts
+from tltlc.tools.mine.bits import Bits, TraceMask
 
 
 @record
@@ -22,8 +22,8 @@ class MinedClause:
     rank: int
     text: str
     atoms: int
-    accepts: Verdicts
-    not_vacuous: Verdicts
+    accepts: TraceMask
+    not_vacuous: TraceMask
 
 
 Conjunction = tuple[MinedClause, ...]
@@ -35,7 +35,7 @@ def count_atoms(clauses: Sequence[MinedClause]) -> int:
     return sum(clause.atoms for clause in clauses)
 
 
-def accepted_traces(clauses: Iterable[MinedClause], bits: Bits) -> Verdicts:
+def accepted_traces(clauses: Iterable[MinedClause], bits: Bits) -> TraceMask:
     """Return the traces that satisfy all of the clauses."""
     accepted = bits.all_traces
     for clause in clauses:

@@ -17,7 +17,7 @@ _MOST_NAMED: Final = 4
 
 
 @record
-class Columns:
+class TraceColumns:
     """The columns of a trace. ``trace`` is its name.
 
     ``columns`` maps the name of each column to True if all its values are `true`, `false`, 1 or 0.
@@ -53,7 +53,7 @@ class OddColumns:
         return Diagnostic("TLT0763", title, help=help_, severity="warning")
 
 
-def odd_columns(traces: Sequence[Columns], *, truths: bool) -> tuple[OddColumns, ...]:
+def odd_columns(traces: Sequence[TraceColumns], *, truths: bool) -> tuple[OddColumns, ...]:
     """Return the columns that at least one trace lacks, but at most half of the traces.
 
     With ``truths``, also return columns that no trace lacks, but that have values other than `true`

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, cell_number, read_rows
 
-Row = Sequence[tuple[str, bool]]
+_NamedCells = Sequence[tuple[str, bool]]
 
 
 def columns(data: bytes, name: str) -> dict[str, bool]:
@@ -46,7 +46,7 @@ def common_columns(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]
     }
 
 
-def _rows(lines: TraceLines) -> Iterator[Row]:
+def _rows(lines: TraceLines) -> Iterator[_NamedCells]:
     trace = read_rows(lines)
     if isinstance(trace, TraceTable):
         for cells in trace.rows:

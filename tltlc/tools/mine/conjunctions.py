@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
-from tltlc.tools.mine.bits import Bits, Verdicts, count
+from tltlc.tools.mine.bits import Bits, TraceMask, count
 from tltlc.tools.mine.candidates import ALIKE, sort_key
 from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, count_atoms
 from tltlc.tools.mine.score import figures
@@ -27,9 +27,9 @@ def conjunctions(
     ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms.
     """
     pool = _pool(clauses)
-    beam: list[tuple[Conjunction, Verdicts]] = [((addition,), addition.accepts) for addition in pool]
+    beam: list[tuple[Conjunction, TraceMask]] = [((addition,), addition.accepts) for addition in pool]
     for _ in range(1, MOST_CLAUSES):
-        accepted_by_longer: dict[Conjunction, Verdicts] = {}
+        accepted_by_longer: dict[Conjunction, TraceMask] = {}
         for conjunction, accepts in beam[:BEAM]:
             room = most_atoms - count_atoms(conjunction)
             for addition in pool:
@@ -64,20 +64,20 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
 
 
 def best_candidates(
-    candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits
-) -> list[tuple[Conjunction, Verdicts]]:
+    candidates: Iterable[tuple[Conjunction, TraceMask]], bits: Bits
+) -> list[tuple[Conjunction, TraceMask]]:
     """Return the candidates without superfluous ones, the highest score first.
 
     Of the candidates that accept the same traces, at most ``ALIKE`` of the shortest remain.
     """
 
-    def score_key(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
+    def score_key(item: tuple[Conjunction, TraceMask]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item
         size, clauses, ranks, texts = sort_key(conjunction)
         return (-figures(bits, accepts).score(size), clauses, ranks, texts)
 
-    shortest: dict[Verdicts, int] = {}
-    alike: dict[Verdicts, int] = {}
+    shortest: dict[TraceMask, int] = {}
+    alike: dict[TraceMask, int] = {}
     chosen = []
     for conjunction, accepts in sorted(candidates, key=score_key):
         size = count_atoms(conjunction)
@@ -89,7 +89,7 @@ def best_candidates(
     return chosen
 
 
-def _all_needed(conjunction: Conjunction, accepts: Verdicts, bits: Bits) -> bool:
+def _all_needed(conjunction: Conjunction, accepts: TraceMask, bits: Bits) -> bool:
     """Whether each clause rejects a counterexample that the rest of the conjunction accepts.
 
     ``accepts`` are the traces that the whole conjunction accepts.

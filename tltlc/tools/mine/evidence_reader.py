@@ -8,7 +8,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.resolve.options import ResolveOptions
-from tltlc.tools.mine.column_diagnostics import Columns, odd_columns
+from tltlc.tools.mine.column_diagnostics import TraceColumns, odd_columns
 from tltlc.tools.mine.columns import columns, common_columns
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
@@ -37,7 +37,7 @@ def read_evidence(
     all_columns = []
     for file in (*good, *bad):
         report_progress(f"looking at {file.name}")
-        all_columns.append(Columns(file.name, columns(file.data, file.name)))
+        all_columns.append(TraceColumns(file.name, columns(file.data, file.name)))
         if not all_columns[-1].columns:
             check_trace(file)
     common = common_columns([trace.columns for trace in all_columns])

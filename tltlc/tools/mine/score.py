@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.tools.mine.bits import Bits, Verdicts, count
+from tltlc.tools.mine.bits import Bits, TraceMask, count
 
 PRICE: Final = 0.01
 """What an atom costs: an atom that separates less than one trace in a hundred is not worth it."""
@@ -44,7 +44,7 @@ class Support:
         return round(self.support + self.separation - 1.0 - PRICE * atoms, 9)
 
 
-def figures(bits: Bits, accepted: Verdicts) -> Support:
+def figures(bits: Bits, accepted: TraceMask) -> Support:
     """Return the support and separation of a proposal that accepts the traces in ``accepted``."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
     return Support(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

@@ -19,7 +19,7 @@ from typing import Final
 
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.io.limits import WORK
-from tltlc.tools.mine.bits import Bits, Samples, Verdicts, count
+from tltlc.tools.mine.bits import Bits, SampleMask, TraceMask, count
 from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.templates import template_clause
@@ -46,12 +46,12 @@ class SequenceStep:
 
     __slots__ = ("atoms", "samples", "text")
 
-    def __init__(self, text: str, atoms: int, samples: Samples) -> None:
+    def __init__(self, text: str, atoms: int, samples: SampleMask) -> None:
         self.text, self.atoms, self.samples = text, atoms, samples
 
 
-Steps = tuple[SequenceStep, ...]
-AcceptedSequence = tuple[Steps, Verdicts]
+StepSequence = tuple[SequenceStep, ...]
+AcceptedSequence = tuple[StepSequence, TraceMask]
 """A sequence, and the set of traces that meet it."""
 
 
@@ -74,9 +74,9 @@ def sequences(
     search = _Sequences(
         bits, possible_steps, least, most_atoms, allow_repeats=allow_repeats, work=work or Work(WORK["mined sequences"])
     )
-    beam: list[Steps] = [()]
+    beam: list[StepSequence] = [()]
     while beam:
-        extensions: dict[Steps, Verdicts] = {}
+        extensions: dict[StepSequence, TraceMask] = {}
         for sequence in beam:
             try:
                 portion = dict(search.extensions(sequence, extensions))
@@ -105,7 +105,7 @@ class _Sequences:
         # Sequences are compared by the identity of their steps, so each choice is created once.
         self._choices: dict[tuple[SequenceStep, SequenceStep], SequenceStep] = {}
 
-    def extensions(self, sequence: Steps, known: Mapping[Steps, Verdicts]) -> Iterator[AcceptedSequence]:
+    def extensions(self, sequence: StepSequence, known: Mapping[StepSequence, TraceMask]) -> Iterator[AcceptedSequence]:
         """Yield the sequences with one more step, at any position, that enough traces meet.
 
         Sequences in ``known`` are left out.
@@ -136,12 +136,12 @@ class _Sequences:
                 remaining = bits.after_first(after[0].samples & remaining)
 
     def _supported_choices(
-        self, steps: Sequence[tuple[SequenceStep, Verdicts]], room: int
-    ) -> Iterator[tuple[SequenceStep, Verdicts]]:
+        self, steps: Sequence[tuple[SequenceStep, TraceMask]], room: int
+    ) -> Iterator[tuple[SequenceStep, TraceMask]]:
         """Yield each choice of two steps that enough traces meet, with the set of these traces."""
         bits = self._bits
 
-        def sort_key(item: tuple[SequenceStep, Verdicts]) -> tuple[float, int, str]:
+        def sort_key(item: tuple[SequenceStep, TraceMask]) -> tuple[float, int, str]:
             step, accepts = item
             return (-figures(bits, accepts).score(step.atoms), step.atoms, step.text)
 
@@ -171,7 +171,7 @@ def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedC
     single = [SequenceStep(atom_operand(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.traces_with(step.samples) & bits.traces]
     known = {step.samples for step in single}
-    pairs: list[tuple[int, str, Samples]] = []
+    pairs: list[tuple[int, str, SampleMask]] = []
     for number, first in enumerate(single):
         for second in single[number + 1 :]:
             both = first.samples & second.samples
@@ -184,14 +184,14 @@ def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedC
     return [*single, *(SequenceStep(text, 3, both) for _, text, both in pairs)]
 
 
-def _accepted(steps: Steps, remaining: Samples, bits: Bits) -> Verdicts:
+def _accepted(steps: StepSequence, remaining: SampleMask, bits: Bits) -> TraceMask:
     """Return the traces that meet the steps in order at samples in ``remaining``."""
     for step in steps[:-1]:
         remaining = bits.after_first(step.samples & remaining)
     return bits.traces_with(steps[-1].samples & remaining)
 
 
-def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
+def _beam(extensions: Mapping[StepSequence, TraceMask], bits: Bits) -> list[StepSequence]:
     """Return the sequences with the best scores; of those that the same traces meet, only a few."""
 
     def sort_key(item: AcceptedSequence) -> tuple[float, list[str]]:
@@ -199,10 +199,10 @@ def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
         size = sum(step.atoms for step in sequence)
         return (-figures(bits, accepts).score(size), [step.text for step in sequence])
 
-    alike: dict[tuple[bool, Verdicts], int] = {}
+    alike: dict[tuple[bool, TraceMask], int] = {}
     # There are far more sequences with pairs or choices. In one list, they would leave no room for the others.
-    plain: list[Steps] = []
-    compound: list[Steps] = []
+    plain: list[StepSequence] = []
+    compound: list[StepSequence] = []
     for sequence, accepts in sorted(extensions.items(), key=sort_key):
         is_plain = all(step.atoms == 1 for step in sequence)
         alike[is_plain, accepts] = alike.get((is_plain, accepts), 0) + 1
@@ -212,6 +212,6 @@ def _beam(extensions: Mapping[Steps, Verdicts], bits: Bits) -> list[Steps]:
     return plain + compound
 
 
-def _clause(sequence: Steps, accepts: Verdicts, bits: Bits) -> MinedClause:
+def _clause(sequence: StepSequence, accepts: TraceMask, bits: Bits) -> MinedClause:
     text = "reach " + " then ".join(step.text for step in sequence)
     return template_clause("reach", text, sum(step.atoms for step in sequence), accepts, bits.all_traces)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Final
 
-from tltlc.tools.mine.bits import Bits, Verdicts, count
+from tltlc.tools.mine.bits import Bits, TraceMask, count
 from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.witness.blocks import atom_operand
 
@@ -90,7 +90,7 @@ def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedC
     """
     a_samples, b_samples = bits.holds[first], bits.holds[second]
 
-    def answered(steps: int) -> Verdicts:
+    def answered(steps: int) -> TraceMask:
         return bits.traces_without(a_samples & ~bits.within(b_samples, steps))
 
     def is_enough(steps: int) -> bool:

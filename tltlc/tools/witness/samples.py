@@ -14,13 +14,11 @@ from tltlc.core.record import record
 from tltlc.monitor import MonitorError
 from tltlc.monitor.samples import Samples, check_exclusive, number_text
 from tltlc.resolve.spec import Signal
-from tltlc.tools.witness.search import AtomGroup, Point, atom_groups
+from tltlc.tools.witness.search import AtomGroup, SignalPoint, atom_groups
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
-
-Sample = dict[str, float]
-"""The values of all signals of an automaton by name, in SI units; 0 or 1 for a bool."""
+    from tltlc.monitor.traces import Sample
 
 
 @record
@@ -139,7 +137,7 @@ def _cell(signal: Signal, value: float) -> str:
     return number_text(value)
 
 
-def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> Point | UnsatisfiedLiterals:
+def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> SignalPoint | UnsatisfiedLiterals:
     """Return values of a group's signals at which its atoms have the truth values in ``polarity``.
 
     If possible, atoms that are not in ``polarity`` do not hold. If no such values are found, return

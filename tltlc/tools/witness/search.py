@@ -22,9 +22,9 @@ from tltlc.resolve.range_proof.region import Variable as AnyVariable
 from tltlc.resolve.range_proof.witness import points
 from tltlc.resolve.spec import Signal
 
-Point = Mapping[str, float]
+SignalPoint = Mapping[str, float]
 
-Candidate = tuple[Point, tuple[float, ...]]
+Candidate = tuple[SignalPoint, tuple[float, ...]]
 """A point, and the values of the atoms at this point."""
 
 _CLEAR = 0.05
@@ -58,9 +58,9 @@ class AtomGroup:
         self._functions = compile_expressions(self._expressions, self._names, self._params)
         self._goals: dict[tuple[int, bool], list[tuple[Callable[[Sequence[float]], float], bool]]] = {}
         self._exclusive = [[self._place[atom] for atom in group if atom in self._place] for group in fspa.exclusive]
-        self._cache: dict[Implicant, Point | None] = {}
+        self._cache: dict[Implicant, SignalPoint | None] = {}
 
-    def find(self, literals: Implicant) -> Point | None:
+    def find(self, literals: Implicant) -> SignalPoint | None:
         """Return a point at which the literals are true, or None if none is found.
 
         No two exclusive atoms of the group hold at the point.
@@ -69,7 +69,7 @@ class AtomGroup:
             self._cache[literals] = self._find(literals)
         return self._cache[literals]
 
-    def _find(self, literals: Implicant) -> Point | None:
+    def _find(self, literals: Implicant) -> SignalPoint | None:
         """Return a point at which the literals are true, or None if none is found.
 
         Try the points in ``_candidates`` first, then hill climbing from the best of them, and then
@@ -83,13 +83,13 @@ class AtomGroup:
         summit = next((end for _, start in starts if (end := self._climb(start, literals))), None)
         return summit or self._best(self._far_candidates, literals)
 
-    def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
+    def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> SignalPoint | None:
         """Return the first candidate with a margin of at least ``_CLEAR``.
 
         Without one, return the candidate with the largest margin, or None if the literals are true
         at no candidate. The margin is that of :meth:`_margin`.
         """
-        inside: list[tuple[float, Point]] = []
+        inside: list[tuple[float, SignalPoint]] = []
         for point, values in candidates:
             if self._are_true(values, literals):
                 margin = self._margin(values, literals)
@@ -100,7 +100,7 @@ class AtomGroup:
 
     # --- truth ------------------------------------------------------------------------------------
 
-    def _values(self, point: Point) -> tuple[float, ...] | None:
+    def _values(self, point: SignalPoint) -> tuple[float, ...] | None:
         """Return the values of the atoms, or None if one of them has no value."""
         inputs = [point[name] for name in self._names]
         try:
@@ -130,14 +130,14 @@ class AtomGroup:
         return [(point, values) for point in self._far_points() if (values := self._values(point))]
 
     @cached_property
-    def _simple(self) -> list[Point]:
+    def _simple(self) -> list[SignalPoint]:
         """The points to try first, without regard to literals; empty if there are no signals."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
         return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
 
-    def _points(self) -> Iterator[Point]:
+    def _points(self) -> Iterator[SignalPoint]:
         """Yield the points of :attr:`_simple`, then points at and between the borders of atoms."""
         yield from self._simple
         for name in self._names:
@@ -145,7 +145,7 @@ class AtomGroup:
                 ladder = sorted({point[name] for point in self._simple})
                 yield from self._between_borders(self._simple[0], name, ladder)
 
-    def _far_points(self) -> Iterator[Point]:
+    def _far_points(self) -> Iterator[SignalPoint]:
         """Yield points with very large values of one signal that has no finite range."""
         for name in self._names:
             low, high = self._ranges[name]
@@ -156,7 +156,7 @@ class AtomGroup:
             ladder = sorted({*far, *(point[name] for point in self._simple)})
             yield from self._between_borders(self._simple[0], name, ladder)
 
-    def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
+    def _between_borders(self, start: SignalPoint, name: str, ladder: Sequence[float]) -> Iterator[SignalPoint]:
         """Yield points on both sides of each border of an atom, varying the signal ``name``.
 
         Then yield a point in the middle between each two borders. Borders are searched between
@@ -183,14 +183,14 @@ class AtomGroup:
                 high = middle
         return low, high
 
-    def _sign(self, point: Point, index: int) -> bool | None:
+    def _sign(self, point: SignalPoint, index: int) -> bool | None:
         try:
             value = self._functions[index]([point[name] for name in self._names])
         except _UNDEFINED:
             return None
         return value > 0.0
 
-    def _climb(self, start: Point, literals: Implicant) -> Point | None:
+    def _climb(self, start: SignalPoint, literals: Implicant) -> SignalPoint | None:
         """Return a point at which the literals are true, or None.
 
         The climb changes one signal at a time. The next change of that signal is larger if this one
@@ -213,7 +213,7 @@ class AtomGroup:
                         best, deficit, steps[name] = point, point_deficit, step * 2
         return None
 
-    def _deficit(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
+    def _deficit(self, point: SignalPoint, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
         """Return by how much, in total, the functions in ``goals`` miss their signs at a point."""
         inputs = [point[name] for name in self._names]
         try:

@@ -8,13 +8,13 @@ from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
 from tltlc.automaton.work import DEFAULT_WORK
 from tltlc.core.record import record, replace
 from tltlc.logic.formula import TRUE
-from tltlc.tools.witness.samples import Sample
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
+    from tltlc.monitor.traces import Sample
 
-Kind = Literal["accepting", "rejecting", "cover"]
+WitnessKind = Literal["accepting", "rejecting", "cover"]
 
 
 @record
@@ -26,7 +26,7 @@ class Witness:
     numbers, from 1, of the steps that take an edge for the first time in the cover.
     """
 
-    kind: Kind
+    kind: WitnessKind
     moves: tuple[SampledEdge, ...]
     cycle: int | None = None
     new_steps: tuple[int, ...] = ()
@@ -76,7 +76,7 @@ def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
     return violating or _shortest_to(moves, "rejecting", [not state.accepting for state in fspa.states])
 
 
-def _shortest_to(moves: Moves, kind: Kind, is_target: list[bool]) -> Witness | None:
+def _shortest_to(moves: Moves, kind: WitnessKind, is_target: list[bool]) -> Witness | None:
     """Return a shortest trace to a state for which ``is_target`` is true.
 
     None if no path with samples leads to such a state.

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
-from tltlc.tools.witness.samples import Sample, SampleFinder, UnsatisfiedLiterals
+from tltlc.tools.witness.samples import SampleFinder, UnsatisfiedLiterals
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
+    from tltlc.monitor.traces import Sample
 
 _MOST_PRIMES = 500
 """The most prime implicants of a guard that are tried."""

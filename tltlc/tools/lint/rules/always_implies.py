@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, GroupExpr, Unary
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import ScopedExpression, View
+from tltlc.tools.lint.file_view import FileView, ScopedExpression
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `implies` or `iff` whose left side begins with a bare `always`.
 
     An example is `G a -> F b`: the operand of `always` has no brackets. Only `require` clauses are

@@ -10,13 +10,13 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.text.phrases import phrase
 from tltlc.tools.lint.atom_relations import is_impossible, relations
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _MOST_LABELS: Final = 4
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec that is unsatisfiable because of the ranges of its signals.
 
     The compiler treats atoms as independent, so it does not report such a spec.

@@ -11,11 +11,11 @@ from tltlc.grammar.tree import Expr, LetDecl, NumberExpr, Unary
 from tltlc.grammar.walk import parts
 from tltlc.resolve.constants import samples
 from tltlc.resolve.values import Env
-from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each chain of `next` that takes two or more steps, in specs and lets.
 
     A `next after N steps` counts as N steps.
@@ -52,7 +52,7 @@ def _steps(tree: Unary) -> float:
     return tree.bound.high.value if tree.bound.high.unit in (None, "step", "steps") else 0
 
 
-def _finding(view: View, chain: Unary, steps: float, awaited: Expr) -> RuleFinding:
+def _finding(view: FileView, chain: Unary, steps: float, awaited: Expr) -> RuleFinding:
     text = operand_text(ScopedExpression(awaited, view.env))
     help_ = f"you seldom mean exactly {steps:g} steps later: declare a `clock`, and give the time in seconds"
     if view.env.context.clock_s:

@@ -11,13 +11,13 @@ from tltlc.diagnostics.diagnostic import Fix
 from tltlc.grammar.tree import Clause
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import removal_span
 from tltlc.tools.lint.removal_advice import changes_judge
 from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each clause, or conjunct of a clause, that repeats an earlier one.
 
     Both must have the same formula. Formulas that are merely equivalent are reported as TLT0413.
@@ -41,7 +41,7 @@ def check(view: View) -> Iterator[RuleFinding]:
                 yield RuleFinding(_TITLE, labels, "remove one of them", _fix(clauses.get(part.span), view))
 
 
-def _fix(clause: Clause | None, view: View) -> Fix | None:
+def _fix(clause: Clause | None, view: FileView) -> Fix | None:
     """Return the fix that removes the clause, or None if ``clause`` is None."""
     if clause is None:
         return None

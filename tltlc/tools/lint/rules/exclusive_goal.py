@@ -10,12 +10,12 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct, Spec
-from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each goal that asks for two atoms of an ``exclusive`` group at one step."""
     for spec in view.specs:
         for goal in goals(spec) if spec.spec.exclusive else ():

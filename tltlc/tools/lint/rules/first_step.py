@@ -9,11 +9,11 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import GroupExpr, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.tools.lint import goals
-from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `require` clause that constrains only the first step.
 
     There is no such finding for a spec of the form `spec NAME = FORMULA`.

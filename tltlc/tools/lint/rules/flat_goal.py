@@ -7,11 +7,11 @@ from collections.abc import Iterator, Set
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.resolve.spec import Atom
 from tltlc.tools.lint.atom_signs import can_be, is_always
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each atom whose value is never negative, if an edge to the goal needs it.
 
     Yield none if the edge also needs an atom whose value can be negative.

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr
 from tltlc.grammar.walk import operands
-from tltlc.tools.lint.file_view import View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `until` in a `reach` or `avoid` clause.
 
     `a until b` holds at every step where b holds, so the clause means the same with b alone. In a

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import Formula, not_
 from tltlc.resolve.spec import Conjunct, Spec
 from tltlc.tools.lint.atom_relations import is_impossible, relations
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.removal_advice import removal_help
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 from tltlc.tools.lint.rules import recurrence
@@ -19,7 +19,7 @@ _MOST_PARTS = 24
 """Specs with more clauses are not checked, because each check builds automata from all clauses."""
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each clause that other clauses of its spec imply.
 
     The first label is on the implied clause. The next labels are on the clauses that imply it. A

@@ -13,14 +13,14 @@ from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic.formula import FALSE, and_, weak_next
 from tltlc.resolve.spec import Conjunct
-from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _SUGGESTION = "let a signal count the time, and ask for enough time, as in `reach time_there >= 3 s`"
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each bounded `always` in a clause's last goal, if one step can meet it.
 
     Only specs whose episodes end with success as soon as the spec is met are checked.

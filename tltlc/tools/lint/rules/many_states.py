@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.walk import parts
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _FEW: Final = 100
@@ -20,7 +20,7 @@ The parts of a spec are its operators, names and numbers.
 _MOST_LABELS: Final = 4
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec whose automaton has many more states than the spec has parts."""
     for spec in view.specs:
         part_count = sum(1 for formula in spec.formulas() for _ in parts(formula.tree))

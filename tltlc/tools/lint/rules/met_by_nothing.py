@@ -11,12 +11,12 @@ from tltlc.grammar.tree import BinaryExpr
 from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each goal that can be met while none of the atoms that it asks for holds.
 
     Only traces that satisfy the other clauses count.

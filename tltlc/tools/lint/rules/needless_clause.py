@@ -10,12 +10,12 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.logic.formula import not_
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.removal_advice import removal_help
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each clause that every trace satisfies.
 
     Yield none if every trace satisfies the whole spec: the compiler reports that.

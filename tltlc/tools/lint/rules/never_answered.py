@@ -11,11 +11,11 @@ from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, operand_text
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each required implication whose two sides never hold at the same step.
 
     Each side must be able to hold by itself. There is no finding for a clause that no trace

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec without a limit.
 
     There is no finding for a spec of the form `spec NAME = FORMULA`, which cannot have a limit.

@@ -8,7 +8,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import BinaryExpr, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
-from tltlc.tools.lint.file_view import ScopedExpression, View, operand_text, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.goals import consists_of_implications
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -22,7 +22,7 @@ The second value is False if the operand is the negated formula.
 """
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `G F p` and `F G p` of a spec over finite traces.
 
     A `keep` or `avoid` clause counts as an outer `G`, and a `reach` clause as an outer `F`. Lets
@@ -44,7 +44,7 @@ def check(view: View) -> Iterator[RuleFinding]:
                 yield from _findings_inside(declaration.body, view, None)
 
 
-def _findings_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[RuleFinding]:
+def _findings_inside(tree: Expr, view: FileView, clause: Expr | None) -> Iterator[RuleFinding]:
     """Yield findings for the operands of each unbounded `always` and `eventually` in an expression.
 
     ``clause`` is ``tree`` without brackets if it is a whole clause, which another clause can
@@ -55,7 +55,9 @@ def _findings_inside(tree: Expr, view: View, clause: Expr | None) -> Iterator[Ru
             yield from _findings(part.span.start, part.operand, part.op, True, view, is_clause=part is clause)
 
 
-def _findings(start: int, tree: Expr, outer: str, holds: bool, view: View, *, is_clause: bool) -> Iterator[RuleFinding]:
+def _findings(
+    start: int, tree: Expr, outer: str, holds: bool, view: FileView, *, is_clause: bool
+) -> Iterator[RuleFinding]:
     """Yield findings for the parts of an operand that constrain only the last step.
 
     ``tree`` is the operand, and ``outer``, `F` or `G`, the operator in front of it. If ``holds`` is

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.tools.lint.file_view import SpecView, View
+from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _WORK: Final = 200_000
@@ -16,7 +16,7 @@ Specs that need more count as different, because a note must not take longer tha
 """
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec that accepts the same traces as an earlier spec.
 
     Both must be judged the same way. Specs that every trace or no trace satisfies are left out,

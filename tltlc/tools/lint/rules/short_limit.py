@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec whose goal needs more steps than its limit allows."""
     for spec in view.specs:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance

@@ -11,7 +11,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, TltlError
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Spec
-from tltlc.tools.lint.file_view import ScopedExpression, SpecView, View, without_brackets
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, without_brackets
 from tltlc.tools.lint.goals import conjuncts, goals
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -23,7 +23,7 @@ A note must not take longer than the compilation.
 """
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each group of goals over one predicate that one step can meet.
 
     An example is ``near(s1)`` and ``near(s2)``. There is a finding only if the path to the goal gets

@@ -7,15 +7,15 @@ from typing import Final, Union
 
 from tltlc.core.source import Span
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
 from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 _KINDS: Final = {SignalDecl: "signal", ParamDecl: "param", PredicateDecl: "predicate", LetDecl: "let"}
-NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
+_CheckedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each signal, param, entity, predicate and let that is not used.
 
     A use is a mention of the name in this file or in a file that imports it.
@@ -33,7 +33,7 @@ def check(view: View) -> Iterator[RuleFinding]:
             yield _finding(_KINDS[type(declaration)], declaration.name, declaration.name_span, (removed,), view)
 
 
-def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -> Iterator[RuleFinding]:
+def _entities(declaration: EntityDecl, used_names: Container[str], view: FileView) -> Iterator[RuleFinding]:
     spans = [name.span for name in declaration.names]
     unused = [index for index, name in enumerate(declaration.names) if name.name not in used_names]
     for index in unused:
@@ -44,12 +44,12 @@ def _entities(declaration: EntityDecl, used_names: Container[str], view: View) -
         yield _finding("entity", declaration.names[index].name, spans[index], removed, view)
 
 
-def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: View) -> RuleFinding:
+def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: FileView) -> RuleFinding:
     title = f"nothing uses the {kind} `{name}`"
     return RuleFinding(title, (view.label(place),), "remove it, or use it", removal_fix("Remove it", removed))
 
 
-def _is_refined(declaration: NamedDeclaration, view: View) -> bool:
+def _is_refined(declaration: _CheckedDeclaration, view: FileView) -> bool:
     """Whether an imported module declares the same signal or param.
 
     Then the declaration narrows the range of that signal or param, which is a use.

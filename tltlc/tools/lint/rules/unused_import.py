@@ -8,12 +8,12 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, SignalDecl
 from tltlc.resolve.imports import LoadedModule
-from tltlc.tools.lint.file_view import View
+from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
 from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 
-def check(view: View) -> Iterator[RuleFinding]:
+def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each unused import, and for each unused name in an import list."""
     if not view.specs:
         return
@@ -33,7 +33,7 @@ def check(view: View) -> Iterator[RuleFinding]:
             yield from _unused_names(declaration, used_names, view)
 
 
-def _unused_names(declaration: Import, used_names: Container[str], view: View) -> Iterator[RuleFinding]:
+def _unused_names(declaration: Import, used_names: Container[str], view: FileView) -> Iterator[RuleFinding]:
     names = declaration.names or ()
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used_names:
@@ -43,7 +43,7 @@ def _unused_names(declaration: Import, used_names: Container[str], view: View) -
             yield RuleFinding(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
-def _used_by_target(used_names: Container[str], view: View) -> dict[str, list[str]]:
+def _used_by_target(used_names: Container[str], view: FileView) -> dict[str, list[str]]:
     """Map the target of each import to the used names that come from it, sorted.
 
     If several imports provide a name, it counts for the first of them.
