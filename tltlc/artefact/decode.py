@@ -55,7 +55,7 @@ def _parse(source: SourceFile) -> object:
     try:
         return loads(source.text, ARTEFACT, _refuse)
     except json.JSONDecodeError as error:
-        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
+        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _label_message(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None
     except _NonFiniteNumberError as error:
         raise _not_finite(source.name, str(error)) from None
@@ -77,8 +77,8 @@ def _not_finite(name: str, constant: str) -> TltlError:
     )
 
 
-def _remark(message: str) -> str:
-    """Return a message of Python's JSON parser as a remark in a diagnostic, e.g. "expecting value"."""
+def _label_message(message: str) -> str:
+    """Return a message of Python's JSON parser as the message of a label, e.g. "expecting value"."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 

@@ -232,13 +232,13 @@ class _Source:
         """
         lines: list[str] = []
         for name, type_, declared in fields:
-            remarks = self._printer.comment(snippets.field_comment(name, declared))
+            comments = self._printer.comment(snippets.field_comment(name, declared))
             field = f"{type_} {name};"
             # A short comment goes on the line of its field.
-            if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
-                lines.append(f"{field}    {remarks[0]}")
+            if len(comments) == 1 and len(field) + len(comments[0]) < 100:
+                lines.append(f"{field}    {comments[0]}")
             else:
-                lines += [*remarks, field]
+                lines += [*comments, field]
         return _C.block(lines or ["bool none;"])
 
     def _param_check(self, index: int) -> list[str]:
@@ -371,7 +371,7 @@ class _Source:
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
         statements = self._program.values[index]
-        lines = self._printer.comment(self._program.remarks[index])
+        lines = self._printer.comment(self._program.atom_comments[index])
         lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
         if functions_called(statements) & FAILING:
             lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", index), "}"]

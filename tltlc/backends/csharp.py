@@ -217,7 +217,10 @@ class _Source:
     def _value(self, index: int) -> tuple[Statement, ...]:
         """Return the statements that declare an atom's variable and compute its value."""
         program_ = self._program
-        return (CommentLine(program_.remarks[index]), *with_declaration(program_.atoms[index], program_.values[index]))
+        return (
+            CommentLine(program_.atom_comments[index]),
+            *with_declaration(program_.atoms[index], program_.values[index]),
+        )
 
     def _check(self) -> list[str]:
         """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
@@ -290,11 +293,11 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a class, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        remarks = [_in_xml(line) for line in comment_lines(snippets.field_comment(name, declared))]
-        if len(remarks) == 1:
-            lines.append(f"/// <summary>{remarks[0]}</summary>")
+        comments = [_in_xml(line) for line in comment_lines(snippets.field_comment(name, declared))]
+        if len(comments) == 1:
+            lines.append(f"/// <summary>{comments[0]}</summary>")
         else:
-            lines += ["/// <summary>", *(f"/// {line}" for line in remarks), "/// </summary>"]
+            lines += ["/// <summary>", *(f"/// {line}" for line in comments), "/// </summary>"]
         lines += [f"public {type_} {name};", ""]
     # An empty line follows every field, also the last one.
     return _CSharp.block(lines, 3)

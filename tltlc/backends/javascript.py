@@ -226,7 +226,7 @@ class _Source:
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
-        lines = self._printer.comment(program_.remarks[index])
+        lines = self._printer.comment(program_.atom_comments[index])
         if functions_called(statements) & FAILING:
             lines.append(f"this.#atom = {index};")
         return [

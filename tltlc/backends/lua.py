@@ -342,7 +342,7 @@ class _Source:
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
         program_ = self._program
-        lines = self._printer.comment(program_.remarks[index])
+        lines = self._printer.comment(program_.atom_comments[index])
         return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))]
 
     def _check(self) -> list[str]:

@@ -263,7 +263,7 @@ class _Source:
         fails = False
         readers = (None, *range(len(program_.states)))
         for index in (atom for reader in readers for atom in program_.computed_in(reader)):
-            lines += self._printer.comment(program_.remarks[index])
+            lines += self._printer.comment(program_.atom_comments[index])
             if functions_called(program_.values[index]) & FAILING:
                 lines.append(f"failing = {index}")
                 fails = True

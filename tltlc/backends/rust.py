@@ -231,7 +231,7 @@ class _Source:
         program_ = self._program
         self._printer.atom = index
         statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
-        return self._printer.lines((CommentLine(program_.remarks[index]), *statements), depth)
+        return self._printer.lines((CommentLine(program_.atom_comments[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
         """Return the code for the atoms that only the given state needs, and for the bool signals that they read."""

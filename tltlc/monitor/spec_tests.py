@@ -110,5 +110,5 @@ def _remaining_text(step: Step, fspa: Fspa) -> str | None:
     return None if step.label in ("true", "false") else f"what remains: {label_text(fspa, step.state)}"
 
 
-def _failure(expect: Expect, remark: str, help: str | None = None) -> Diagnostic:  # noqa: A002
-    return Diagnostic("TLT0640", "this expectation does not hold", (Label(expect.source, expect.span, remark),), help)
+def _failure(expect: Expect, message: str, help: str | None = None) -> Diagnostic:  # noqa: A002
+    return Diagnostic("TLT0640", "this expectation does not hold", (Label(expect.source, expect.span, message),), help)

@@ -138,8 +138,8 @@ def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines
     for signal, column in columns:
         value = cell_number(row[column])
         if value is None or not _is_allowed(signal, value):
-            remark = _problem(signal, value) if row[column] else f"`{signal.name}` has no value"
-            raise lines.error(remark, _cell_span(lines.text, column), _advice(signal))
+            message = _problem(signal, value) if row[column] else f"`{signal.name}` has no value"
+            raise lines.error(message, _cell_span(lines.text, column), _advice(signal))
         sample[signal.name] = value
     return sample
 

@@ -40,7 +40,7 @@ class Program:
       computed only there. It is -1 if no state needs the atom, and None if every step computes it.
     - ``read_in`` has, for each signal, the number of the only state whose atoms read it. It is -1 if
       no atom reads the signal, and None if every step reads it.
-    - ``remarks`` has, for each atom, the text of a comment: the name of the atom. The first atom of
+    - ``atom_comments`` has, for each atom, the text of a comment: the name of the atom. The first atom of
       a predicate also has the documentation of the predicate.
     - ``exclusive`` has a pair for each group of at least two exclusive atoms: the index of the
       group in the automaton, and the indices of its atoms.
@@ -59,7 +59,7 @@ class Program:
     always_in_range: tuple[bool, ...]
     only_in: tuple[int | None, ...]
     read_in: tuple[int | None, ...]
-    remarks: tuple[str, ...]
+    atom_comments: tuple[str, ...]
     exclusive: tuple[tuple[int, tuple[int, ...]], ...]
     states: tuple[tuple[Statement, ...], ...]
     reward_statements: tuple[Statement, ...]
@@ -148,7 +148,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         always_in_range=in_range,
         only_in=only_in,
         read_in=_read_in(tuple(signals.values()), only_in, needed),
-        remarks=_remarks(fspa, only_in),
+        atom_comments=_atom_comments(fspa, only_in),
         exclusive=exclusive,
         states=transitions,
         reward_statements=reward_step.statements(fspa),
@@ -189,22 +189,22 @@ def _read_in(
     return tuple((*readers, -1)[0] if len(readers) < 2 else None for readers in places.values())
 
 
-def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """Return the text of the comment of each atom (:attr:`Program.remarks`).
+def _atom_comments(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
+    """Return the text of the comment of each atom (:attr:`Program.atom_comments`).
 
-    The documentation of a predicate is in the remark of only one of its atoms, the first in the
+    The documentation of a predicate is in the comment of only one of its atoms, the first in the
     generated code. There, the atoms that every step computes come before those of single states.
     """
-    remarks = [atom.name for atom in fspa.atoms]
+    atom_comments = [atom.name for atom in fspa.atoms]
     explained = {""}
     eager = [index for index, only in enumerate(only_in) if only is None]
     lazy = [index for state in fspa.states for index, only in enumerate(only_in) if only == state.id]
     for index in (*eager, *lazy):
         doc = fspa.atoms[index].doc
         if doc not in explained:
-            remarks[index] += f": {doc}"
+            atom_comments[index] += f": {doc}"
             explained.add(doc)
-    return tuple(remarks)
+    return tuple(atom_comments)
 
 
 def _range(signal: Signal) -> Range:

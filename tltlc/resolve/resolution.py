@@ -197,18 +197,18 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
             specs[name] = resolved
             continue
         title = f"the specs `{earlier.name}` and `{name}` would have the same file names"
-        remarks = ("differs only in capital letters", "the other spec")
+        messages = ("differs only in capital letters", "the other spec")
         if earlier.name == name:
             title = f"the spec `{name}` is declared twice"
-            remarks = ("declared again here", "first declared here")
+            messages = ("declared again here", "first declared here")
         error = problem(
             "TLT0202",
             title,
             scope.source,
             declaration.name_span,
-            remarks[0],
+            messages[0],
             advice="rename one of the two",
-            related=(Label(scope.source, earlier.name_span, remarks[1]),),
+            related=(Label(scope.source, earlier.name_span, messages[1]),),
         )
         env.context.log.add(error.diagnostic)
     return specs

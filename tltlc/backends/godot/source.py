@@ -167,13 +167,13 @@ class _Source:
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. There, `[` begins a tag, except before a number.
             description = snippets.field_comment(name, declared, lambda text: text.replace("[", "[lb]"))
-            remarks = [f"#{line}" for line in self._printer.comment(description)]
+            comments = [f"#{line}" for line in self._printer.comment(description)]
             field = f"var {name}: {type_} = {value}"
             # A short comment goes on the line of its field.
-            if len(remarks) == 1 and len(field) + len(remarks[0]) < 90:
-                lines.append(f"{field}  {remarks[0]}")
+            if len(comments) == 1 and len(field) + len(comments[0]) < 90:
+                lines.append(f"{field}  {comments[0]}")
             else:
-                lines += [*remarks, field]
+                lines += [*comments, field]
         return Gd.block(lines)
 
     def _param_check(self, index: int) -> list[str]:
@@ -238,7 +238,7 @@ class _Source:
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
-        lines = self._printer.comment(program_.remarks[index])
+        lines = self._printer.comment(program_.atom_comments[index])
         lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
         if functions_called(statements) & FAILING:
             lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {index})"]

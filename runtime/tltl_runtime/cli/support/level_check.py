@@ -64,9 +64,9 @@ class _LevelCheck:
 
     def __call__(self, path: str, variant: str) -> tuple[StealthLevel, Reach]:
         """Check one variant of a level and report the messages; return the level and what can be reached in it."""
-        level, remarks = read_level(path, variant)
+        level, level_warnings = read_level(path, variant)
         senses, reach = Observer(level, self._sensors), compute_reach(level)
-        warnings = [*remarks, *check_height(level, reach)]
+        warnings = [*level_warnings, *check_height(level, reach)]
         self._add(warnings)
         inputs = self._inputs or self._compile_own_spec(level)
         has_several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
