@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import pytest
@@ -10,10 +11,11 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.fixtures import cover_and_hide
 from tests.fuzzing import times
 from tltlc import compile_text
-from tltlc.automaton.fspa import Edge, Fspa, Guard
+from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Notation
+from tltlc.automaton.text import label_range_text, label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, fold_runs, text_range, whole_drawing
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, EdgeLabel, distance_range, fold_runs, whole_drawing
 from tltlc.core.record import replace
 from tltlc.logic.formula import atom
 
@@ -195,10 +197,25 @@ def test_an_automaton_without_runs_is_drawn_whole() -> None:
     assert graph(fspa, Options(), fold_runs(fspa)) == graph(fspa, Options())
 
 
-def test_labels_that_differ_in_numbers_become_ranges() -> None:
-    assert text_range("F[0,39] p", "F[0,2] p") == "F[0,39…2] p"
-    assert text_range("p2", "p2") == "p2"
-    assert text_range("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"
-    assert text_range("1", "12") == "1…12"
-    assert text_range("have p after 1 step", "have p after 1 step") == "have p after 1 step"
-    assert text_range("reach p within 9 steps", "reach p within 1 step") == "reach p within 9…1 steps"
+@times(60)
+@given(counting() | endless(), st.sampled_from(NOTATIONS))
+def test_the_label_of_a_run_is_that_of_its_ends_with_ranges_of_counts(fspa: Fspa, notation: Notation) -> None:
+    for run in fold_runs(fspa).folded.values():
+        first, last = (label_text(fspa, state.id, notation) for state in (run[0], run[-1]))
+        assert label_range_text(fspa, run[0].id, run[-1].id, notation) == with_ranges(first, last)
+
+
+def with_ranges(first: str, last: str) -> str:
+    """Return two texts as one: their numbers as ranges if they differ in nothing else, or both with an ellipsis."""
+    for texts in ((first, last), [re.sub(r"\b1 step\b", "1 steps", text) for text in (first, last)]):
+        first_parts, last_parts = (re.split(r"(\d+)", text) for text in texts)
+        if first_parts[::2] == last_parts[::2]:
+            return "".join(a if a == b else f"{a}…{b}" for a, b in zip(first_parts, last_parts, strict=True))
+    return f"{first} … {last}"
+
+
+def test_distances_of_a_run_become_a_range() -> None:
+    assert distance_range(12, 1) == "12…1"
+    assert distance_range(2, 2) == "2"
+    assert distance_range(None, None) == "∞"
+    assert distance_range(None, None, none="-") == "-"

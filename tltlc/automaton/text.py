@@ -7,6 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
 from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.text.counts import NUMBERS, CountPrinter, range_text
 from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, words_text
 
 _LONGEST_IN_ENGLISH: Final = 2_000
@@ -37,6 +38,24 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
     return _text(label, notation, endless=endless)
 
 
+def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "english") -> str:
+    """Return one text for the labels of two states: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+
+    If the labels differ in more than counts of steps, return both with an ellipsis between them.
+    ``first`` and ``last`` are the ids of the states.
+    """
+    texts = label_text(fspa, first, notation), label_text(fspa, last, notation)
+    if texts[0] == texts[1]:
+        return texts[0]
+    labels = fspa.states[first].label, fspa.states[last].label
+    if isinstance(labels[0], Formula) and isinstance(labels[1], Formula):
+        endless = fspa.semantics == "infinite"
+        text = range_text(*labels, lambda formula, counts: _write(formula, notation, counts, endless=endless))
+        if text is not None:
+            return text
+    return " … ".join(texts)
+
+
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
     """Return the short formula of a guard in a notation.
 
@@ -62,15 +81,18 @@ def _text(formula: Formula | Text, notation: Notation, *, endless: bool) -> str:
     """Return a formula in a notation. The texts are cached: a game shows the label of its state in each frame."""
     if isinstance(formula, Text):
         return {"ascii": formula.ascii, "unicode": formula.unicode, "english": formula.english}[notation]
+    return _write(formula, notation, NUMBERS, endless=endless)
+
+
+def _write(formula: Formula, notation: Notation, counts: CountPrinter, *, endless: bool) -> str:
     if notation == "unicode":
-        return unicode_text(formula)
-    plain = ascii_text(formula)
+        return unicode_text(formula, counts)
     if notation == "ascii":
-        return plain
-    if len(plain) > _LONGEST_IN_ENGLISH:
-        return f"Satisfy {plain}."
+        return ascii_text(formula, counts)
+    if len(ascii_text(formula)) > _LONGEST_IN_ENGLISH:
+        return f"Satisfy {ascii_text(formula, counts)}."
     if endless and not {TRUE, FALSE}.isdisjoint(formula.walk()):
         from tltlc.automaton.infinite.readback import without_constants
 
         formula = without_constants(formula)
-    return english_text(formula, endless=endless)
+    return english_text(formula, endless=endless, counts=counts)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from tltlc.automaton.fspa import Fspa, State, Verdict
-from tltlc.automaton.text import label_text
+from tltlc.automaton.text import label_range_text
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.folding import Drawing, text_range, whole_drawing
+from tltlc.backends.drawing.folding import Drawing, distance_range, whole_drawing
 from tltlc.backends.drawing.html_like import BACKED, LEFT, escape_html, literal_text, table
 from tltlc.backends.drawing.picture_content import distance_note, notes
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
@@ -104,7 +104,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
     for state in drawing.states:
         run = drawing.folded.get(state.id, (state,))
-        text = text_range(*(label_text(fspa, end.id, options.notation) for end in (run[0], run[-1])))
+        text = label_range_text(fspa, run[0].id, run[-1].id, options.notation)
         _draw_state(drawn, run, text, detail != "sketch")
     drawn.edge("start", "0")
     for (source, target), guards in guards_by_arrow(drawing.edges, options.notation).items():
@@ -135,7 +135,7 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
     """
     state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
-    distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
+    distance = distance_range(state.distance, last.distance)
     name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
     body = "<BR/>".join(map(escape_html, wrap_text(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
     style = {"peripheries": "2"} if state.accepting else {}

@@ -10,9 +10,9 @@ import re
 from collections.abc import Sequence
 
 from tltlc.automaton.fspa import Fspa, State
-from tltlc.automaton.text import label_text
+from tltlc.automaton.text import label_range_text
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.folding import text_range
+from tltlc.backends.drawing.folding import distance_range
 from tltlc.backends.drawing.picture_content import distance_note, folded_drawing, notes
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 
@@ -62,11 +62,11 @@ def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
 
     ``run`` has this state, or all states that are folded into it.
     """
-    ends = run[0], run[-1]
-    distance = text_range(*("∞" if state.distance is None else str(state.distance) for state in ends))
+    first, last = run[0], run[-1]
+    label = label_range_text(fspa, first.id, last.id, options.notation)
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
-    texts = [*heading, text_range(*(label_text(fspa, state.id, options.notation) for state in ends)), f"[{distance}]"]
-    return f'    state "{_lines(texts)}" as s{run[0].id}'
+    texts = [*heading, label, f"[{distance_range(first.distance, last.distance)}]"]
+    return f'    state "{_lines(texts)}" as s{first.id}'
 
 
 def _lines(texts: Sequence[str]) -> str:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from tltlc.automaton.fspa import Fspa, Guard, Mark, State
 from tltlc.core.record import EMPTY, record, replace
+from tltlc.logic.text.counts import number_range
 
 LEAST_FOLDED = 3
 """A run is folded if it has at least this many inner states.
 
 The inner states are all except the first and the last one.
 """
-
-_number = re.compile(r"(\d+)")
-_one_step = re.compile(r"\b1 step\b")
 
 
 class EdgeLabel(NamedTuple):
@@ -135,13 +132,10 @@ def _without(left_out: DrawnEdge, edges: list[DrawnEdge]) -> list[tuple[EdgeLabe
     return [(edge.label, edge.target) for edge in edges if edge is not left_out]
 
 
-def text_range(first: str, last: str) -> str:
-    """Return one text for two: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+def distance_range(first: int | None, last: int | None, none: str = "∞") -> str:
+    """Return one text for the distances of the first and the last state of a run: ``12…1``.
 
-    If the texts differ in more than numbers, return both with an ellipsis between them.
+    ``none`` is the text for traps. The states of a run have the same verdict, so all or none of
+    them are traps.
     """
-    for texts in ((first, last), [_one_step.sub("1 steps", text) for text in (first, last)]):
-        first_parts, last_parts = map(_number.split, texts)
-        if first_parts[::2] == last_parts[::2]:
-            return "".join(a if a == b else f"{a}…{b}" for a, b in zip(first_parts, last_parts, strict=True))
-    return f"{first} … {last}"
+    return none if first is None or last is None else number_range(first, last)

@@ -7,14 +7,15 @@ from html import escape
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Notation, State
-from tltlc.automaton.text import label_text
-from tltlc.backends.drawing.folding import Drawing, text_range
+from tltlc.automaton.text import label_range_text, label_text
+from tltlc.backends.drawing.folding import Drawing, distance_range
 from tltlc.backends.drawing.picture_content import folded_drawing, notes
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Point, add_bend, svg_path
 from tltlc.interfaces.playground.layout import Size, StateBox, layout
 from tltlc.interfaces.playground.ordering import Ends
+from tltlc.logic.text.counts import number_range
 
 MOST_STATES: Final = 40
 MOST_EDGES: Final = 120
@@ -109,8 +110,8 @@ class _PictureText:
     def _state(self, state: State) -> str:
         run = self.runs[state.id]
         left, top, right, bottom = self._frame(state.id)
-        number = text_range(str(run[0].id), str(run[-1].id))
-        distance = text_range(*("∞" if end.distance is None else str(end.distance) for end in (run[0], run[-1])))
+        number = number_range(run[0].id, run[-1].id)
+        distance = distance_range(run[0].distance, run[-1].distance)
         classes = f"state {state.verdict}{' accepting' if state.accepting else ''}{' folded' if len(run) > 1 else ''}"
         title = _escape(f"State {number}, {state.verdict}: {label_text(self.fspa, run[0].id)}")
         frame = _rectangle("frame", left, top, right, bottom, 9)
@@ -167,10 +168,8 @@ def _trap(drawing: Drawing) -> int | None:
 
 
 def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[str]:
-    first, last = (label_text(fspa, end.id, notation) for end in (run[0], run[-1]))
-    if len(run) == 1:
-        return _shorten([first], _LABEL)
-    return [f"{len(run)} more like these", *_shorten([text_range(first, last)], _LABEL)]
+    heading = [f"{len(run)} more like these"] if len(run) > 1 else []
+    return [*heading, *_shorten([label_range_text(fspa, run[0].id, run[-1].id, notation)], _LABEL)]
 
 
 def _shorten(texts: Sequence[str], width: int) -> list[str]:

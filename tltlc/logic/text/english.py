@@ -10,6 +10,7 @@ from tltlc.logic.bounded import Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify
+from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.notation import ASCII, write
 from tltlc.logic.text.phrases import bracketed_phrase, imperative, is_literal, is_state, object_phrase, phrase
 
@@ -33,17 +34,18 @@ class _SentenceContext(NamedTuple):
     """What the functions below pass on while they turn one formula into a sentence.
 
     ``depth`` is how many more levels of clauses may nest. ``endless`` says whether the sentence is
-    about traces that never end.
+    about traces that never end. ``counts`` prints the counts of steps.
     """
 
     depth: int
     endless: bool
+    counts: CountPrinter = NUMBERS
 
     def deeper(self) -> _SentenceContext:
-        return _SentenceContext(self.depth - 1, self.endless)
+        return self._replace(depth=self.depth - 1)
 
 
-def english_text(formula: Formula, *, endless: bool = False) -> str:
+def english_text(formula: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> str:
     """Return the formula as one sentence, from a capital letter to a full stop.
 
     Atoms appear by name. ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then
@@ -52,14 +54,14 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
     has a constant elsewhere than in ``X true`` and ``N false`` is simplified first.
 
     ``endless`` says that the sentence is about traces that never end. The formula must then be a
-    constant, or contain no constant.
+    constant, or contain no constant. ``counts`` prints the counts of steps.
     """
     formula = formula if endless else without_constants(formula)
     if formula is TRUE:
         return "Nothing remains to be done."
     if formula is FALSE:
         return "The spec is violated."
-    text, _ = _clause(formula, "now", _SentenceContext(_DEEPEST, endless))
+    text, _ = _clause(formula, "now", _SentenceContext(_DEEPEST, endless, counts))
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -114,7 +116,7 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
     if context.depth == 0:
-        return f"satisfy {write(node, ASCII)}", _SCOPED
+        return f"satisfy {write(node, ASCII, counts=context.counts)}", _SCOPED
     if node.op in ("and", "or"):
         operator = bounded_operator(node)
         if operator is not None:
@@ -316,10 +318,10 @@ def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
     while body.op in ops:
         body, count = body.args[0], count + 1
     if node.op == "X" and body is TRUE:
-        return f"go on for {count} more step{'s' * (count > 1)}", _PLAIN
+        return f"go on for {context.counts.number(count)} more step{'s' * (count > 1)}", _PLAIN
     if node.op == "N" and body is FALSE:
-        return "be at the last step" if count == 1 else f"be at one of the last {count} steps", _PLAIN
-    moment = "at the next step" if count == 1 else f"after {count} steps"
+        return "be at the last step" if count == 1 else f"be at one of the last {context.counts.steps(count)}", _PLAIN
+    moment = "at the next step" if count == 1 else f"after {context.counts.steps(count)}"
     if "X" not in ops:
         moment += ", if there is one" if count == 1 else ", if there are that many"
     if is_state(body):
@@ -331,13 +333,13 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _RankedClau
     """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``."""
     steps, body = operator.steps, operator.body
     if operator.op == "F":
-        within = f"within {steps} step{'s' * (steps > 1)}"
+        within = f"within {context.counts.steps(steps)}"
         if is_state(body):
             return f"reach {object_phrase(body)} {within}", _rank_of_state(body)
         return f"reach {within} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
-        return f"{imperative(body, 'keep', 'avoid')} for {steps + 1} steps", _rank_of_state(body)
-    return f"at each of {steps + 1} steps from here on, {_last_clause(body, context)}", _CLAUSE
+        return f"{imperative(body, 'keep', 'avoid')} for {context.counts.steps(steps + 1)}", _rank_of_state(body)
+    return f"at each of {context.counts.steps(steps + 1)} from here on, {_last_clause(body, context)}", _CLAUSE
 
 
 def _step_noun(node: Formula, context: _SentenceContext) -> str:

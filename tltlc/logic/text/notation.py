@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, Op
+from tltlc.logic.text.counts import NUMBERS, CountPrinter
 
 OPERAND: Final = 6
 """The strength of unary operators, as in ``STRENGTH``.
@@ -33,8 +34,8 @@ class Spelling(NamedTuple):
     ``space_before_bracket`` keeps the space between a prefix and an opening bracket.
     ``brackets_between_infix`` puts brackets around every infix operator inside another infix
     operator, and ``brackets_around_comparisons`` around comparisons that are operands. ``within``
-    and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{last}`` for n and
-    ``{count}`` for the n + 1 samples.
+    and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{}`` for n; in ``during``,
+    ``{}`` is the number n + 1 of samples if ``during_counts_samples``.
     """
 
     prefix: Mapping[Op, str]
@@ -45,6 +46,7 @@ class Spelling(NamedTuple):
     brackets_around_comparisons: bool = True
     within: str = ""
     during: str = ""
+    during_counts_samples: bool = False
 
 
 LETTERS: Final[Mapping[Op, str]] = {"U": " U ", "W": " W ", "R": " R ", "M": " M "}
@@ -54,16 +56,16 @@ ASCII: Final = Spelling(
     {"and": " & ", "or": " | ", "implies": " -> ", "iff": " <-> ", **LETTERS},
     {"true": "true", "false": "false"},
     space_before_bracket=False,
-    within="F[0,{last}] ",
-    during="G[0,{last}] ",
+    within="F[0,{}] ",
+    during="G[0,{}] ",
 )
 UNICODE: Final = Spelling(
     {"not": "¬", "X": "○", "N": "N ", "F": "◇", "G": "□"},
     {"and": " ∧ ", "or": " ∨ ", "implies": " ⇒ ", "iff": " ⇔ ", **LETTERS, "U": " 𝒰 "},
     {"true": "⊤", "false": "⊥"},
     space_before_bracket=False,
-    within="◇[0,{last}] ",
-    during="□[0,{last}] ",
+    within="◇[0,{}] ",
+    during="□[0,{}] ",
 )
 WORDS: Final = Spelling(
     {"not": "not ", "X": "next ", "N": "weak_next ", "F": "eventually ", "G": "always "},
@@ -79,8 +81,9 @@ WORDS: Final = Spelling(
     },
     {"true": "true", "false": "false"},
     space_before_bracket=True,
-    within="eventually within {last} steps ",
-    during="always for {count} steps ",
+    within="eventually within {} steps ",
+    during="always for {} steps ",
+    during_counts_samples=True,
 )
 
 
@@ -88,13 +91,13 @@ _Item = str | tuple[Formula, int]
 """A text; or a formula to be written, with the least strength at which it needs no brackets."""
 
 
-def write(formula: Formula, spelling: Spelling, least: int = 0) -> str:
+def write(formula: Formula, spelling: Spelling, least: int = 0, counts: CountPrinter = NUMBERS) -> str:
     """Return the text of the formula, with only the brackets that it needs.
 
     If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
-    brackets: a number as in :data:`STRENGTH`.
+    brackets: a number as in :data:`STRENGTH`. ``counts`` prints the bounds.
     """
-    return "".join(_pieces(formula, spelling, least))
+    return "".join(_pieces(formula, spelling, least, counts))
 
 
 def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
@@ -104,14 +107,14 @@ def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
     longer than the formula is in memory, since a formula shares equal operands.
     """
     position = 0
-    for piece in _pieces(formula, spelling, 0):
+    for piece in _pieces(formula, spelling, 0, NUMBERS):
         if not text.startswith(piece, position):
             return False
         position += len(piece)
     return position == len(text)
 
 
-def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
+def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrinter) -> Iterator[str]:
     """Yield the text of the formula, from left to right.
 
     If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
@@ -127,8 +130,7 @@ def _pieces(formula: Formula, spelling: Spelling, least: int) -> Iterator[str]:
         node, least = item
         bound = _bound(node)
         if bound is not None:
-            prefix = spelling.within if bound.op == "F" else spelling.during
-            _push_operand(stack, prefix.format(last=bound.steps, count=bound.steps + 1), bound.body, spelling)
+            _push_operand(stack, _bounded_prefix(bound, spelling, counts), bound.body, spelling)
         elif _needs_brackets(node, least, spelling):
             stack += [")", (node, 0), "("]
         elif node.op == "atom":
@@ -147,6 +149,13 @@ def _bound(node: Formula) -> Bounded | None:
     """
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None
+
+
+def _bounded_prefix(bound: Bounded, spelling: Spelling, counts: CountPrinter) -> str:
+    if bound.op == "F":
+        return spelling.within.format(counts.number(bound.steps))
+    count = bound.steps + 1 if spelling.during_counts_samples else bound.steps
+    return spelling.during.format(counts.number(count))
 
 
 def _push_operand(stack: list[_Item], prefix: str, operand: Formula, spelling: Spelling) -> None:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from tltlc.logic.formula import Formula
+from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.english import english_text
 from tltlc.logic.text.notation import ASCII, OPERAND, UNICODE, WORDS, is_written_as, write
 
 __all__ = ["ascii_text", "english_text", "is_ascii_text", "operand_text", "unicode_text", "words_text"]
 
 
-def ascii_text(formula: Formula) -> str:
+def ascii_text(formula: Formula, counts: CountPrinter = NUMBERS) -> str:
     """Return the formula in letters and ASCII symbols, ``F(a & X F b) & G !c``.
 
-    Only the necessary brackets are printed.
+    Only the necessary brackets are printed. ``counts`` prints the bounds.
     """
-    return write(formula, ASCII)
+    return write(formula, ASCII, counts=counts)
 
 
 def is_ascii_text(formula: Formula, text: str) -> bool:
@@ -27,12 +28,12 @@ def operand_text(formula: Formula) -> str:
     return write(formula, ASCII, OPERAND)
 
 
-def unicode_text(formula: Formula) -> str:
+def unicode_text(formula: Formula, counts: CountPrinter = NUMBERS) -> str:
     """Return the formula in symbols, ``◇(a ∧ ○◇b) ∧ □¬c``.
 
-    ``N W R M`` have no symbols and stay letters.
+    ``N W R M`` have no symbols and stay letters. ``counts`` prints the bounds.
     """
-    return write(formula, UNICODE)
+    return write(formula, UNICODE, counts=counts)
 
 
 def words_text(formula: Formula) -> str:

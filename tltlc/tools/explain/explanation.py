@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
-from tltlc.automaton.text import formula_text, label_text
+from tltlc.automaton.text import formula_text, label_range_text, label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
 from tltlc.core.record import record
@@ -48,6 +48,17 @@ class StateRow:
     verdict: str
     distance: int | None
     leads: tuple[NextStep, ...]
+
+
+@record
+class CountingRun:
+    """A run of states that differ only in a count; each state of it leads to the next.
+
+    ``remains`` says with ranges of counts what remains to be satisfied in these states.
+    """
+
+    states: tuple[int, ...]
+    remains: str
 
 
 @record
@@ -93,9 +104,8 @@ class Explanation:
 
     ``outline`` has the goals and rules of the formula. It is None if the automaton comes from
     another tool and has no formula. ``exclusive`` lists groups of atoms of which at most one holds
-    at a time. ``counting`` lists runs of states that differ only in a count; each state of a run
-    leads to the next. ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for
-    this spec.
+    at a time. ``counting`` lists the runs of states that differ only in a count.
+    ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for this spec.
 
     ``succeed`` is a trace that succeeds, and ``fail`` one that fails. They are None if there is no
     such trace, or if the search found none. Over finite traces both are as short as possible, and
@@ -117,7 +127,7 @@ class Explanation:
     limit_s: float | None
     spec_size: int
     states: tuple[StateRow, ...]
-    counting: tuple[tuple[int, ...], ...]
+    counting: tuple[CountingRun, ...]
     succeed: ExampleTrace | None
     fail: ExampleTrace | None
 
@@ -144,7 +154,7 @@ def explain(fspa: Fspa) -> Explanation:
         limit_s=limit_s,
         spec_size=fspa.spec_size,
         states=_states(fspa, guards),
-        counting=tuple(tuple(state.id for state in run) for run in fold_runs(fspa).folded.values()),
+        counting=_counting_runs(fspa),
         succeed=_example_trace(fspa, _witness(moves, accept=True)),
         fail=_example_trace(fspa, _witness(moves, accept=False)),
     )
@@ -196,6 +206,13 @@ def _states(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[StateRow, ...]:
     return tuple(
         StateRow(state.id, label_text(fspa, state.id), state.verdict, state.distance, tuple(leads.get(state.id, ())))
         for state in fspa.states
+    )
+
+
+def _counting_runs(fspa: Fspa) -> tuple[CountingRun, ...]:
+    return tuple(
+        CountingRun(tuple(state.id for state in run), label_range_text(fspa, run[0].id, run[-1].id))
+        for run in fold_runs(fspa).folded.values()
     )
 
 

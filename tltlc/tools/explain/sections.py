@@ -5,10 +5,12 @@ The text and Markdown outputs are written from these sections.
 
 from __future__ import annotations
 
-from tltlc.backends.drawing.folding import text_range
+from collections.abc import Sequence
+
+from tltlc.backends.drawing.folding import distance_range
 from tltlc.core.record import record
 from tltlc.tools.explain.ending import limit_text
-from tltlc.tools.explain.explanation import ANYTHING, ExampleTrace, Explanation, StateRow, TrapCondition
+from tltlc.tools.explain.explanation import ANYTHING, CountingRun, ExampleTrace, Explanation, TrapCondition
 
 _MOST_RANGES = 3
 _MOST_ROWS = 40
@@ -107,42 +109,37 @@ def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
 
     The states of a run that differ only in a count share a row.
     """
-    runs = {run[0]: run for run in explanation.counting}
-    continued = {state for run in explanation.counting for state in run[1:]}
-    rows = [
-        tuple(explanation.states[number] for number in runs.get(state.id, (state.id,)))
+    runs = {run.states[0]: run for run in explanation.counting}
+    continued = {state for run in explanation.counting for state in run.states[1:]}
+    shared_rows = [
+        runs.get(state.id, CountingRun((state.id,), state.remains))
         for state in explanation.states
         if state.id not in continued
     ]
-    table = SectionTable(
-        ("State", "Verdict", "To go", "What remains", "What leads on"), tuple(map(_row, rows[:_MOST_ROWS]))
-    )
-    rest = sum(map(len, rows[_MOST_ROWS:]))
+    rows = tuple(_row(explanation, run) for run in shared_rows[:_MOST_ROWS])
+    table = SectionTable(("State", "Verdict", "To go", "What remains", "What leads on"), rows)
+    rest = sum(len(run.states) for run in shared_rows[_MOST_ROWS:])
     return (table, f"And {rest} more state{'s' * (rest > 1)}; `--format json` shows all of them.") if rest else (table,)
 
 
-def _row(run: tuple[StateRow, ...]) -> tuple[str, ...]:
-    first, last = run[0], run[-1]
-    successor = run[1].id if len(run) > 1 else None
+def _row(explanation: Explanation, run: CountingRun) -> tuple[str, ...]:
+    first, last = explanation.states[run.states[0]], explanation.states[run.states[-1]]
+    successor = run.states[1] if len(run.states) > 1 else None
     leads = [
         f"{lead.when} (to {'the next' if lead.state == successor else lead.state})"
         for lead in first.leads[:_MOST_LEADS]
     ]
     rest = len(first.leads) - len(leads)
     return (
-        _numbers([state.id for state in run]),
+        _numbers(run.states),
         first.verdict,
-        text_range(_distance_text(first), _distance_text(last)),
-        text_range(first.remains, last.remains),
+        distance_range(first.distance, last.distance, none="-"),
+        run.remains,
         "; ".join([*leads, *([f"{rest} more"] * bool(rest))]),
     )
 
 
-def _distance_text(state: StateRow) -> str:
-    return "-" if state.distance is None else str(state.distance)
-
-
-def _numbers(states: list[int]) -> str:
+def _numbers(states: Sequence[int]) -> str:
     """Return state numbers as ranges: ``2, 4–101``.
 
     If there are more than ``_MOST_RANGES`` ranges, only the first ones and the last are shown.

@@ -8,9 +8,11 @@ from tltlc.tools.explain.explanation import Explanation
 
 
 def json_values(explanation: Explanation) -> dict[str, Any]:
-    """Return the fields of an explanation by name, recursively as JSON values."""
-    fields: dict[str, Any] = _value(explanation)
-    return fields
+    """Return the fields of an explanation by name, recursively as JSON values.
+
+    A run in ``counting`` becomes the list of its states.
+    """
+    return {**_value(explanation), "counting": [list(run.states) for run in explanation.counting]}
 
 
 def _value(value: Any) -> Any:

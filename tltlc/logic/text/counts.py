@@ -1,0 +1,71 @@
+"""Print counts of steps in the texts of formulas: each as a number, or for two formulas as a range.
+
+``F[0,39…2] p`` is one text for ``F[0,39] p`` and ``F[0,2] p``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from tltlc.logic.formula import Formula
+
+
+class CountPrinter:
+    """Prints each count as a number. The printers of formulas call it once for each count in a text, in one order."""
+
+    def number(self, count: int) -> str:
+        """Return the text of a count."""
+        return str(count)
+
+    def steps(self, count: int) -> str:
+        """Return the text of a count with its noun: ``1 step``, ``9 steps``."""
+        return f"{self.number(count)} step{'s' * (count > 1)}"
+
+
+NUMBERS: Final = CountPrinter()
+
+
+class _CountCollector(CountPrinter):
+    """Prints the same text for each count, and collects the counts in ``counts``."""
+
+    def __init__(self) -> None:
+        self.counts: list[int] = []
+
+    def number(self, count: int) -> str:
+        self.counts.append(count)
+        return "…"
+
+    def steps(self, count: int) -> str:
+        return f"{self.number(count)} steps"
+
+
+class _RangePrinter(CountPrinter):
+    """Prints each count as a range that ends at the next count in ``ends``."""
+
+    def __init__(self, ends: Sequence[int]) -> None:
+        self._ends = iter(ends)
+
+    def number(self, count: int) -> str:
+        return number_range(count, next(self._ends))
+
+    def steps(self, count: int) -> str:
+        text = self.number(count)
+        return f"{text} step{'s' * (text != '1')}"
+
+
+def number_range(first: int, last: int) -> str:
+    """Return ``39…2`` for 39 and 2; ``2`` if both numbers are 2."""
+    return str(first) if first == last else f"{first}…{last}"
+
+
+def range_text(first: Formula, last: Formula, write: Callable[[Formula, CountPrinter], str]) -> str | None:
+    """Return one text for two formulas: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+
+    ``write`` prints a formula. Returns None if the formulas differ in more than the counts that are
+    printed.
+    """
+    collectors = _CountCollector(), _CountCollector()
+    if write(first, collectors[0]) != write(last, collectors[1]):
+        return None
+    return write(first, _RangePrinter(collectors[1].counts))
