@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from itertools import combinations
+from typing import ClassVar
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -20,7 +21,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, comment_lines
 from tltlc.program.shallow import split_deep_values
-from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
+from tltlc.program.tree import FAILING, Assign, Declare, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -72,6 +73,7 @@ class _JavaScript(Printer):
     """
 
     INDENT = "  "
+    COMPARISONS: ClassVar = {**Printer.COMPARISONS, "==": "===", "!=": "!=="}
 
     def __init__(self, atoms: Sequence[str], built_in: Collection[str] = ("abs", "tanh")) -> None:
         self._atoms, self._built_in = atoms, built_in
@@ -106,13 +108,6 @@ class _JavaScript(Printer):
         if function in self._built_in:
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
-
-    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength, with ``===`` for ``==``."""
-        text, binding = super()._text_and_binding(node)
-        if isinstance(node, Compare) and node.op in ("==", "!="):
-            text = text.replace(f" {node.op} ", f" {node.op}= ")
-        return text, binding
 
 
 class _Source:

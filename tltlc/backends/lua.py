@@ -22,7 +22,7 @@ from tltlc.program.build import program
 from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
 from tltlc.program.shallow import split_deep_values
-from tltlc.program.tree import FAILING, Assign, Compare, Declare, Expression, If, Int, Statement
+from tltlc.program.tree import FAILING, Assign, Declare, If, Int, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -85,6 +85,7 @@ class _Lua(Printer):
     :meth:`Printer.comment` writes a blank after it, because ``--[[`` would begin a long comment.
     """
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
+    COMPARISONS: ClassVar = {**Printer.COMPARISONS, "!=": "~="}
     END = ""
 
     def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
@@ -146,12 +147,6 @@ class _Lua(Printer):
     def closing(self) -> list[str]:
         """Return the lines that end an ``if``."""
         return ["end"]
-
-    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
-        text, binding = super()._text_and_binding(node)
-        if isinstance(node, Compare) and node.op == "!=":
-            text = text.replace(" != ", " ~= ")
-        return text, binding
 
 
 class _Source:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import builtins
 import keyword
-import re
 from collections.abc import Iterable, Sequence
 from math import inf
 from typing import ClassVar, Final
@@ -185,7 +184,8 @@ class _Source:
             "table": _tuple([self._state(state.id) for state in fspa.states]),
         }
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
-        used += ["inf"] if any(re.search(r"\binf\b", pieces[name]) for name in ("step", "signals", "params")) else []
+        # Where a bound is missing, `inf` is printed.
+        used += ["inf"] if any(None in (field.low, field.high) for field in (*fspa.signals, *fspa.params)) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
         return fill_template("monitor.py.txt", pieces)
 

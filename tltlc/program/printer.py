@@ -19,6 +19,7 @@ from tltlc.program.tree import (
     Bool,
     CommentLine,
     Compare,
+    Comparison,
     Declare,
     Expression,
     If,
@@ -54,6 +55,14 @@ class Printer:
     """The start of a comment line."""
     TYPES: ClassVar[dict[Type, str]] = {"real": "double", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "&&", "or": "||", "not": "!", "true": "true", "false": "false"}
+    COMPARISONS: ClassVar[dict[Comparison, str]] = {
+        "<": "<",
+        "<=": "<=",
+        ">": ">",
+        ">=": ">=",
+        "==": "==",
+        "!=": "!=",
+    }
     END: ClassVar[str] = ";"
     """The end of a statement."""
 
@@ -181,7 +190,7 @@ class Printer:
             case NumericCall(function, args):
                 return self.call(function, [self.text(argument) for argument in args]), _UNIT
             case Compare(op, left, right):
-                return f"{self.text(left, _SUM)} {op} {self.text(right, _SUM)}", _COMPARISON
+                return f"{self.text(left, _SUM)} {self.COMPARISONS[op]} {self.text(right, _SUM)}", _COMPARISON
             case Not(operand):
                 return f"{self.WORDS['not']}{self.text(operand, _UNIT)}", _SIGN
             case All(args) | Any(args):

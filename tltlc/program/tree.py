@@ -13,6 +13,8 @@ from tltlc.core.record import record
 
 Type = Literal["real", "int", "bool"]
 
+Comparison = Literal["<", "<=", ">", ">=", "==", "!="]
+
 Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
 """The numeric functions.
 
@@ -83,7 +85,7 @@ class NumericCall:
 class Compare:
     """A comparison of two numbers of the same type."""
 
-    op: Literal["<", "<=", ">", ">=", "==", "!="]
+    op: Comparison
     left: Expression
     right: Expression
 
