@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import math
+import re
 from typing import Any
 
 import pytest
@@ -102,6 +104,24 @@ def test_shared_subexpressions_are_computed_once() -> None:
     shared = Op("sqrt", (Op("abs", (x,)),))
     both = TensorExpressions([Op("+", (shared, y)), Op("-", (shared, y))], ("x", "y"), {}, CPU, torch.float64)
     assert both.source.count("sqrt(") == 1
+
+
+@settings(max_examples=100, deadline=None)
+@given(expressions())
+def test_each_tensor_is_released_after_its_last_use(expression: Expression) -> None:
+    (function,) = ast.parse(program(expression, dict.fromkeys(PARAMS, 1.0)).source).body
+    assert isinstance(function, ast.FunctionDef)
+    last_use: dict[str, int] = {}
+    released: dict[str, int] = {}
+    uses = 0
+    for statement in function.body:
+        names = {node.id for node in ast.walk(statement) if isinstance(node, ast.Name) and re.match(r"t\d", node.id)}
+        if isinstance(statement, ast.Delete):
+            released.update(dict.fromkeys(names, uses))
+            continue
+        uses += 1
+        last_use.update(dict.fromkeys(names, uses))
+    assert released == {name: use for name, use in last_use.items() if use < uses}
 
 
 def test_a_case_that_is_not_taken_cannot_fail() -> None:

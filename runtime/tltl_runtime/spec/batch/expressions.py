@@ -11,14 +11,13 @@ the C library: the relative difference is less than 1e-12.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import torch
 from torch import Tensor
 
-from tltl_runtime.spec.batch.writer import TensorWriter
+from tltl_runtime.spec.batch.writer import TensorLine, TensorWriter
 from tltlc.api import expressions
 
 
@@ -68,16 +67,16 @@ class TensorExpressions:
         return torch.stack(values), failures
 
 
-def _release_tensors(lines: Sequence[str], outputs: Collection[str]) -> list[str]:
-    """Return lines of code with a ``del`` added for each tensor after its last use.
+def _release_tensors(lines: Sequence[TensorLine], outputs: Collection[str]) -> list[str]:
+    """Return the code of lines with a ``del`` added for each tensor after its last use.
 
     So torch can use the memory of these tensors again. The tensors in ``outputs`` are kept.
     """
     seen: set[str] = set()
     lines_with_releases: list[str] = []
     for line in reversed(lines):
-        names = {name for name in re.findall(r"\bt\d+\b", line) if name not in outputs} - seen
+        names = {name for name in (line.name, *line.operands) if name not in outputs} - seen
         lines_with_releases += [f"del {', '.join(sorted(names))}"] if names else []
-        lines_with_releases.append(line)
+        lines_with_releases.append(f"{line.name} = {line.code}")
         seen |= names
     return lines_with_releases[::-1]

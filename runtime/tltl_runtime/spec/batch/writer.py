@@ -27,6 +27,18 @@ class TensorTerm:
     fails: str | None = None
 
 
+@record
+class TensorLine:
+    """A line of code, which assigns ``code`` to the tensor ``name``.
+
+    ``operands`` are the names of the tensors in ``code`` that earlier lines assign.
+    """
+
+    name: str
+    code: str
+    operands: tuple[str, ...]
+
+
 class TensorWriter:
     """Writes lines of code, each of which assigns a tensor to a new name.
 
@@ -39,13 +51,18 @@ class TensorWriter:
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
         self._columns = {name: index for index, name in enumerate(signals)}
         self._params = params
-        self._names: dict[str, str] = {}
-        self.lines: list[str] = []
+        self._lines: dict[str, TensorLine] = {}
+        self._line_names: set[str] = set()
         self.constants: dict[str, float] = {}
+
+    @property
+    def lines(self) -> tuple[TensorLine, ...]:
+        """The lines written so far, in order."""
+        return tuple(self._lines.values())
 
     def constant_column(self, constant: float) -> str:
         """Write a line that makes a column filled with a constant, and return the column's name."""
-        return self._line(f"columns.new_full((columns.shape[1],), {self._constant_tensor(constant)}.item())")
+        return self._line("columns.new_full((columns.shape[1],), {}.item())", self._constant_tensor(constant))
 
     def number(self, node: expressions.Expression) -> TensorTerm:
         """Write the lines that compute an expression, and return the term for its value."""
@@ -71,7 +88,7 @@ class TensorWriter:
                 if total.constant is not None and term.constant is not None:
                     total = self._constant(compute(total.constant, term.constant))
                 else:
-                    total = TensorTerm(self._line(f"{self._operand(total)} {node.op} {self._operand(term)}"))
+                    total = TensorTerm(self._infix(self._operand(total), node.op, self._operand(term)))
             return TensorTerm(total.name, None, fails)
         if node.op in ("min", "max"):
             best = args[0]
@@ -81,27 +98,27 @@ class TensorWriter:
         if node.op == "clamp":
             value, low, high = args
             if value.constant is None and low.constant is not None and high.constant is not None:
-                return TensorTerm(self._line(f"clamp({value.name}, {low.name}, {high.name})"), None, fails)
+                return TensorTerm(self._line("clamp({}, {}, {})", value.name, low.name, high.name), None, fails)
             return TensorTerm(self._extreme("min", self._extreme("max", value, low), high).name, None, fails)
         if node.op == "^":
             return self._power(node, args, fails)
         if node.op == "/":
             top, bottom = (self._operand(term) for term in args)
             if args[1].constant is None:
-                own_failure: str | None = self._line(f"{bottom} == 0.0")
+                own_failure: str | None = self._infix(bottom, "==", "0.0")
             else:
                 own_failure = self._everywhere() if args[1].constant == 0.0 else None
-            return TensorTerm(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own_failure]))
+            return TensorTerm(self._infix(top, "/", bottom), None, self._any_of([fails, own_failure]))
         if node.op == "-":
-            return TensorTerm(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
+            return TensorTerm(self._infix(self._operand(args[0]), "-", self._operand(args[1])), None, fails)
         inner = args[0].name
         if node.op == "neg":
-            return TensorTerm(self._line(f"-{inner}"), None, fails)
-        result = self._line(f"{node.op}({inner})")
+            return TensorTerm(self._line("-{}", inner), None, fails)
+        result = self._line(f"{node.op}({{}})", inner)
         if node.op == "sqrt":
-            fails = self._any_of([fails, self._line(f"{inner} < 0.0")])
+            fails = self._any_of([fails, self._infix(inner, "<", "0.0")])
         elif node.op == "exp":
-            fails = self._any_of([fails, self._line(f"isinf({result}) & isfinite({inner})")])
+            fails = self._any_of([fails, self._line("isinf({}) & isfinite({})", result, inner)])
         return TensorTerm(result, None, fails)
 
     def _power(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
@@ -112,11 +129,11 @@ class TensorWriter:
             else 0
         )
         if factors:
-            square = self._line(f"{base.name} * {base.name}")
-            return TensorTerm(square if factors == 2 else self._line(f"{square} * {base.name}"), None, fails)
+            square = self._infix(base.name, "*", base.name)
+            return TensorTerm(square if factors == 2 else self._infix(square, "*", base.name), None, fails)
         left, right = self._operand(base), self._operand(exponent)
-        result = self._line(f"pow({left}, {right})")
-        own_failure = self._line(f"isfinite({left}) & isfinite({right}) & ~isfinite({result})")
+        result = self._line("pow({}, {})", left, right)
+        own_failure = self._line("isfinite({}) & isfinite({}) & ~isfinite({})", left, right, result)
         return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
@@ -127,10 +144,11 @@ class TensorWriter:
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
-            return TensorTerm(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
+            form = "clamp({}, max={})" if op == "min" else "clamp({}, min={})"
+            return TensorTerm(self._line(form, first.name, second.name))
         first_name, second_name = self._operand(first), self._operand(second)
-        is_beyond = self._line(f"{second_name} {'<' if op == 'min' else '>'} {first_name}")
-        return TensorTerm(self._line(f"where({is_beyond}, {second_name}, {first_name})"))
+        is_beyond = self._infix(second_name, "<" if op == "min" else ">", first_name)
+        return TensorTerm(self._line("where({}, {}, {})", is_beyond, second_name, first_name))
 
     def _when(self, node: expressions.When) -> TensorTerm:
         result = self.number(node.otherwise)
@@ -141,10 +159,10 @@ class TensorWriter:
                 continue
             case = self.number(value)
             taken = self._truth(test)
-            otherwise_fails = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
+            otherwise_fails = self._both(self._line("~{}", taken), result.fails) if result.fails else None
             fails = self._any_of([test.fails, self._both(taken, case.fails), otherwise_fails])
-            values = f"{self._operand(case)}, {self._operand(result)}"
-            result = TensorTerm(self._line(f"where({taken}, {values})"), None, fails)
+            value_line = self._line("where({}, {}, {})", taken, self._operand(case), self._operand(result))
+            result = TensorTerm(value_line, None, fails)
         return result
 
     def _condition(self, node: expressions.Expression | expressions.Condition) -> TensorTerm:
@@ -153,14 +171,14 @@ class TensorWriter:
             inner = self._condition(node.args[0])
             if inner.constant is not None:
                 return TensorTerm(inner.name, float(not inner.constant), inner.fails)
-            return TensorTerm(self._line(f"~{inner.name}"), None, inner.fails)
+            return TensorTerm(self._line("~{}", inner.name), None, inner.fails)
         if node.op in ("and", "or"):
             return self._connective(node)
         left, right = (self.number(cast("expressions.Expression", side)) for side in node.args)
         fails = self._any_of([left.fails, right.fails])
         if left.constant is not None and right.constant is not None:
             return TensorTerm("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
-        return TensorTerm(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
+        return TensorTerm(self._infix(self._operand(left), node.op, self._operand(right)), None, fails)
 
     def _connective(self, node: expressions.Condition) -> TensorTerm:
         """Write ``and`` or ``or`` from its last part to its first, and return the result's term.
@@ -173,9 +191,9 @@ class TensorWriter:
         for part in reversed(node.args[:-1]):
             first = self._condition(part)
             truth, rest = self._truth(first), self._truth(result)
-            undecided = truth if node.op == "and" else self._line(f"~{truth}")
+            undecided = truth if node.op == "and" else self._line("~{}", truth)
             fails = self._any_of([first.fails, self._both(undecided, result.fails)])
-            result = TensorTerm(self._line(f"{truth} {sign} {rest}"), None, fails)
+            result = TensorTerm(self._infix(truth, sign, rest), None, fails)
         return result
 
     def _fold_constants(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
@@ -226,24 +244,33 @@ class TensorWriter:
         if term.constant is None:
             return term.name
         everywhere = self._everywhere()
-        return everywhere if term.constant else self._line(f"~{everywhere}")
+        return everywhere if term.constant else self._line("~{}", everywhere)
 
     def _everywhere(self) -> str:
         return self._line("columns.new_ones((columns.shape[1],)) > 0.0")
 
     def _both(self, mask: str, other: str | None) -> str | None:
-        return None if other is None else self._line(f"{mask} & {other}")
+        return None if other is None else self._infix(mask, "&", other)
 
     def _any_of(self, masks: Sequence[str | None]) -> str | None:
         names = list(dict.fromkeys(mask for mask in masks if mask is not None))
         result = names[0] if names else None
         for name in names[1:]:
-            result = self._line(f"{result} | {name}")
+            result = self._infix(result, "|", name)
         return result
 
-    def _line(self, text: str) -> str:
-        if text not in self._names:
-            name = f"t{len(self._names)}"
-            self._names[text] = name
-            self.lines.append(f"{name} = {text}")
-        return self._names[text]
+    def _infix(self, left: str, op: str, right: str) -> str:
+        return self._line(f"{{}} {op} {{}}", left, right)
+
+    def _line(self, form: str, *operands: str) -> str:
+        """Write the line that assigns ``form`` with its operands to a new name, and return the name.
+
+        ``operands`` are names of tensors or texts of constants. Each replaces a ``{}`` in ``form``.
+        """
+        code = form.format(*operands)
+        line = self._lines.get(code)
+        if line is None:
+            used = tuple(operand for operand in operands if operand in self._line_names)
+            line = self._lines[code] = TensorLine(f"t{len(self._lines)}", code, used)
+            self._line_names.add(line.name)
+        return line.name
