@@ -8,21 +8,27 @@ blocks. For a spec that needs more, variables become fields of tables, and inner
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import ClassVar, Final
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.lua_syntax import (
+    DEEPEST_BLOCK,
+    KEYWORDS,
+    LuaPrinter,
+    key_access,
+    string_literal,
+    table_key,
+)
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import printable_line
-from tltlc.program.printer import Printer
 from tltlc.program.shallow import split_deep_values
-from tltlc.program.tree import FAILING, Assign, Declare, If, Int, Statement
+from tltlc.program.tree import FAILING, Declare, If, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -45,18 +51,6 @@ _FEW_STATES: Final = 8
 If there are more, each state has a function.
 """
 
-_DEEPEST: Final = 60
-"""The depth of nested blocks at which inner blocks become functions.
-
-Lua allows 200 levels, but expressions in the blocks need some of them.
-"""
-
-_KEYWORDS = """
-    and break do else elseif end false for function goto if in local nil not or repeat return then true until while
-    continue export typeof
-""".split()
-"""Words of Lua and Luau."""
-
 _OWN = """
     MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
     signal signals sqrt tanh together type value
@@ -70,91 +64,12 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
-class _Lua(Printer):
-    """Prints a program in Lua.
-
-    ``fields`` maps the variables that are fields of tables to the text that accesses the field; all
-    other variables are local. ``parts`` collects the lines of functions that replace blocks nested
-    too deep; these functions use only fields.
-    """
-
-    INDENT = "  "
-    COMMENT = "--"
-    """The start of a comment.
-
-    :meth:`Printer.comment` writes a blank after it, because ``--[[`` would begin a long comment.
-    """
-    WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
-    COMPARISONS: ClassVar = {**Printer.COMPARISONS, "!=": "~="}
-    END = ""
-
-    def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
-        self._fields, self._atoms = fields, atoms
-        self._part_count = 0
-        self.parts: list[str] = []
-
-    def name(self, name: str) -> str:
-        """Return the name of a variable in Lua.
-
-        For ``steps_real``, the number of steps as a real number, this is ``steps``: Lua converts
-        whole numbers itself.
-        """
-        return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
-
-    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements, without declarations of fields that have no value."""
-        needed = [
-            statement
-            for statement in statements
-            if not (isinstance(statement, Declare) and statement.value is None and statement.name in self._fields)
-        ]
-        return super().lines(needed, depth)
-
-    def declaration(self, statement: Declare) -> str:
-        """Return the declaration of a local variable, or for a field, an assignment to it."""
-        local = "" if statement.name in self._fields else "local "
-        value = "" if statement.value is None else f" = {self.text(statement.value)}"
-        return f"{local}{self.name(statement.name)}{value}"
-
-    def assignment(self, statement: Assign) -> str:
-        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
-        match statement:
-            case Assign(states.LIMITING, Int(index)):
-                return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'nil'}"
-        return super().assignment(statement)
-
-    def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of an ``if``.
-
-        If it is nested too deep, returns a call of a new function with these lines.
-        """
-        if depth < _DEEPEST:
-            return super().branches(statement, depth)
-        self._part_count += 1
-        head = f"part[{self._part_count}] = function(signal, param, value)"
-        call = f"part[{self._part_count}](signal, param, value)"
-        self.parts += [head, *super().branches(statement, 1), "end", ""]
-        return [f"{self.INDENT * depth}{call}"]
-
-    def head(self, test: str, *, first: bool) -> str:
-        """Return the line that begins a case: ``if`` or ``elseif``, with its test."""
-        return f"{'if' if first else 'elseif'} {test} then"
-
-    def otherwise(self) -> str:
-        """Return the line that begins the ``else``."""
-        return "else"
-
-    def closing(self) -> list[str]:
-        """Return the lines that end an ``if``."""
-        return ["end"]
-
-
 class _Source:
     """Makes the source text of one monitor, by filling the template."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        program_ = self._program = program(fspa, [*_KEYWORDS, *_OWN])
+        program_ = self._program = program(fspa, [*KEYWORDS, *_OWN])
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
         variables = (*program_.signals, *program_.params, *program_.atoms)
@@ -162,18 +77,20 @@ class _Source:
             parts = [declaration.name for value in program_.values for declaration in _declarations(value)]
             deepest = max(map(_depth, program_.values), default=0)
         # Each variable counts twice, because it is also an argument of the functions of states.
-        self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
+        self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= DEEPEST_BLOCK
         fields = {
             **{
-                name: f"signal{_index(signal.name)}"
+                name: f"signal{key_access(signal.name)}"
                 for signal, name in zip(fspa.signals, program_.signals, strict=True)
             },
-            **{name: f"param{_index(param.name)}" for param, name in zip(fspa.params, program_.params, strict=True)},
-            **{name: f"value{_index(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
+            **{
+                name: f"param{key_access(param.name)}" for param, name in zip(fspa.params, program_.params, strict=True)
+            },
+            **{name: f"value{key_access(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
             **{name: f"part.{name}" for name in parts},
         }
         self._few_states = len(fspa.states) <= _FEW_STATES
-        self._printer = _Lua(fields if self._variables_are_fields else {}, self._names)
+        self._printer = LuaPrinter(fields if self._variables_are_fields else {}, self._names)
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.lua``."""
@@ -181,7 +98,7 @@ class _Source:
         functions = functions_called(statement for part in (*program_.values, *program_.states) for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
-            step = _Lua.block(self._step())
+            step = LuaPrinter.block(self._step())
         present = [
             *functions,
             *(["failing"] if functions & FAILING else []),
@@ -195,7 +112,7 @@ class _Source:
             "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
-            "example": snippets.example_sample(fspa.signals, _key, " = "),
+            "example": snippets.example_sample(fspa.signals, table_key, " = "),
             "signal_fields": "\n".join(
                 _field(
                     signal.name,
@@ -215,9 +132,9 @@ class _Source:
             ),
             "params": _list([_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]),
             "exclusive": _list(
-                [f"{{ {', '.join(_string(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
+                [f"{{ {', '.join(string_literal(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
-            "states": _Lua.block(self._states()),
+            "states": LuaPrinter.block(self._states()),
             "returns": ", the progress of the step" if self._at_goal else "",
             "moves": moves,
             "parts": "\n".join(self._printer.parts).rstrip(),
@@ -231,7 +148,7 @@ class _Source:
             values = (
                 f'verdict = "{state.verdict}", accepting = {snippets.boolean_literal(state.accepting)}, ends = {ends}'
             )
-            rows.append(f"[{state.id}] = {{ label = {_string(str(state.label))}, {values} }},")
+            rows.append(f"[{state.id}] = {{ label = {string_literal(str(state.label))}, {values} }},")
         return rows
 
     # --- the functions of states ------------------------------------------------------------------
@@ -297,7 +214,9 @@ class _Source:
             lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
             variable = self._printer.name(name)
-            lines.append(f"{'' if self._variables_are_fields else 'local '}{variable} = signals{_index(signal.name)}")
+            lines.append(
+                f"{'' if self._variables_are_fields else 'local '}{variable} = signals{key_access(signal.name)}"
+            )
             lines += _accepting_cases(signal, variable)
             lines += [
                 "else",
@@ -308,7 +227,7 @@ class _Source:
         used = self._program.variables_used
         params = zip(self._fspa.params, self._program.params, strict=True)
         if not self._variables_are_fields:
-            lines += [f"local {name} = self.params{_index(param.name)}" for param, name in params if name in used]
+            lines += [f"local {name} = self.params{key_access(param.name)}" for param, name in params if name in used]
         return lines
 
     def _compute(self) -> list[str]:
@@ -323,12 +242,12 @@ class _Source:
                 continue
             if functions_called(self._program.values[index]) & FAILING:
                 failing = True
-                text = _string(f"the atom `{atom.name}` ")
+                text = string_literal(f"the atom `{atom.name}` ")
                 lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
             variable = self._printer.name(name)
             range_checks += [
                 f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
-                f"  {variable}, problem = kept(self, {_string(atom.name)}, {variable})",
+                f"  {variable}, problem = kept(self, {string_literal(atom.name)}, {variable})",
                 "  if problem then return nil, problem end",
                 "end",
             ]
@@ -375,7 +294,7 @@ class _Source:
             f"local {', '.join(running)} = self.steps + 1, self.progress, self.done",
             f"local {reward_step.REWARD}",
             *(f"local {name} = {value}" for name, value in definitions.items() if name in used),
-            *_Lua({}, self._names).lines(self._program.reward_statements),
+            *LuaPrinter({}, self._names).lines(self._program.reward_statements),
         ]
 
 
@@ -408,7 +327,7 @@ def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
 def _field(name: str, type_: str, doc: str) -> str:
     """Return a comment ``---@field``, from which language servers read the type of a field of a class."""
     description = f" {printable_line(doc)}" if doc else ""
-    return f"---@field {printable_line(_key(name))} {type_}{description}"
+    return f"---@field {printable_line(table_key(name))} {type_}{description}"
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
@@ -430,30 +349,9 @@ def _accepting_cases(signal: Signal, variable: str) -> list[str]:
 
 def _row(field: Signal | Param, entries: str) -> str:
     low, high = snippets.number_literal(field.low, "-huge"), snippets.number_literal(field.high, "huge")
-    return f"{{ name = {_string(field.name)}, {entries}, low = {low}, high = {high} }}"
-
-
-def _string(text: str) -> str:
-    """Return a string literal, in which each UTF-8 byte of a character that does not print is escaped."""
-    return snippets.string_literal(text, _escape)
-
-
-def _escape(character: str) -> str:
-    return "".join(f"\\{byte:03d}" for byte in character.encode("utf-8", "replace"))
-
-
-def _key(name: str) -> str:
-    """Return a key as the constructor of a Lua table writes it: ``health`` or ``["near(s1)"]``."""
-    plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _KEYWORDS
-    return name if plain else f"[{_string(name)}]"
-
-
-def _index(name: str) -> str:
-    """Return the text that follows a table's name to access a key: ``.health`` or ``["near(s1)"]``."""
-    key = _key(name)
-    return key if key[0] == "[" else f".{key}"
+    return f"{{ name = {string_literal(field.name)}, {entries}, low = {low}, high = {high} }}"
 
 
 def _list(items: Sequence[str]) -> str:
     """Return the text of a list in Lua, with a line for each item."""
-    return "{\n" + "".join(f"{_Lua.INDENT}{item},\n" for item in items) + "}" if items else "{}"
+    return "{\n" + "".join(f"{LuaPrinter.INDENT}{item},\n" for item in items) + "}" if items else "{}"

@@ -7,7 +7,7 @@ import pytest
 from tltlc import compile_text
 from tltlc.backends import emit
 from tltlc.backends.javascript import _JavaScript
-from tltlc.backends.lua import _Lua
+from tltlc.backends.languages.lua_syntax import LuaPrinter
 from tltlc.program.printer import Printer
 from tltlc.program.tree import All, Compare, Variable
 
@@ -20,7 +20,7 @@ OTHER = Compare("!=", Variable("a"), Variable("b"))
     [
         (Printer(), "a == b && a != b"),
         (_JavaScript(()), "a === b && a !== b"),
-        (_Lua({"a": "value['x != y']"}, ()), "value['x != y'] == b and value['x != y'] ~= b"),
+        (LuaPrinter({"a": "value['x != y']"}, ()), "value['x != y'] == b and value['x != y'] ~= b"),
     ],
     ids=["C", "JavaScript", "Lua"],
 )

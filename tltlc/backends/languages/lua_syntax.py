@@ -1,0 +1,125 @@
+"""Print a program, strings and keys of tables in Lua."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import ClassVar, Final
+
+from tltlc.program import reward_step, snippets, states
+from tltlc.program.printer import Printer
+from tltlc.program.tree import Assign, Declare, If, Int, Statement
+
+DEEPEST_BLOCK: Final = 60
+"""The depth of nested blocks at which inner blocks become functions.
+
+Lua allows 200 levels, but expressions in the blocks need some of them.
+"""
+
+KEYWORDS: Final = """
+    and break do else elseif end false for function goto if in local nil not or repeat return then true until while
+    continue export typeof
+""".split()
+"""Words of Lua and Luau."""
+
+
+class LuaPrinter(Printer):
+    """Prints a program in Lua.
+
+    ``fields`` maps the variables that are fields of tables to the text that accesses the field; all
+    other variables are local. ``parts`` collects the lines of functions that replace blocks nested
+    too deep; these functions use only fields.
+    """
+
+    INDENT = "  "
+    COMMENT = "--"
+    """The start of a comment.
+
+    :meth:`Printer.comment` writes a blank after it, because ``--[[`` would begin a long comment.
+    """
+    WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
+    COMPARISONS: ClassVar = {**Printer.COMPARISONS, "!=": "~="}
+    END = ""
+
+    def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
+        self._fields, self._atoms = fields, atoms
+        self._part_count = 0
+        self.parts: list[str] = []
+
+    def name(self, name: str) -> str:
+        """Return the name of a variable in Lua.
+
+        For ``steps_real``, the number of steps as a real number, this is ``steps``: Lua converts
+        whole numbers itself.
+        """
+        return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
+
+    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
+        """Return the lines of statements, without declarations of fields that have no value."""
+        needed = [
+            statement
+            for statement in statements
+            if not (isinstance(statement, Declare) and statement.value is None and statement.name in self._fields)
+        ]
+        return super().lines(needed, depth)
+
+    def declaration(self, statement: Declare) -> str:
+        """Return the declaration of a local variable, or for a field, an assignment to it."""
+        local = "" if statement.name in self._fields else "local "
+        value = "" if statement.value is None else f" = {self.text(statement.value)}"
+        return f"{local}{self.name(statement.name)}{value}"
+
+    def assignment(self, statement: Assign) -> str:
+        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
+        match statement:
+            case Assign(states.LIMITING, Int(index)):
+                return f"{states.LIMITING} = {string_literal(self._atoms[index]) if index >= 0 else 'nil'}"
+        return super().assignment(statement)
+
+    def branches(self, statement: If, depth: int) -> list[str]:
+        """Return the lines of an ``if``.
+
+        If it is nested too deep, returns a call of a new function with these lines.
+        """
+        if depth < DEEPEST_BLOCK:
+            return super().branches(statement, depth)
+        self._part_count += 1
+        head = f"part[{self._part_count}] = function(signal, param, value)"
+        call = f"part[{self._part_count}](signal, param, value)"
+        self.parts += [head, *super().branches(statement, 1), "end", ""]
+        return [f"{self.INDENT * depth}{call}"]
+
+    def head(self, test: str, *, first: bool) -> str:
+        """Return the line that begins a case: ``if`` or ``elseif``, with its test."""
+        return f"{'if' if first else 'elseif'} {test} then"
+
+    def otherwise(self) -> str:
+        """Return the line that begins the ``else``."""
+        return "else"
+
+    def closing(self) -> list[str]:
+        """Return the lines that end an ``if``."""
+        return ["end"]
+
+
+def string_literal(text: str) -> str:
+    """Return a string literal, in which each UTF-8 byte of a character that does not print is escaped."""
+    return snippets.string_literal(text, _escape)
+
+
+def _escape(character: str) -> str:
+    return "".join(f"\\{byte:03d}" for byte in character.encode("utf-8", "replace"))
+
+
+def table_key(name: str) -> str:
+    """Return a key as the constructor of a Lua table writes it: ``health`` or ``["near(s1)"]``."""
+    return name if _is_identifier(name) else f"[{string_literal(name)}]"
+
+
+def key_access(name: str) -> str:
+    """Return the text that follows a table's name to access a key: ``.health`` or ``["near(s1)"]``."""
+    return f".{name}" if _is_identifier(name) else table_key(name)
+
+
+def _is_identifier(name: str) -> bool:
+    return re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) is not None and name not in KEYWORDS
