@@ -28,10 +28,10 @@ from tltlc.program.tree import (
     BinaryNumber,
     CommentLine,
     Declare,
-    Expression,
     If,
     Int,
     NumericCall,
+    ProgramExpression,
     Statement,
     Type,
 )
@@ -117,7 +117,7 @@ class _Python(Printer):
         """Return no lines, because Python ends a branch by its indentation."""
         return []
 
-    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
         ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster, and likewise ``max``. The
@@ -135,7 +135,7 @@ class _Python(Printer):
         return super().call("pow" if function == "power" else function, arguments)
 
 
-def _arguments(node: NumericCall) -> list[Expression]:
+def _arguments(node: NumericCall) -> list[ProgramExpression]:
     """Return the arguments of nested calls of one function: ``a, b, c`` for ``f(f(a, b), c)``."""
     first, second = node.args
     before = _arguments(first) if isinstance(first, NumericCall) and first.function == node.function else [first]

@@ -32,11 +32,11 @@ from tltlc.program.tree import (
     Bool,
     Compare,
     Declare,
-    Expression,
     If,
     Negate,
     Not,
     NumericCall,
+    ProgramExpression,
     Real,
     Statement,
     Type,
@@ -143,7 +143,7 @@ class ExpressionTranslator:
         return [*before, If(tuple(cases), tuple(self.assign(name, node.otherwise)))]
 
     def _sequential_cases(
-        self, name: str, first: tuple[tuple[Expression, tuple[Statement, ...]], ...], rest: source.When
+        self, name: str, first: tuple[tuple[ProgramExpression, tuple[Statement, ...]], ...], rest: source.When
     ) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to ``name``, without nesting its cases.
 
@@ -247,7 +247,7 @@ class ExpressionTranslator:
 
     # --- numbers ----------------------------------------------------------------------------------
 
-    def _value(self, node: source.Expression, lines: list[Statement]) -> Expression:
+    def _value(self, node: source.Expression, lines: list[Statement]) -> ProgramExpression:
         """Translate an expression, and append to ``lines`` the statements to run before it."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
@@ -268,11 +268,11 @@ class ExpressionTranslator:
                 return reduce(lambda left, right: BinaryNumber("*", left, right), [base] * factors)
         return self._operation(node, [self._argument(argument, lines) for argument in node.args])
 
-    def _argument(self, node: source.Expression, lines: list[Statement]) -> Expression:
+    def _argument(self, node: source.Expression, lines: list[Statement]) -> ProgramExpression:
         value = self._value(node, lines)
         return self._as_variable(value, lines) if self._depth(value) >= _DEEPEST else value
 
-    def _operation(self, node: source.Op, args: list[Expression]) -> Expression:
+    def _operation(self, node: source.Op, args: list[ProgramExpression]) -> ProgramExpression:
         match node.op:
             case "+" | "-" | "*":
                 op = node.op
@@ -292,7 +292,7 @@ class ExpressionTranslator:
 
     # --- tests ------------------------------------------------------------------------------------
 
-    def _test(self, node: _Node, lines: list[Statement]) -> Expression:
+    def _test(self, node: _Node, lines: list[Statement]) -> ProgramExpression:
         """Translate a condition to a test, and append to ``lines`` the statements to run before it."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
@@ -304,7 +304,7 @@ class ExpressionTranslator:
         op = node.op
         return Compare(op, self._argument(left, lines), self._argument(right, lines))
 
-    def _part(self, node: _Node, lines: list[Statement]) -> Expression:
+    def _part(self, node: _Node, lines: list[Statement]) -> ProgramExpression:
         test = self._test(node, lines)
         if self._depth(test) < _DEEPEST:
             return test
@@ -312,13 +312,13 @@ class ExpressionTranslator:
         lines.append(Assign(name, test))
         return Variable(name)
 
-    def _join(self, node: source.Condition, lines: list[Statement]) -> Expression:
+    def _join(self, node: source.Condition, lines: list[Statement]) -> ProgramExpression:
         """Translate an ``and`` or ``or`` to a test.
 
         Appends to ``lines`` the statements to run before it. Those that an operand needs run only
         if the operands before it do not decide the result.
         """
-        tests: list[Expression] = []
+        tests: list[ProgramExpression] = []
         for part in node.args:
             needed: list[Statement] = []
             test = self._part(part, needed)
@@ -335,7 +335,7 @@ class ExpressionTranslator:
 
     # --- variables --------------------------------------------------------------------------------
 
-    def _as_variable(self, value: Expression, lines: list[Statement]) -> Expression:
+    def _as_variable(self, value: ProgramExpression, lines: list[Statement]) -> ProgramExpression:
         """Return a variable or a number with this value, to use it several times but compute it once.
 
         Appends to ``lines`` the declaration of the variable, if it is a new one.
@@ -353,7 +353,7 @@ class ExpressionTranslator:
         lines.append(Declare(name, type_, None, changes))
         return name
 
-    def _depth(self, node: Expression) -> int:
+    def _depth(self, node: ProgramExpression) -> int:
         match node:
             case BinaryNumber(_, left, right) | Compare(_, left, right):
                 return 1 + max(self._depth(left), self._depth(right))
@@ -374,13 +374,13 @@ def _branch_depth(node: _Node) -> int:
     return 0
 
 
-def _all_or_any(op: str, tests: list[Expression]) -> Expression:
+def _all_or_any(op: str, tests: list[ProgramExpression]) -> ProgramExpression:
     if len(tests) == 1:
         return tests[0]
     return All(tuple(tests)) if op == "and" else Any(tuple(tests))
 
 
-def _divide(left: Expression, right: Expression) -> Expression:
+def _divide(left: ProgramExpression, right: ProgramExpression) -> ProgramExpression:
     """Return a quotient: ``/`` if the divisor is a literal other than 0, and a call of ``divide`` otherwise.
 
     ``divide`` reports a division by 0.

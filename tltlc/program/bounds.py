@@ -21,11 +21,11 @@ from tltlc.program.tree import (
     BinaryNumber,
     Compare,
     Declare,
-    Expression,
     If,
     Negate,
     Not,
     NumericCall,
+    ProgramExpression,
     Real,
     Statement,
     Variable,
@@ -80,10 +80,12 @@ class _Facts:
     of a case, or the whole program) but declared outside it.
     """
 
-    def __init__(self, ranges: dict[Expression, Range], ordered: frozenset[tuple[Expression, Expression]]) -> None:
+    def __init__(
+        self, ranges: dict[ProgramExpression, Range], ordered: frozenset[tuple[ProgramExpression, ProgramExpression]]
+    ) -> None:
         self._ranges, self._at_most_pairs = ranges, ordered
-        self._cache: dict[Expression, Range | None] = {}
-        self._compared: set[Expression] = set()
+        self._cache: dict[ProgramExpression, Range | None] = {}
+        self._compared: set[ProgramExpression] = set()
         self.assigned_variables: dict[str, None] = {}
 
     # --- statements -------------------------------------------------------------------------------
@@ -148,7 +150,7 @@ class _Facts:
 
     # --- tests ------------------------------------------------------------------------------------
 
-    def _assume(self, test: Expression, holds: bool) -> None:
+    def _assume(self, test: ProgramExpression, holds: bool) -> None:
         """Update the facts to what is known where a test is true (``holds``) or false."""
         match test:
             case Not(operand):
@@ -177,14 +179,14 @@ class _Facts:
                 self._narrow(left, Range(low.low, min(low.high, most)))
                 self._narrow(right, Range(max(least, high.low), high.high))
 
-    def _narrow(self, node: Expression, range_: Range) -> None:
+    def _narrow(self, node: ProgramExpression, range_: Range) -> None:
         # If the range is empty, the test never has this result, and its body never runs: the facts do not matter there.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
 
     # --- expressions ------------------------------------------------------------------------------
 
-    def rewrite(self, node: Expression) -> Expression:
+    def rewrite(self, node: ProgramExpression) -> ProgramExpression:
         """Return the expression with ``/`` instead of ``divide`` where the divisor is never 0."""
         match node:
             case NumericCall("divide", (left, right)):
@@ -209,7 +211,7 @@ class _Facts:
                 return Any(tuple(map(self.rewrite, args)))
         return node
 
-    def range(self, node: Expression) -> Range | None:
+    def range(self, node: ProgramExpression) -> Range | None:
         """Return the range of an expression.
 
         Returns None if the expression may be NaN or have no value, or if nothing is known about it.
@@ -223,7 +225,7 @@ class _Facts:
         self._cache[node] = recorded = recorded or computed
         return recorded
 
-    def _compute(self, node: Expression) -> Range | None:
+    def _compute(self, node: ProgramExpression) -> Range | None:
         match node:
             case Real(value):
                 return Range(value, value)
@@ -253,13 +255,13 @@ class _Facts:
                 return Range(-2.0, 2.0) if self.range(operand) else None
         return None
 
-    def _difference(self, left: Expression, right: Expression) -> Range | None:
+    def _difference(self, left: ProgramExpression, right: ProgramExpression) -> Range | None:
         range_ = _ends(lambda x, y: x - y, self.range(left), self.range(right), "-")
         if range_ is not None and (right, left) in self._at_most_pairs:
             return Range(max(range_.low, 0.0), max(range_.high, 0.0))
         return range_
 
-    def _quotient(self, left: Expression, right: Expression) -> Range | None:
+    def _quotient(self, left: ProgramExpression, right: ProgramExpression) -> Range | None:
         dividend, divisor = self.range(left), self.range(right)
         if divisor is None or not divisor.without_zero():
             return None
@@ -268,7 +270,7 @@ class _Facts:
             return Range(min(range_.low, 1.0), min(range_.high, 1.0))
         return range_
 
-    def _at_most(self, left: Expression, right: Expression) -> bool:
+    def _at_most(self, left: ProgramExpression, right: ProgramExpression) -> bool:
         """Whether ``left <= right`` is known.
 
         It is known if ``left`` is ``a - b``, ``right`` is ``a - c``, and ``c <= b`` is known.

@@ -21,12 +21,12 @@ from tltlc.program.tree import (
     Compare,
     Comparison,
     Declare,
-    Expression,
     If,
     Int,
     Negate,
     Not,
     NumericCall,
+    ProgramExpression,
     Real,
     Statement,
     Type,
@@ -153,7 +153,7 @@ class Printer:
 
     # --- expressions ------------------------------------------------------------------------------
 
-    def text(self, node: Expression, room: int = _OR) -> str:
+    def text(self, node: ProgramExpression, room: int = _OR) -> str:
         """Return the text of an expression, in parentheses if its binding strength is lower than ``room``."""
         text, binding = self._text_and_binding(node)
         return text if binding >= room else f"({text})"
@@ -170,7 +170,7 @@ class Printer:
         """Return the code that calls a numeric function such as ``min``."""
         return f"{function}({', '.join(arguments)})"
 
-    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength."""
         match node:
             case Real(value):

@@ -14,9 +14,9 @@ from tltlc.program.tree import (
     BinaryNumber,
     Compare,
     Declare,
-    Expression,
     If,
     Int,
+    ProgramExpression,
     Real,
     Statement,
     Variable,
@@ -70,7 +70,7 @@ def _survived(limit: int | None) -> list[Statement]:
     as the spec is satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the
     spec is satisfied.
     """
-    cases: list[tuple[Expression, tuple[Statement, ...]]] = [
+    cases: list[tuple[ProgramExpression, tuple[Statement, ...]]] = [
         (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),
     ]
     if limit is None:

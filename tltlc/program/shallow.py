@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import count
 from typing import Final
 
-from tltlc.program.tree import Assign, Declare, Expression, If, Negate, NumericCall, Statement, Variable
+from tltlc.program.tree import Assign, Declare, If, Negate, NumericCall, ProgramExpression, Statement, Variable
 
 PART: Final = "part"
 """The prefix of the variables that :func:`split_deep_values` adds, which are numbered from 1."""
@@ -47,7 +47,7 @@ def _split_statements(statements: Sequence[Statement], names: Iterator[str]) -> 
     return tuple(lines)
 
 
-def _cut(value: Expression, lines: list[Statement], names: Iterator[str]) -> tuple[Expression, int]:
+def _cut(value: ProgramExpression, lines: list[Statement], names: Iterator[str]) -> tuple[ProgramExpression, int]:
     """Return the expression with its deep parts replaced by variables, and its new depth.
 
     Appends the declarations of these variables to ``lines``. Takes their names from ``names``.

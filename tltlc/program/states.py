@@ -21,11 +21,11 @@ from tltlc.program.tree import (
     CommentLine,
     Compare,
     Declare,
-    Expression,
     If,
     Int,
     Negate,
     NumericCall,
+    ProgramExpression,
     Real,
     Statement,
     Variable,
@@ -95,7 +95,7 @@ class _StateCode:
         )
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
-    def _progress(self, value: Expression) -> list[Statement]:
+    def _progress(self, value: ProgramExpression) -> list[Statement]:
         """Return the statement that assigns ``value`` to the progress.
 
         Returns no statement if the spec is judged at its limit: then the progress does not depend
@@ -103,14 +103,14 @@ class _StateCode:
         """
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
-    def _truth(self, guard: Guard) -> Expression:
-        tests: list[Expression] = []
+    def _truth(self, guard: Guard) -> ProgramExpression:
+        tests: list[ProgramExpression] = []
         for prime in guard.primes:
             literals = [self._tests[literal] for literal in prime]
             tests.append(Bool(True) if not literals else literals[0] if len(literals) == 1 else All(tuple(literals)))
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
-    def _robustness(self, primes: Sequence[Implicant]) -> Expression:
+    def _robustness(self, primes: Sequence[Implicant]) -> ProgramExpression:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
         The robustness of a prime implicant is the value of its least literal. If an equivalent
@@ -161,17 +161,17 @@ class _StateCode:
         ]
         return [If(tuple(cases), (otherwise,))]
 
-    def _least(self, prime: Sequence[tuple[int, bool]]) -> Expression:
+    def _least(self, prime: Sequence[tuple[int, bool]]) -> ProgramExpression:
         return _fold("min", [self._value(*literal) for literal in prime])
 
-    def _greatest(self, clause: Sequence[tuple[int, bool]]) -> Expression:
+    def _greatest(self, clause: Sequence[tuple[int, bool]]) -> ProgramExpression:
         return _fold("max", [self._value(*literal) for literal in clause])
 
-    def _value(self, atom: int, polarity: bool) -> Expression:
+    def _value(self, atom: int, polarity: bool) -> ProgramExpression:
         return self._values[atom, polarity]
 
 
-_Literals = Mapping[tuple[int, bool], Expression]
+_Literals = Mapping[tuple[int, bool], ProgramExpression]
 """An expression for each literal: the index of its atom, and whether the atom is true."""
 
 
@@ -182,8 +182,8 @@ def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
     The expressions of the first compute the value of the literal; those of the second test whether
     the literal is true.
     """
-    values: dict[tuple[int, bool], Expression] = {}
-    tests: dict[tuple[int, bool], Expression] = {}
+    values: dict[tuple[int, bool], ProgramExpression] = {}
+    tests: dict[tuple[int, bool], ProgramExpression] = {}
     for index, name in enumerate(atoms):
         variable = Variable(name)
         values[index, True], values[index, False] = variable, Negate(variable)
@@ -200,7 +200,7 @@ def _size(guard: Guard) -> int:
     return sum(map(len, guard.primes))
 
 
-def _fold(function: str, terms: Sequence[Expression]) -> Expression:
+def _fold(function: str, terms: Sequence[ProgramExpression]) -> ProgramExpression:
     """Return the ``min`` or ``max`` of the terms, as ``function`` says.
 
     Returns 1 if there are no terms: the robustness of a guard that is always true.

@@ -61,7 +61,7 @@ class Variable:
 class Negate:
     """The number ``-operand``."""
 
-    operand: Expression
+    operand: ProgramExpression
 
 
 @record
@@ -69,8 +69,8 @@ class BinaryNumber:
     """An arithmetic operation on two numbers."""
 
     op: Literal["+", "-", "*", "/"]
-    left: Expression
-    right: Expression
+    left: ProgramExpression
+    right: ProgramExpression
 
 
 @record
@@ -78,7 +78,7 @@ class NumericCall:
     """A call of a numeric function."""
 
     function: Function
-    args: tuple[Expression, ...]
+    args: tuple[ProgramExpression, ...]
 
 
 @record
@@ -86,32 +86,32 @@ class Compare:
     """A comparison of two numbers of the same type."""
 
     op: Comparison
-    left: Expression
-    right: Expression
+    left: ProgramExpression
+    right: ProgramExpression
 
 
 @record
 class Not:
     """The negation of a test."""
 
-    operand: Expression
+    operand: ProgramExpression
 
 
 @record
 class All:
     """The ``and`` of at least two tests, evaluated from left to right up to the first that is false."""
 
-    args: tuple[Expression, ...]
+    args: tuple[ProgramExpression, ...]
 
 
 @record
 class Any:
     """The ``or`` of at least two tests, evaluated from left to right up to the first that is true."""
 
-    args: tuple[Expression, ...]
+    args: tuple[ProgramExpression, ...]
 
 
-Expression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
+ProgramExpression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
 
 
 # --- statements -----------------------------------------------------------------------------------
@@ -127,7 +127,7 @@ class Declare:
 
     name: str
     type: Type
-    value: Expression | None = None
+    value: ProgramExpression | None = None
     changes: bool = False
 
 
@@ -136,7 +136,7 @@ class Assign:
     """An assignment to a variable."""
 
     name: str
-    value: Expression
+    value: ProgramExpression
 
 
 @record
@@ -146,7 +146,7 @@ class If:
     A case is a test and its body.
     """
 
-    cases: tuple[tuple[Expression, tuple[Statement, ...]], ...]
+    cases: tuple[tuple[ProgramExpression, tuple[Statement, ...]], ...]
     otherwise: tuple[Statement, ...] = ()
 
 

@@ -15,12 +15,12 @@ from tltlc.program.tree import (
     BinaryNumber,
     Compare,
     Declare,
-    Expression,
     Function,
     If,
     Negate,
     Not,
     NumericCall,
+    ProgramExpression,
     Statement,
     Variable,
 )
@@ -36,7 +36,7 @@ def functions_called(statements: Iterable[Statement]) -> frozenset[Function]:
     return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
 
 
-def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
+def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpression]:
     """Yield the expressions and all their subexpressions.
 
     Uses a stack and no recursion, so that deeply nested predicates cause no RecursionError.
@@ -54,7 +54,7 @@ def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
                 stack.append(operand)
 
 
-def _values(statements: Iterable[Statement]) -> Iterator[Expression]:
+def _values(statements: Iterable[Statement]) -> Iterator[ProgramExpression]:
     """Yield the expressions that statements compute or test, also inside the cases of an ``if``."""
     for statement in statements:
         match statement:

@@ -15,12 +15,12 @@ from tltlc.program.tree import (
     CommentLine,
     Compare,
     Declare,
-    Expression,
     If,
     Int,
     Negate,
     Not,
     NumericCall,
+    ProgramExpression,
     Real,
     Statement,
     Variable,
@@ -61,7 +61,7 @@ class Scope:
         assert name in self.changing or name not in self.values, f"{name} changes, and does not say so"
         self.values[name] = value
 
-    def value(self, node: Expression) -> Value:
+    def value(self, node: ProgramExpression) -> Value:
         match node:
             case Real(value) | Int(value) | Bool(value):
                 return value

@@ -8,10 +8,21 @@ from itertools import accumulate
 from tests.backends.program.interpreter import Scope
 from tltlc.program.printer import Printer
 from tltlc.program.shallow import split_deep_values
-from tltlc.program.tree import Assign, Bool, Declare, Expression, If, Negate, NumericCall, Real, Statement, Variable
+from tltlc.program.tree import (
+    Assign,
+    Bool,
+    Declare,
+    If,
+    Negate,
+    NumericCall,
+    ProgramExpression,
+    Real,
+    Statement,
+    Variable,
+)
 
 
-def greatest(terms: Iterable[Expression]) -> Expression:
+def greatest(terms: Iterable[ProgramExpression]) -> ProgramExpression:
     return reduce(lambda left, right: NumericCall("max", (left, right)), terms)
 
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
 from tltlc.program.printer import Printer
-from tltlc.program.tree import Assign, Declare, Expression, Negate, NumericCall, Real, Type, Variable
+from tltlc.program.tree import Assign, Declare, Negate, NumericCall, ProgramExpression, Real, Type, Variable
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
@@ -68,7 +68,7 @@ class Gd(Printer):
         """Return an expression whose value in Godot is exactly this number."""
         return number(value)
 
-    def _text_and_binding(self, node: Expression) -> tuple[str, int]:
+    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
         """Return the text of an expression and its binding strength.
 
         If a ``min`` or ``max`` of two variables or numbers would call a function of the script, it
@@ -87,6 +87,6 @@ class Gd(Printer):
         return super().call(self._functions.get(function, f"_{function}"), ordered)
 
 
-def _is_simple(node: Expression) -> bool:
+def _is_simple(node: ProgramExpression) -> bool:
     """Whether an expression is a variable, a number or the negative of one, and so may be computed twice."""
     return isinstance(node.operand if isinstance(node, Negate) else node, (Variable, Real))
