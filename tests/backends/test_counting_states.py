@@ -1,4 +1,4 @@
-"""Several runs that count down together fold like a ladder: folded states agree, and no edge is lost."""
+"""Several runs that count down together are folded in parallel: folded states agree, and no edge is lost."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.backends.test_folding import automaton, chains, counting, endless
 from tests.fixtures import cover_and_hide
 from tests.fuzzing import times
 from tltlc.automaton.fspa import Edge, Fspa, Guard
-from tltlc.backends.drawing.counting_states import fold_ladders
+from tltlc.backends.drawing.counting_states import fold_parallel_runs
 from tltlc.backends.drawing.folding import LEAST_FOLDED, fold_runs, whole_drawing
 from tltlc.backends.drawing.picture_content import folded_drawing, notes
 from tltlc.core.record import replace
@@ -38,17 +38,17 @@ GUARDS = [Guard(atom(name), (((index, True),),)) for index, name in enumerate("p
 
 
 @st.composite
-def ladders(draw: st.DrawFn) -> Fspa:
-    """Rungs of three states, whose edges lead to the same run or to another one, with a few irregularities."""
-    rungs = draw(st.integers(4, 9))
+def parallel_runs(draw: st.DrawFn) -> Fspa:
+    """Three parallel runs, whose edges lead to the same run or to another one, with a few irregularities."""
+    last = draw(st.integers(4, 9))
     ways = st.permutations(range(3)).flatmap(lambda way: st.integers(1, 3).map(lambda length: way[:length]))
     ahead = {0: [0, 1, 2], 1: draw(ways), 2: draw(ways)}
     edges = {(0, 1 + way): GUARDS[way] for way in ahead[0]}
-    for rung in range(rungs):
+    for place in range(last):
         for slot, way in ahead.items():
             for guard, target in zip(GUARDS, way, strict=False):
-                edges[1 + 3 * rung + slot, 1 + 3 * (rung + 1) + target] = guard
-    size = 1 + 3 * (rungs + 1)
+                edges[1 + 3 * place + slot, 1 + 3 * (place + 1) + target] = guard
+    size = 1 + 3 * (last + 1)
     states = [replace(cover_and_hide().states[0], id=index) for index in range(size)]
     for _ in range(draw(st.integers(0, 2))):
         here, there = draw(st.integers(0, size - 1)), draw(st.integers(0, size - 1))
@@ -60,13 +60,22 @@ def ladders(draw: st.DrawFn) -> Fspa:
     return replace(cover_and_hide(), states=tuple(states), edges=rows)
 
 
-ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | infinite_automata() | hostile_automata()
+ANY = (
+    in_step()
+    | parallel_runs()
+    | counting()
+    | endless()
+    | chains()
+    | automata()
+    | infinite_automata()
+    | hostile_automata()
+)
 
 
 @times(40)
 @given(ANY)
 def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
-    drawing = fold_ladders(fspa)
+    drawing = fold_parallel_runs(fspa)
     full = whole_drawing(fspa)
     first = {state.id: run for run, states in drawing.folded.items() for state in states}
     drawn = [state.id for state in drawing.states]
@@ -85,7 +94,7 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
             if source == target:  # an edge along a run, drawn as an edge to the end of the run
                 assert end not in drawing.folded
                 break
-            # An edge from the last inner rung to the rung after it.
+            # An edge from the last inner counting state to the one after it.
             if end in drawing.folded and edge.target in {
                 way.target for way in full.edges if way.source == drawing.folded[end][-1].id
             }:
@@ -97,7 +106,7 @@ def test_every_edge_is_drawn_or_lies_along_a_run(fspa: Fspa) -> None:
 @times(40)
 @given(ANY)
 def test_folded_states_agree(fspa: Fspa) -> None:
-    drawing = fold_ladders(fspa)
+    drawing = fold_parallel_runs(fspa)
     full = whole_drawing(fspa)
     inner = {state.id for run in drawing.folded.values() for state in run}
     labels: dict[int, set[object]] = {state.id: set() for state in full.states}
@@ -108,21 +117,21 @@ def test_folded_states_agree(fspa: Fspa) -> None:
         assert len({(state.verdict, state.accepting, frozenset(labels[state.id])) for state in run}) == 1
 
 
-def test_some_random_ladder_is_folded() -> None:
-    assert fold_ladders(find(ladders(), lambda fspa: len(fold_ladders(fspa).folded) == 3))
+def test_some_random_parallel_runs_are_folded() -> None:
+    assert fold_parallel_runs(find(parallel_runs(), lambda fspa: len(fold_parallel_runs(fspa).folded) == 3))
 
 
 @times(40)
 @given(counting() | in_step())
-def test_folding_ladders_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:
-    assert len(fold_ladders(fspa).states) <= len(fold_runs(fspa).states)
+def test_folding_parallel_runs_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:
+    assert len(fold_parallel_runs(fspa).states) <= len(fold_runs(fspa).states)
 
 
 @times(40)
 @given(ANY)
 def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fspa: Fspa) -> None:
     drawing = folded_drawing(fspa)
-    drawings = [fold_runs(fspa), fold_ladders(fspa)]
+    drawings = [fold_runs(fspa), fold_parallel_runs(fspa)]
     assert drawing in drawings
     assert len(drawing.states) == min(len(candidate.states) for candidate in drawings)
     hidden = len(fspa.states) - len(drawing.states)
@@ -142,11 +151,11 @@ def test_pictures_use_the_drawing_with_fewer_states_and_count_the_folded_ones(fs
     ],
 )
 def test_known_automata_have_these_folded_states(formula: str, inner: list[int], states: int) -> None:
-    drawing = fold_ladders(automaton(formula))
+    drawing = fold_parallel_runs(automaton(formula))
     assert [len(run) for run in drawing.folded.values()] == inner
     assert len(drawing.states) == states
 
 
 @pytest.mark.parametrize("formula", ["F[0,40] a", "G[0,12] a", "G(a -> G[0,10] b)", "F a & F b"])
-def test_a_single_run_is_folded_as_without_ladders(formula: str) -> None:
-    assert fold_ladders(automaton(formula)) == fold_runs(automaton(formula))
+def test_a_single_run_is_folded_as_without_parallel_runs(formula: str) -> None:
+    assert fold_parallel_runs(automaton(formula)) == fold_runs(automaton(formula))

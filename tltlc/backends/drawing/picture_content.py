@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.drawing.counting_states import fold_ladders
+from tltlc.backends.drawing.counting_states import fold_parallel_runs
 from tltlc.backends.drawing.folding import Drawing, fold_runs
 
 
 def folded_drawing(fspa: Fspa) -> Drawing:
     """Return a drawing in which states that differ only in a count are folded.
 
-    Folds single runs or ladders of several runs, whichever leaves fewer states.
+    Folds single runs or parallel runs, whichever leaves fewer states.
     """
-    return min(fold_runs(fspa), fold_ladders(fspa), key=lambda drawing: len(drawing.states))
+    return min(fold_runs(fspa), fold_parallel_runs(fspa), key=lambda drawing: len(drawing.states))
 
 
 def distance_note(drawing: Drawing, place: str, outline: str) -> str:
