@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
 from operator import add, ge, gt, le, lt, mul
 from typing import Final, cast
 
@@ -254,10 +255,7 @@ class TensorWriter:
 
     def _any_of(self, masks: Sequence[str | None]) -> str | None:
         names = list(dict.fromkeys(mask for mask in masks if mask is not None))
-        result = names[0] if names else None
-        for name in names[1:]:
-            result = self._infix(result, "|", name)
-        return result
+        return reduce(lambda left, right: self._infix(left, "|", right), names) if names else None
 
     def _infix(self, left: str, op: str, right: str) -> str:
         return self._line(f"{{}} {op} {{}}", left, right)

@@ -1,6 +1,6 @@
 """Alternative rewards for N environments: one module per mode, loaded on first use.
 
-A module has the name of its mode and defines a class ``Reward``, which is a :class:`RewardMode`.
+A module has the name of its mode, and its ``MODE`` is a class, a :class:`RewardMode`.
 The module of that name in :mod:`tltlc.monitor.reward_modes` gives equal rewards, for one automaton.
 If a mode has no module here, :class:`RowByRow` calls the function there for each environment.
 """
@@ -64,7 +64,7 @@ def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype:
     """
     if importlib.util.find_spec(f"{__name__}.{options.mode}") is None:
         return RowByRow(fspa, options, device, dtype)
-    mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").Reward(fspa, options, device, dtype)
+    mode: RewardMode = importlib.import_module(f"{__name__}.{options.mode}").MODE(fspa, options, device, dtype)
     return mode
 
 

@@ -5,6 +5,8 @@ See :mod:`tltlc.monitor.reward_modes.edge`.
 
 from __future__ import annotations
 
+from typing import Final
+
 import torch
 from torch import Tensor
 
@@ -13,7 +15,7 @@ from tltl_runtime.spec.batch.reward_modes import BatchTransition
 from tltlc.api import Fspa, Implicant, RewardOptions
 
 
-class Reward:
+class EdgeReward:
     """Rewards each step with the robustness of the most robust edge that leaves the state.
 
     Edges into traps do not count. The reward is 0 if there is no other edge that leaves the state.
@@ -34,3 +36,6 @@ class Reward:
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
         """Return the reward, in [-1, 1], and the same memory."""
         return self._leaving.robustness_of(step.source, step.values) + 0.0, memory
+
+
+MODE: Final = EdgeReward

@@ -5,6 +5,8 @@ See :mod:`tltlc.monitor.reward_modes.potential`.
 
 from __future__ import annotations
 
+from typing import Final
+
 import torch
 from torch import Tensor
 
@@ -14,7 +16,7 @@ from tltl_runtime.spec.batch.reward_modes import BatchTransition
 from tltlc.api import Fspa, RewardOptions, monitors
 
 
-class Reward:
+class PotentialReward:
     """A reward for success, shaped with progress as the potential.
 
     The memory is the potential before the step, [N].
@@ -38,3 +40,6 @@ class Reward:
         potential = self._base.index_select(0, step.target) + approach(nearest, self._size)
         after = potential.masked_fill_(step.done, 0.0)
         return (step.success + self._gamma * after).sub_(memory), after
+
+
+MODE: Final = PotentialReward

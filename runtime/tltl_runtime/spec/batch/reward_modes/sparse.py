@@ -5,6 +5,8 @@ See :mod:`tltlc.monitor.reward_modes.sparse`.
 
 from __future__ import annotations
 
+from typing import Final
+
 import torch
 from torch import Tensor
 
@@ -13,7 +15,7 @@ from tltl_runtime.spec.batch.reward_modes import BatchTransition
 from tltlc.api import Fspa, RewardOptions
 
 
-class Reward:
+class SparseReward:
     """The robustness of the whole trace, once, at the end of the episode.
 
     A run is a path through the automaton with one edge for each sample, whether its guard is true
@@ -50,3 +52,6 @@ class Reward:
         opposite_width = after.masked_fill(self._accepting[:, None] == accepted, -1.0).amax(0)
         distance = -opposite_width.clamp_(-1.0, 0.0)
         return torch.where(accepted, distance, -distance).masked_fill_(~step.done, 0.0) + 0.0, after
+
+
+MODE: Final = SparseReward
