@@ -74,7 +74,7 @@ def record_measured_parts(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
     measured: list[Span] = []
     size = blowup._size
 
-    def counted(part: Conjunct, spec: Spec) -> blowup.Size | None:
+    def counted(part: Conjunct, spec: Spec) -> blowup.ClauseSize | None:
         measured.append(part.span)
         return size(part, spec)
 

@@ -12,9 +12,9 @@ from typing import Any, Final, TypeVar
 from tltlc.automaton.diagrams import LEAF, Diagrams, at_most_one
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of
+from tltlc.automaton.infinite.cycles import MarkedEdge, MarkedEdges, marks_of
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_marks
-from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, separating_component
+from tltlc.automaton.infinite.products import PairLeaf, StatePair, conditions, separating_component
 from tltlc.automaton.work import DEFAULT_WORK, Work
 from tltlc.core.record import record
 
@@ -23,9 +23,9 @@ _ALLOWED, _RULED_OUT = "allowed", "ruled out"
 
 Letter = frozenset[str]
 """The names of the atoms that hold at a sample."""
-Literals = tuple[tuple[str, bool], ...]
+NamedLiterals = tuple[tuple[str, bool], ...]
 """Names of atoms, each with its truth value."""
-Node = TypeVar("Node", bound=Hashable)
+ProductNode = TypeVar("ProductNode", bound=Hashable)
 
 
 @record
@@ -36,7 +36,9 @@ class Trace:
     cycle: tuple[Letter, ...] = ()
 
 
-def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
+def separating(
+    one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[NamedLiterals] = ()
+) -> Trace | None:
     """Return a trace that ``one`` accepts and ``other`` rejects; None if ``other`` accepts all traces of ``one``.
 
     Over finite traces, the trace is a shortest one. ``impossible`` lists conjunctions of literals
@@ -93,7 +95,7 @@ class _Product:
     Each of its states is a pair: a state of the first automaton and a state of the second.
     """
 
-    def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
+    def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[NamedLiterals] = ()) -> None:
         self._pair, self._work = (one, other), work
         impossible = tuple(impossible)
         self._names = _group_related((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
@@ -133,13 +135,15 @@ class _Product:
         """Return an infinite trace that only the first automaton accepts; None if there is none."""
         accepting, rejecting = conditions(*(len(fspa.acceptance) for fspa in self._pair))
 
-        def leaves(both: StatePair) -> list[Leaf]:
+        def leaves(both: StatePair) -> list[PairLeaf]:
             return [(target, marks) for target, marks, _ in self._step(both)]
 
         part = separating_component([(0, 0)], leaves, [(accepting, rejecting)], self._work)
         return None if part is None else self._lasso_through(part, accepting, rejecting)
 
-    def _lasso_through(self, part: Edges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]) -> Trace:
+    def _lasso_through(
+        self, part: MarkedEdges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]
+    ) -> Trace:
         """Return a lasso (a prefix and a cycle) whose cycle takes only edges of ``part``.
 
         ``part`` is a strongly connected set of edges of the product. ``accepting`` and
@@ -181,7 +185,7 @@ class _Product:
     def _moves(self, both: StatePair) -> Iterator[tuple[StatePair, Letter]]:
         yield from ((target, letter) for target, _, letter in self._step(both))
 
-    def _letter(self, edge: Edge) -> Letter:
+    def _letter(self, edge: MarkedEdge) -> Letter:
         return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
     def _step(self, both: StatePair) -> list[tuple[StatePair, Marks, Letter]]:
@@ -276,7 +280,7 @@ class _Product:
         return letter_of
 
 
-def _group_related(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
+def _group_related(names: Iterable[str], impossible: Iterable[NamedLiterals]) -> tuple[str, ...]:
     """Return the names without duplicates, with the atoms of each ``impossible`` conjunction
     together.
 
@@ -309,16 +313,18 @@ def _allowed_by_both(one: str, other: str) -> str:
 
 
 def _shortest_path(
-    starts: Iterable[Node],
-    moves: Callable[[Node], Iterable[tuple[Node, Letter]]],
-    is_goal: Callable[[Node], bool],
+    starts: Iterable[ProductNode],
+    moves: Callable[[ProductNode], Iterable[tuple[ProductNode, Letter]]],
+    is_goal: Callable[[ProductNode], bool],
     at_least: int = 0,
 ) -> tuple[Letter, ...] | None:
     """Return the letters of a shortest path from ``starts`` to a goal, or None if no path exists.
 
     The path has at least ``at_least`` steps, which is 0 or 1.
     """
-    before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(start, 0): None for start in starts}
+    before: dict[tuple[ProductNode, int], tuple[tuple[ProductNode, int], Letter] | None] = {
+        (start, 0): None for start in starts
+    }
     queue = list(before)
     for place in queue:
         node, moved = place

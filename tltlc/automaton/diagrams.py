@@ -26,7 +26,7 @@ from typing import Any, Final, Generic, TypeVar
 
 from tltlc.automaton.work import Work
 
-Leaf = TypeVar("Leaf", bound=Hashable)
+DiagramLeaf = TypeVar("DiagramLeaf", bound=Hashable)
 
 LEAF: Final = 1 << 40
 """The entry in ``variable`` for a leaf: a number greater than every variable."""
@@ -73,7 +73,7 @@ class StepLimit:
             self.steps = before
 
 
-class Diagrams(Generic[Leaf]):
+class Diagrams(Generic[DiagramLeaf]):
     """A table of nodes and the operations on them.
 
     Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable is
@@ -92,7 +92,7 @@ class Diagrams(Generic[Leaf]):
         self.high: list[int] = []
         self.value: list[Any] = []
         self._nodes: dict[tuple[int, int, int], int] = {}
-        self._leaves: dict[Leaf, int] = {}
+        self._leaves: dict[DiagramLeaf, int] = {}
         self._work = work
         self.node: Callable[[int, int, int], int] = self._node_maker()
 
@@ -105,7 +105,7 @@ class Diagrams(Generic[Leaf]):
 
     # --- making nodes -------------------------------------------------------------------------
 
-    def leaf(self, value: Leaf) -> int:
+    def leaf(self, value: DiagramLeaf) -> int:
         """Return the function with the same value on every assignment."""
         number = self._leaves.get(value)
         if number is None:
@@ -122,7 +122,7 @@ class Diagrams(Generic[Leaf]):
         number = self._nodes[key] = self._add(*key, None)
         return number
 
-    def _add(self, variable: int, low: int, high: int, value: Leaf | None) -> int:
+    def _add(self, variable: int, low: int, high: int, value: DiagramLeaf | None) -> int:
         self.variable.append(variable)
         self.low.append(low)
         self.high.append(high)
@@ -147,7 +147,7 @@ class Diagrams(Generic[Leaf]):
 
     def lattice_operation(
         self,
-        combine: Callable[[Any, Any], Leaf],
+        combine: Callable[[Any, Any], DiagramLeaf],
         limit: StepLimit,
         *,
         absorbing: int,
@@ -203,7 +203,9 @@ class Diagrams(Generic[Leaf]):
 
         return operate
 
-    def apply(self, combine: Callable[[Any, Any], Leaf], x: int, y: int, memo: dict[tuple[int, int], int]) -> int:
+    def apply(
+        self, combine: Callable[[Any, Any], DiagramLeaf], x: int, y: int, memo: dict[tuple[int, int], int]
+    ) -> int:
         """Return the function whose value is ``combine`` applied to the values of ``x`` and ``y``.
 
         ``combine`` may be any function of two values. ``memo`` caches results; pass the same dict
@@ -226,7 +228,7 @@ class Diagrams(Generic[Leaf]):
         memo[x, y] = result
         return result
 
-    def map_leaves(self, change: Callable[[Any], Leaf], x: int, memo: dict[int, int]) -> int:
+    def map_leaves(self, change: Callable[[Any], DiagramLeaf], x: int, memo: dict[int, int]) -> int:
         """Return the function with ``change`` applied to every value.
 
         ``memo`` maps nodes to their results; pass the same dict only to calls with the same
@@ -269,7 +271,7 @@ class Diagrams(Generic[Leaf]):
         """Return the distinct values of a function, in the order of :meth:`leaves`."""
         return [self.value[leaf] for leaf in self.leaves(x)]
 
-    def assignment_with(self, x: int, value: Leaf) -> frozenset[int]:
+    def assignment_with(self, x: int, value: DiagramLeaf) -> frozenset[int]:
         """Return an assignment on which function ``x`` has this value, as the set of its true variables.
 
         Raises ValueError if the function has this value nowhere.

@@ -16,7 +16,7 @@ from tltlc.io.limits import WORK
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
 
-Cube = tuple[int, ...]
+LiteralCube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
 """The most prime implicants of one guard, and the most conjunctions in its short formula."""
@@ -28,7 +28,7 @@ _MOST_REMEMBERED = 200_000
 _MOST_PRODUCTS_REMEMBERED = 1_000_000
 """The caches are also emptied when their entries have more cubes than this in all."""
 
-_PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
+_PRIMES_OF_CONSTANTS: dict[int, tuple[LiteralCube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
 
 class TooManyPrimes(Exception):
@@ -84,8 +84,8 @@ class Guards:
         self._pairs = [(atom, polarity) for atom in range(len(names)) for polarity in (False, True)]
         self._by_leaf: dict[int, dict[int, int]] = {}
         self._primes = dict(_PRIMES_OF_CONSTANTS)
-        self._possible_cubes: dict[Cube, bool] = {}
-        self._covers: dict[tuple[int, int], tuple[tuple[Cube, ...], int]] = {}
+        self._possible_cubes: dict[LiteralCube, bool] = {}
+        self._covers: dict[tuple[int, int], tuple[tuple[LiteralCube, ...], int]] = {}
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
     def by_leaf(self, transition: int) -> dict[int, int]:
@@ -153,7 +153,7 @@ class Guards:
                 return build.and_(*[build.or_(*[literals[literal] for literal in cube]) for cube in disjunctions])
         return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
-    def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
+    def _negated_sums(self, guard: int) -> tuple[LiteralCube, ...]:
         """Return the guard as a conjunction of disjunctions, and each disjunction as the cube of
         its negation.
 
@@ -167,7 +167,7 @@ class Guards:
 
     # --- Boolean functions --------------------------------------------------------------------
 
-    def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
+    def _cover(self, lower: int, upper: int) -> tuple[LiteralCube, ...]:
         """Return irredundant cubes whose disjunction lies between two functions.
 
         ``lower`` implies the disjunction, and the disjunction implies ``upper``. None of the cubes
@@ -191,14 +191,14 @@ class Guards:
         negation = negations.get(guard)
         return self._diagrams.map_leaves(_negate_leaf, guard, negations) if negation is None else negation
 
-    def _is_possible(self, cube: Cube) -> bool:
+    def _is_possible(self, cube: LiteralCube) -> bool:
         """Whether some allowed letter satisfies the cube; results are cached, since guards share many cubes."""
         known = self._possible_cubes.get(cube)
         if known is None:
             known = self._possible_cubes[cube] = self._is_met(cube)
         return known
 
-    def _is_met(self, cube: Cube) -> bool:
+    def _is_met(self, cube: LiteralCube) -> bool:
         diagrams = self._diagrams
         rest = self._allowed
         polarity_of = {literal >> 1: literal & 1 for literal in cube}
@@ -216,7 +216,7 @@ class Guards:
                     stack.append(child)
         return False
 
-    def _all_primes(self, function: int) -> tuple[Cube, ...]:
+    def _all_primes(self, function: int) -> tuple[LiteralCube, ...]:
         """Return every prime implicant of a function.
 
         Splits by the first atom: ``low`` is the function where the atom is false, ``high`` where it
@@ -238,7 +238,7 @@ class Guards:
             self._primes[function] = known
         return known
 
-    def _irredundant(self, lower: int, upper: int) -> tuple[tuple[Cube, ...], int]:
+    def _irredundant(self, lower: int, upper: int) -> tuple[tuple[LiteralCube, ...], int]:
         """Return irredundant cubes as in :meth:`_cover`, and the function of their disjunction (Minato 1993)."""
         if lower == REJECT:
             return (), REJECT

@@ -47,10 +47,12 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
     texts = label_text(fspa, first, notation), label_text(fspa, last, notation)
     if texts[0] == texts[1]:
         return texts[0]
-    labels = fspa.states[first].label, fspa.states[last].label
-    if isinstance(labels[0], Formula) and isinstance(labels[1], Formula):
+    first_label, last_label = fspa.states[first].label, fspa.states[last].label
+    if isinstance(first_label, Formula) and isinstance(last_label, Formula):
         endless = fspa.semantics == "infinite"
-        text = range_text(*labels, lambda formula, counts: _write(formula, notation, counts, endless=endless))
+        text = range_text(
+            first_label, last_label, lambda formula, counts: _write(formula, notation, counts, endless=endless)
+        )
         if text is not None:
             return text
     return " … ".join(texts)

@@ -18,7 +18,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, Statement, Variable
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -87,7 +87,7 @@ class _CSharp(Printer):
     def assignment(self, statement: Assign) -> str:
         """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
         match statement:
-            case Assign(name, BinaryNumber("+" | "-" as op, Variable(left), right)) if left == name:
+            case Assign(name, BinaryNumber("+" | "-" as op, ProgramVariable(left), right)) if left == name:
                 return f"{name} {op}= {self.text(right)};"
         return super().assignment(statement)
 

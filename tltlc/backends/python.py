@@ -36,7 +36,7 @@ from tltlc.program.tree import (
     Type,
 )
 from tltlc.program.used_names import functions_called, variables_read
-from tltlc.resolve.spec import Signal
+from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
 
@@ -184,8 +184,9 @@ class _Source:
             "table": _tuple([self._state(state.id) for state in fspa.states]),
         }
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
+        fields: tuple[Signal | Param, ...] = (*fspa.signals, *fspa.params)
         # Where a bound is missing, `inf` is printed.
-        used += ["inf"] if any(None in (field.low, field.high) for field in (*fspa.signals, *fspa.params)) else []
+        used += ["inf"] if any(None in (field.low, field.high) for field in fields) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
         return fill_template("monitor.py.txt", pieces)
 

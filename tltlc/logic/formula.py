@@ -11,7 +11,9 @@ from collections.abc import Container, Iterable, Iterator
 from typing import Final, Literal
 from weakref import WeakValueDictionary
 
-Op = Literal["true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M"]
+FormulaOp = Literal[
+    "true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M"
+]
 
 UNARY_TEMPORAL: Final = ("X", "N", "F", "G")
 BINARY_TEMPORAL: Final = ("U", "W", "R", "M")
@@ -26,7 +28,7 @@ class Formula:
     """
 
     __slots__ = ("__weakref__", "args", "name", "op")
-    op: Op
+    op: FormulaOp
     args: tuple[Formula, ...]
     name: str
 
@@ -109,7 +111,7 @@ class Formula:
 _table: WeakValueDictionary[tuple[object, ...], Formula] = WeakValueDictionary()
 
 
-def _intern(op: Op, args: tuple[Formula, ...] = (), name: str = "") -> Formula:
+def _intern(op: FormulaOp, args: tuple[Formula, ...] = (), name: str = "") -> Formula:
     key = (op, name, *map(id, args))
     node = _table.get(key)
     if node is None:
@@ -217,7 +219,7 @@ def then(left: Formula, right: Formula) -> Formula:
     return eventually(and_(left, next_(rest)))
 
 
-FlatNodes = list[tuple[Op, tuple[int, ...], str]]
+FlatNodes = list[tuple[FormulaOp, tuple[int, ...], str]]
 """Formulas as plain data: a tuple for each subformula, operands before the formulas that use them.
 
 A tuple contains the operator, the indices of the operands in this list, and the name of an atom.
@@ -252,7 +254,7 @@ def _unpickle(nodes: FlatNodes) -> Formula:
     return unflatten(nodes)[-1]
 
 
-def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:
+def temporal(op: FormulaOp, operands: tuple[Formula, ...]) -> Formula:
     """Return the formula with the temporal operator ``op`` and these one or two operands."""
     return _intern(op, operands)
 

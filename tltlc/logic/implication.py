@@ -10,10 +10,19 @@ from functools import lru_cache
 from typing import Final
 
 from tltlc.logic import formula as build
-from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+from tltlc.logic.formula import FALSE, TRUE, Formula, FormulaOp
 from tltlc.logic.signature import signature
 
-DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
+DUAL: Final[dict[FormulaOp, FormulaOp]] = {
+    "X": "N",
+    "N": "X",
+    "F": "G",
+    "G": "F",
+    "U": "R",
+    "R": "U",
+    "W": "M",
+    "M": "W",
+}
 """The dual of each operator. When negation moves inwards, the dual replaces the operator: ``!X a`` is ``N !a``."""
 
 _MOST_PAIRS: Final = 400
@@ -21,7 +30,7 @@ _DEEPEST: Final = 40
 _COMPLEMENT_DEPTH: Final = 3
 _LAST_DEPTH: Final = 6
 
-_Prover = Callable[[Formula, Formula], bool]
+_ImplicationTest = Callable[[Formula, Formula], bool]
 
 
 def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
@@ -132,7 +141,7 @@ def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], d
     )
 
 
-def _weaken_premise(p: Formula, q: Formula, shows: _Prover) -> bool:
+def _weaken_premise(p: Formula, q: Formula, shows: _ImplicationTest) -> bool:
     """Whether ``q`` follows from a formula that the temporal formula ``p`` implies.
 
     ``G a`` implies ``a``, ``a U b`` implies ``a | b``, …
@@ -151,7 +160,7 @@ def _weaken_premise(p: Formula, q: Formula, shows: _Prover) -> bool:
             return False
 
 
-def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
+def _strengthen_conclusion(p: Formula, q: Formula, shows: _ImplicationTest) -> bool:
     """Whether ``p`` implies a formula from which the temporal formula ``q`` follows.
 
     ``a`` implies ``F a``, ``b`` implies ``a U b``, …
@@ -170,7 +179,7 @@ def _strengthen_conclusion(p: Formula, q: Formula, shows: _Prover) -> bool:
             return False
 
 
-def _compare_operands(p: Formula, q: Formula, shows: _Prover) -> bool:
+def _compare_operands(p: Formula, q: Formula, shows: _ImplicationTest) -> bool:
     """Whether ``q`` has the operator of ``p`` or a weaker one, and each operand of ``p`` implies that of ``q``.
 
     ``F G`` and ``G F`` count as one operator: ``F G a`` and ``G F a`` both mean ``a`` at the last sample.

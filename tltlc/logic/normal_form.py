@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import chain
 
 from tltlc.logic import formula as build
-from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+from tltlc.logic.formula import FALSE, TRUE, Formula, FormulaOp
 from tltlc.logic.implication import DUAL
 
 _Signed = tuple[Formula, bool]
@@ -61,7 +61,7 @@ def _strip(signed: _Signed) -> _Signed:
     return node, positive
 
 
-def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
+def _expand(signed: _Signed) -> tuple[FormulaOp, tuple[_Signed, ...]]:
     """Push the sign of a signed formula inwards: return its new top operator, and its signed operands.
 
     For ``a & b`` with the sign False (negated), the operator is ``or``, and both operands get the
@@ -82,7 +82,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
     return op, tuple(_strip((argument, positive)) for argument in node.args)
 
 
-def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
+def _gather(op: FormulaOp, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
     """Return signed operands (formulas, each maybe negated) in order and each once.
 
     An operand that has the operator ``op`` is replaced by its own operands.
@@ -103,7 +103,7 @@ def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
     return tuple(gathered)
 
 
-def _combine(signed: _Signed, op: Op, operands: tuple[Formula, ...]) -> Formula:
+def _combine(signed: _Signed, op: FormulaOp, operands: tuple[Formula, ...]) -> Formula:
     """Return the negation normal form of a signed formula, which is a formula or its negation.
 
     ``op`` is the top operator after pushing the sign inwards, and ``operands`` are the normal forms

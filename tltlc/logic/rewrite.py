@@ -12,7 +12,7 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.logic import boolean_rules, temporal_rules
-from tltlc.logic.formula import Formula, Op, rebuild
+from tltlc.logic.formula import Formula, FormulaOp, rebuild
 
 _MOST_PASSES: Final = 12
 _MOST_STEPS: Final = 50
@@ -28,12 +28,12 @@ class Rewrite:
     """
 
     name: str
-    ops: tuple[Op, ...]
+    ops: tuple[FormulaOp, ...]
     law: str
     apply: Callable[[Formula], Formula]
 
 
-_AND_OR: Final[tuple[Op, ...]] = ("and", "or")
+_AND_OR: Final[tuple[FormulaOp, ...]] = ("and", "or")
 
 REWRITES: Final = (
     Rewrite(

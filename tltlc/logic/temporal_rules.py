@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection
 
 from tltlc.logic import formula as build
 from tltlc.logic.boolean_rules import join
-from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+from tltlc.logic.formula import FALSE, TRUE, Formula, FormulaOp
 from tltlc.logic.implication import DUAL, complement, syntactically_implies, value_at_last
 
 
@@ -113,8 +113,8 @@ def distribute(node: Formula) -> Formula:
     ``G a & G b`` becomes ``G(a & b)``, and ``F a | F b`` becomes ``F(a | b)``. ``X a & N b``
     becomes ``X(a & b)``, and ``X a | N b`` becomes ``N(a | b)``.
     """
-    distributes: Op
-    decides: Op
+    distributes: FormulaOp
+    decides: FormulaOp
     distributes, decides = ("G", "X") if node.op == "and" else ("F", "N")
     for ops in (("X", "N"), (distributes,)):
         positions = [index for index, part in enumerate(node.args) if part.op in ops]

@@ -20,13 +20,15 @@ from tltlc.monitor.trace_rows import (
 )
 from tltlc.resolve.spec import Signal
 
-Sample = dict[str, float]
+TraceSample = dict[str, float]
 
 _NUMBER_HELP: Final = "write a number, `true` or `false`"
 _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
-def read_trace(stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[Sample]:
+def read_trace(
+    stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None
+) -> Iterator[TraceSample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
     ``stream`` is binary; ``name`` is the trace's name in messages. The format is described in
@@ -42,7 +44,7 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal], clock_s: fl
     """
     lines = TraceLines(stream, name)
     trace = read_rows(lines)
-    samples: Iterator[Sample] = iter(())
+    samples: Iterator[TraceSample] = iter(())
     if isinstance(trace, TraceTable):
         samples = _table_samples(trace, lines, signals, SampleTimes(clock_s))
     elif trace is not None:
@@ -79,7 +81,7 @@ def _check_time(time: float | None, times: SampleTimes, lines: TraceLines, colum
 
 def _table_samples(
     trace: TraceTable, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
-) -> Iterator[Sample]:
+) -> Iterator[TraceSample]:
     columns = _columns(trace.header, lines, signals)
     time = times_name(trace.header, signals)
     time_column = None if time is None else trace.header.index(time)
@@ -133,7 +135,7 @@ def _suggestion(name: str, columns: Sequence[str]) -> str | None:
     return f"did you mean the column `{squeezed[close[0]]}`?" if close else None
 
 
-def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> Sample:
+def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> TraceSample:
     sample = {}
     for signal, column in columns:
         value = cell_number(row[column])
@@ -174,7 +176,7 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 
 def _object_samples(
     trace: TraceObjects, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
-) -> Iterator[Sample]:
+) -> Iterator[TraceSample]:
     time_key: str | None = None
     for number, object_ in enumerate(trace.rows):
         sample = _object_sample(object_, signals, lines)
@@ -190,7 +192,7 @@ def _object_samples(
         yield sample
 
 
-def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines) -> Sample:
+def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines: TraceLines) -> TraceSample:
     sample = {}
     for signal in signals:
         given = object_.get(signal.name)

@@ -37,10 +37,10 @@ from tltlc.program.tree import (
     Not,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
     Type,
-    Variable,
 )
 
 _DEEPEST: Final = 30
@@ -56,10 +56,10 @@ Two kinds of nesting are counted separately, and each may be this deep: ``when``
 each other, and the ``else`` parts that hold later cases of one ``when``.
 """
 
-_Node = Union[source.Expression, source.Condition]
+_SourceNode = Union[source.Expression, source.Condition]
 
 
-class _Path:
+class _BranchPath:
     """The conditions that are all true where an expression is computed, as a linked list.
 
     ``condition`` is the last one, and ``before`` has the others. ``variable`` is the variable of
@@ -68,9 +68,9 @@ class _Path:
 
     __slots__ = ("before", "condition", "variable")
 
-    def __init__(self, before: _Path | None, condition: source.Condition) -> None:
+    def __init__(self, before: _BranchPath | None, condition: source.Condition) -> None:
         self.before, self.condition = before, condition
-        self.variable: Variable | None = None
+        self.variable: ProgramVariable | None = None
 
 
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
@@ -152,7 +152,7 @@ class ExpressionTranslator:
         temporary variable whether no case before it was selected.
         """
         lines: list[Statement] = [Assign(name, Real(0.0))]
-        open_ = Variable(self._declare("bool", lines, changes=True))
+        open_ = ProgramVariable(self._declare("bool", lines, changes=True))
         lines.append(Assign(open_.name, Bool(True)))
         lines.append(If(tuple((test, (*body, Assign(open_.name, Bool(False)))) for test, body in first)))
         for condition, value in rest.cases:
@@ -165,18 +165,20 @@ class ExpressionTranslator:
 
     @overload
     def _split(
-        self, node: source.Condition, lines: list[Statement], path: _Path | None, depth: int
+        self, node: source.Condition, lines: list[Statement], path: _BranchPath | None, depth: int
     ) -> source.Condition: ...
 
     @overload
     def _split(
-        self, node: source.Expression, lines: list[Statement], path: _Path | None, depth: int
+        self, node: source.Expression, lines: list[Statement], path: _BranchPath | None, depth: int
     ) -> source.Expression: ...
 
     @overload
-    def _split(self, node: _Node, lines: list[Statement], path: _Path | None, depth: int) -> _Node: ...
+    def _split(
+        self, node: _SourceNode, lines: list[Statement], path: _BranchPath | None, depth: int
+    ) -> _SourceNode: ...
 
-    def _split(self, node: _Node, lines: list[Statement], path: _Path | None, depth: int) -> _Node:
+    def _split(self, node: _SourceNode, lines: list[Statement], path: _BranchPath | None, depth: int) -> _SourceNode:
         """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
 
         Appends to ``lines`` the statements that compute these variables; they run only if all
@@ -189,22 +191,24 @@ class ExpressionTranslator:
             cases: list[tuple[source.Condition, source.Expression]] = []
             for condition, value in node.cases:
                 test = self._split(condition, lines, path, depth + 1)
-                cases.append((test, self._split(value, lines, _Path(path, test), depth + 1)))
-                path = _Path(path, source.Condition("not", (test,)))
+                cases.append((test, self._split(value, lines, _BranchPath(path, test), depth + 1)))
+                path = _BranchPath(path, source.Condition("not", (test,)))
             return source.When(tuple(cases), self._split(node.otherwise, lines, path, depth + 1))
         if isinstance(node, source.Condition) and node.op in ("and", "or"):
             parts: list[source.Condition] = []
             for part in node.args:
                 assert isinstance(part, source.Condition), "and and or take conditions"
                 parts.append(self._split(part, lines, path, depth))
-                path = _Path(path, parts[-1] if node.op == "and" else source.Condition("not", (parts[-1],)))
+                path = _BranchPath(path, parts[-1] if node.op == "and" else source.Condition("not", (parts[-1],)))
             return source.Condition(node.op, tuple(parts))
         if isinstance(node, (source.Op, source.Condition)):
             args = tuple(self._split(argument, lines, path, depth) for argument in node.args)
             return replace(node, args=args)
         return node
 
-    def _compute_before(self, node: source.When, lines: list[Statement], path: _Path | None) -> source.SignalValue:
+    def _compute_before(
+        self, node: source.When, lines: list[Statement], path: _BranchPath | None
+    ) -> source.SignalValue:
         self._count += 1
         name = f"{self._prefix}{self._count}"
         if path:
@@ -218,14 +222,14 @@ class ExpressionTranslator:
         self._signals[stand_in.name] = name
         return stand_in
 
-    def _holds(self, path: _Path, lines: list[Statement]) -> Variable:
+    def _holds(self, path: _BranchPath, lines: list[Statement]) -> ProgramVariable:
         """Return a variable that is true if all conditions of the path are.
 
         Appends to ``lines`` the statements that compute it. Paths share the variables of the
         conditions that they have in common, and each condition is computed only once.
         """
-        new: list[_Path] = []
-        known: _Path | None = path
+        new: list[_BranchPath] = []
+        known: _BranchPath | None = path
         while known is not None and known.variable is None:
             new.append(known)
             known = known.before
@@ -241,7 +245,7 @@ class ExpressionTranslator:
                 name = self._declare("bool", lines, changes=True)
                 lines.append(Assign(name, Bool(False)))
                 lines.append(If(((holds, (*needed, Assign(name, test))),)))
-            part.variable = holds = Variable(name)
+            part.variable = holds = ProgramVariable(name)
         assert holds is not None, "a path has at least one condition"
         return holds
 
@@ -252,15 +256,15 @@ class ExpressionTranslator:
         if isinstance(node, source.Const):
             return Real(float(node.value))
         if isinstance(node, source.SignalValue):
-            return Variable(self._signals[node.name])
+            return ProgramVariable(self._signals[node.name])
         if isinstance(node, source.ParamValue):
-            return Variable(self._params[node.name])
+            return ProgramVariable(self._params[node.name])
         if isinstance(node, source.When):
             self._count += 1
             name = f"{self._prefix}{self._count}"
             branches = self._cases(name, node)
             lines += [Declare(name, "real", None, _is_reassigned(name, branches)), *branches]
-            return Variable(name)
+            return ProgramVariable(name)
         if node.op == "^" and isinstance(exponent := node.args[1], source.Const):
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
             if factors:
@@ -292,7 +296,7 @@ class ExpressionTranslator:
 
     # --- tests ------------------------------------------------------------------------------------
 
-    def _test(self, node: _Node, lines: list[Statement]) -> ProgramExpression:
+    def _test(self, node: _SourceNode, lines: list[Statement]) -> ProgramExpression:
         """Translate a condition to a test, and append to ``lines`` the statements to run before it."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
@@ -304,13 +308,13 @@ class ExpressionTranslator:
         op = node.op
         return Compare(op, self._argument(left, lines), self._argument(right, lines))
 
-    def _part(self, node: _Node, lines: list[Statement]) -> ProgramExpression:
+    def _part(self, node: _SourceNode, lines: list[Statement]) -> ProgramExpression:
         test = self._test(node, lines)
         if self._depth(test) < _DEEPEST:
             return test
         name = self._declare("bool", lines)
         lines.append(Assign(name, test))
-        return Variable(name)
+        return ProgramVariable(name)
 
     def _join(self, node: source.Condition, lines: list[Statement]) -> ProgramExpression:
         """Translate an ``and`` or ``or`` to a test.
@@ -327,9 +331,9 @@ class ExpressionTranslator:
             elif needed:
                 name = self._declare("bool", lines, changes=True)
                 lines.append(Assign(name, _all_or_any(node.op, tests)))
-                undecided = Variable(name) if node.op == "and" else Not(Variable(name))
+                undecided = ProgramVariable(name) if node.op == "and" else Not(ProgramVariable(name))
                 lines.append(If(((undecided, (*needed, Assign(name, test))),)))
-                tests, test = [], Variable(name)
+                tests, test = [], ProgramVariable(name)
             tests.append(test)
         return _all_or_any(node.op, tests)
 
@@ -340,12 +344,12 @@ class ExpressionTranslator:
 
         Appends to ``lines`` the declaration of the variable, if it is a new one.
         """
-        if isinstance(value, (Variable, Real)):
+        if isinstance(value, (ProgramVariable, Real)):
             return value
         self._count += 1
         name = f"{self._prefix}{self._count}"
         lines.append(Declare(name, "real", value))
-        return Variable(name)
+        return ProgramVariable(name)
 
     def _declare(self, type_: Type, lines: list[Statement], changes: bool = False) -> str:
         self._count += 1
@@ -364,7 +368,7 @@ class ExpressionTranslator:
         return 0
 
 
-def _branch_depth(node: _Node) -> int:
+def _branch_depth(node: _SourceNode) -> int:
     """Return how deep ``when`` expressions are nested in a node."""
     if isinstance(node, source.When):
         inside = [*(part for case in node.cases for part in case), node.otherwise]

@@ -26,9 +26,9 @@ from tltlc.program.tree import (
     Not,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 from tltlc.program.used_names import parts
 
@@ -37,7 +37,7 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 
 
 @record
-class Range:
+class ValueRange:
     """The interval in which the value of an expression lies. The value is never NaN.
 
     Both ends are included and may be infinite.
@@ -51,26 +51,26 @@ class Range:
         return self.low > 0.0 or self.high < 0.0
 
 
-def range_between(low: float | None, high: float | None) -> Range:
+def range_between(low: float | None, high: float | None) -> ValueRange:
     """Return the interval of a finite value from ``low`` to ``high``.
 
     For None, the end is the largest finite double on that side.
     """
-    return Range(-_MOST if low is None else low, _MOST if high is None else high)
+    return ValueRange(-_MOST if low is None else low, _MOST if high is None else high)
 
 
 def prove_ranges(
-    name: str, statements: Sequence[Statement], known: Mapping[str, Range]
-) -> tuple[tuple[Statement, ...], Range | None]:
+    name: str, statements: Sequence[Statement], known: Mapping[str, ValueRange]
+) -> tuple[tuple[Statement, ...], ValueRange | None]:
     """Replace ``divide`` by ``/`` where the divisor is never 0, and find the range of a variable.
 
     Returns the new statements, and the range that the variable ``name`` has after them; None if
     nothing is known about its value, or if it may be NaN. ``known`` maps the variables that exist
     before the statements to their ranges.
     """
-    facts = _Facts({Variable(variable): range_ for variable, range_ in known.items()}, frozenset())
+    facts = _Facts({ProgramVariable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
-    return written, facts.range(Variable(name))
+    return written, facts.range(ProgramVariable(name))
 
 
 class _Facts:
@@ -81,10 +81,12 @@ class _Facts:
     """
 
     def __init__(
-        self, ranges: dict[ProgramExpression, Range], ordered: frozenset[tuple[ProgramExpression, ProgramExpression]]
+        self,
+        ranges: dict[ProgramExpression, ValueRange],
+        ordered: frozenset[tuple[ProgramExpression, ProgramExpression]],
     ) -> None:
         self._ranges, self._at_most_pairs = ranges, ordered
-        self._cache: dict[ProgramExpression, Range | None] = {}
+        self._cache: dict[ProgramExpression, ValueRange | None] = {}
         self._compared: set[ProgramExpression] = set()
         self.assigned_variables: dict[str, None] = {}
 
@@ -127,12 +129,12 @@ class _Facts:
         otherwise = before.statements(statement.otherwise)
         ends.append(before)
         for name in {name: None for end in ends for name in end.assigned_variables}:
-            self._assign(name, _hull([end._ranges.get(Variable(name)) for end in ends]))
+            self._assign(name, _hull([end._ranges.get(ProgramVariable(name)) for end in ends]))
         return If(tuple(cases), otherwise)
 
-    def _assign(self, name: str, range_: Range | None) -> None:
+    def _assign(self, name: str, range_: ValueRange | None) -> None:
         """Record that a variable has a new value, and drop the facts about its old one."""
-        variable = Variable(name)
+        variable = ProgramVariable(name)
         self._cache.clear()
         self._ranges.pop(variable, None)
         if variable in self._compared:
@@ -176,10 +178,10 @@ class _Facts:
                 self._at_most_pairs |= {(left, right)}
                 self._compared.update(parts((left, right)))
                 self._cache.clear()
-                self._narrow(left, Range(low.low, min(low.high, most)))
-                self._narrow(right, Range(max(least, high.low), high.high))
+                self._narrow(left, ValueRange(low.low, min(low.high, most)))
+                self._narrow(right, ValueRange(max(least, high.low), high.high))
 
-    def _narrow(self, node: ProgramExpression, range_: Range) -> None:
+    def _narrow(self, node: ProgramExpression, range_: ValueRange) -> None:
         # If the range is empty, the test never has this result, and its body never runs: the facts do not matter there.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
@@ -211,7 +213,7 @@ class _Facts:
                 return Any(tuple(map(self.rewrite, args)))
         return node
 
-    def range(self, node: ProgramExpression) -> Range | None:
+    def range(self, node: ProgramExpression) -> ValueRange | None:
         """Return the range of an expression.
 
         Returns None if the expression may be NaN or have no value, or if nothing is known about it.
@@ -221,17 +223,17 @@ class _Facts:
         computed = self._compute(node)
         recorded = self._ranges.get(node)
         if computed is not None and recorded is not None:
-            recorded = Range(max(computed.low, recorded.low), min(computed.high, recorded.high))
+            recorded = ValueRange(max(computed.low, recorded.low), min(computed.high, recorded.high))
         self._cache[node] = recorded = recorded or computed
         return recorded
 
-    def _compute(self, node: ProgramExpression) -> Range | None:
+    def _compute(self, node: ProgramExpression) -> ValueRange | None:
         match node:
             case Real(value):
-                return Range(value, value)
+                return ValueRange(value, value)
             case Negate(operand):
                 range_ = self.range(operand)
-                return range_ and Range(-range_.high, -range_.low)
+                return range_ and ValueRange(-range_.high, -range_.low)
             case BinaryNumber("-", left, right):
                 return self._difference(left, right)
             case BinaryNumber("/", left, right):
@@ -246,28 +248,28 @@ class _Facts:
                 if first is None or second is None:
                     return None
                 pick = min if function == "min" else max
-                return Range(pick(first.low, second.low), pick(first.high, second.high))
+                return ValueRange(pick(first.low, second.low), pick(first.high, second.high))
             case NumericCall("abs", (operand,)):
                 range_ = self.range(operand)
                 return range_ and _absolute(range_)
             case NumericCall("tanh", (operand,)):
                 # Languages without tanh compute it from other functions, whose rounded result may exceed 1.
-                return Range(-2.0, 2.0) if self.range(operand) else None
+                return ValueRange(-2.0, 2.0) if self.range(operand) else None
         return None
 
-    def _difference(self, left: ProgramExpression, right: ProgramExpression) -> Range | None:
+    def _difference(self, left: ProgramExpression, right: ProgramExpression) -> ValueRange | None:
         range_ = _ends(lambda x, y: x - y, self.range(left), self.range(right), "-")
         if range_ is not None and (right, left) in self._at_most_pairs:
-            return Range(max(range_.low, 0.0), max(range_.high, 0.0))
+            return ValueRange(max(range_.low, 0.0), max(range_.high, 0.0))
         return range_
 
-    def _quotient(self, left: ProgramExpression, right: ProgramExpression) -> Range | None:
+    def _quotient(self, left: ProgramExpression, right: ProgramExpression) -> ValueRange | None:
         dividend, divisor = self.range(left), self.range(right)
         if divisor is None or not divisor.without_zero():
             return None
         range_ = _ends(lambda x, y: x / y, dividend, divisor, "/")
         if range_ is not None and divisor.low > 0.0 and self._at_most(left, right):
-            return Range(min(range_.low, 1.0), min(range_.high, 1.0))
+            return ValueRange(min(range_.low, 1.0), min(range_.high, 1.0))
         return range_
 
     def _at_most(self, left: ProgramExpression, right: ProgramExpression) -> bool:
@@ -282,7 +284,9 @@ class _Facts:
         return False
 
 
-def _ends(operation: Callable[[float, float], float], left: Range | None, right: Range | None, op: str) -> Range | None:
+def _ends(
+    operation: Callable[[float, float], float], left: ValueRange | None, right: ValueRange | None, op: str
+) -> ValueRange | None:
     """Return the range of an operation that is monotonic in each operand; None if its result may be NaN.
 
     ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operator, such as ``*``.
@@ -292,25 +296,25 @@ def _ends(operation: Callable[[float, float], float], left: Range | None, right:
     if op == "*" and (_is_zero_by_infinity(left, right) or _is_zero_by_infinity(right, left)):
         return None
     ends = [operation(x, y) for x in (left.low, left.high) for y in (right.low, right.high)]
-    return None if any(map(math.isnan, ends)) else Range(min(ends), max(ends))
+    return None if any(map(math.isnan, ends)) else ValueRange(min(ends), max(ends))
 
 
-def _is_zero_by_infinity(left: Range, right: Range) -> bool:
+def _is_zero_by_infinity(left: ValueRange, right: ValueRange) -> bool:
     return left.low <= 0.0 <= left.high and (math.isinf(right.low) or math.isinf(right.high))
 
 
-def _absolute(range_: Range) -> Range:
+def _absolute(range_: ValueRange) -> ValueRange:
     ends = abs(range_.low), abs(range_.high)
-    return Range(0.0 if range_.low <= 0.0 <= range_.high else min(ends), max(ends))
+    return ValueRange(0.0 if range_.low <= 0.0 <= range_.high else min(ends), max(ends))
 
 
-def _square(range_: Range) -> Range:
+def _square(range_: ValueRange) -> ValueRange:
     ends = _absolute(range_)
-    return Range(ends.low * ends.low, ends.high * ends.high)
+    return ValueRange(ends.low * ends.low, ends.high * ends.high)
 
 
-def _hull(ranges: Sequence[Range | None]) -> Range | None:
+def _hull(ranges: Sequence[ValueRange | None]) -> ValueRange | None:
     known_ranges = [range_ for range_ in ranges if range_ is not None]
     if len(known_ranges) < len(ranges):
         return None
-    return Range(min(range_.low for range_ in known_ranges), max(range_.high for range_ in known_ranges))
+    return ValueRange(min(range_.low for range_ in known_ranges), max(range_.high for range_ in known_ranges))

@@ -10,9 +10,9 @@ from tltlc.core.record import record
 from tltlc.monitor.tables import ends_on_entry, tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
-from tltlc.program.bounds import Range, prove_ranges, range_between
+from tltlc.program.bounds import ValueRange, prove_ranges, range_between
 from tltlc.program.names import VariableNames
-from tltlc.program.tree import FAILING, Function, Statement
+from tltlc.program.tree import FAILING, NumericFunction, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Signal
 
@@ -95,7 +95,7 @@ class Program:
         return variables_read(statement for value in self.values for statement in value)
 
     @property
-    def functions(self) -> frozenset[Function]:
+    def functions(self) -> frozenset[NumericFunction]:
         """The functions that the statements in ``values`` call."""
         return functions_called(statement for value in self.values for statement in value)
 
@@ -207,8 +207,8 @@ def _atom_comments(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]
     return tuple(atom_comments)
 
 
-def _range(signal: Signal) -> Range:
-    return Range(0.0, 1.0) if signal.type == "bool" else range_between(signal.low, signal.high)
+def _range(signal: Signal) -> ValueRange:
+    return ValueRange(0.0, 1.0) if signal.type == "bool" else range_between(signal.low, signal.high)
 
 
 def _prefix(names: Sequence[str]) -> str:

@@ -19,7 +19,7 @@ from tltlc.program.tree import (
     Bool,
     CommentLine,
     Compare,
-    Comparison,
+    ComparisonOp,
     Declare,
     If,
     Int,
@@ -27,10 +27,10 @@ from tltlc.program.tree import (
     Not,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
     Type,
-    Variable,
 )
 
 _OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
@@ -55,7 +55,7 @@ class Printer:
     """The start of a comment line."""
     TYPES: ClassVar[dict[Type, str]] = {"real": "double", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "&&", "or": "||", "not": "!", "true": "true", "false": "false"}
-    COMPARISONS: ClassVar[dict[Comparison, str]] = {
+    COMPARISONS: ClassVar[dict[ComparisonOp, str]] = {
         "<": "<",
         "<=": "<=",
         ">": ">",
@@ -180,7 +180,7 @@ class Printer:
                 return str(value), _SIGN if value < 0 else _UNIT
             case Bool(value):
                 return self.WORDS["true" if value else "false"], _UNIT
-            case Variable(name):
+            case ProgramVariable(name):
                 return self.name(name), _UNIT
             case Negate(operand):
                 return f"-{self.text(operand, _UNIT)}", _SIGN

@@ -17,9 +17,9 @@ from tltlc.program.tree import (
     If,
     Int,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 
 STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
@@ -44,22 +44,33 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
     They run after each transition of the automaton.
     """
     limit = fspa.limit_steps
-    steps, zero = Variable(STEPS), Real(0.0)
+    steps, zero = ProgramVariable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
-    lines.append(Declare(BEFORE, "real", Variable(BEST)))
-    lines.append(If(((Compare(">", Variable(PROGRESS), Variable(BEST)), (Assign(BEST, Variable(PROGRESS)),)),)))
-    gained = BinaryNumber("-", Variable(BEST), Variable(BEFORE))
+    lines.append(Declare(BEFORE, "real", ProgramVariable(BEST)))
+    lines.append(
+        If(
+            (
+                (
+                    Compare(">", ProgramVariable(PROGRESS), ProgramVariable(BEST)),
+                    (Assign(BEST, ProgramVariable(PROGRESS)),),
+                ),
+            )
+        )
+    )
+    gained = BinaryNumber("-", ProgramVariable(BEST), ProgramVariable(BEFORE))
     if limit is None:
-        going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, Variable(ENDS)))
+        going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, ProgramVariable(ENDS)))
     else:
         whole = Real(float(limit))
-        remaining = BinaryNumber("/", BinaryNumber("-", whole, Variable(STEPS_REAL)), whole)
+        remaining = BinaryNumber("/", BinaryNumber("-", whole, ProgramVariable(STEPS_REAL)), whole)
         going_on = (
             Assign(REWARD, BinaryNumber("-", gained, Real(1 / limit))),
-            If(((Variable(VIOLATED), (Assign(REWARD, BinaryNumber("-", Variable(REWARD), remaining)),)),)),
-            Assign(DONE, Any((Variable(ENDS), Compare(">=", steps, Int(limit))))),
+            If(
+                ((ProgramVariable(VIOLATED), (Assign(REWARD, BinaryNumber("-", ProgramVariable(REWARD), remaining)),)),)
+            ),
+            Assign(DONE, Any((ProgramVariable(ENDS), Compare(">=", steps, Int(limit))))),
         )
-    lines.append(If(((Variable(DONE), (Assign(REWARD, zero),)),), going_on))
+    lines.append(If(((ProgramVariable(DONE), (Assign(REWARD, zero),)),), going_on))
     return tuple(lines)
 
 
@@ -71,11 +82,11 @@ def _survived(limit: int | None) -> list[Statement]:
     spec is satisfied.
     """
     cases: list[tuple[ProgramExpression, tuple[Statement, ...]]] = [
-        (Variable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),
+        (ProgramVariable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),
     ]
     if limit is None:
         return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, Real(0.0)),))]
-    cases.append((Variable(VIOLATED), (Assign(PROGRESS, Real(0.0)),)))
-    cases.append((Compare(">=", Variable(STEPS), Int(limit)), (Assign(PROGRESS, Real(1.0)),)))
-    share = BinaryNumber("/", Variable(STEPS_REAL), Real(float(limit)))
+    cases.append((ProgramVariable(VIOLATED), (Assign(PROGRESS, Real(0.0)),)))
+    cases.append((Compare(">=", ProgramVariable(STEPS), Int(limit)), (Assign(PROGRESS, Real(1.0)),)))
+    share = BinaryNumber("/", ProgramVariable(STEPS_REAL), Real(float(limit)))
     return [Declare(PROGRESS, "real"), If(tuple(cases), (Assign(PROGRESS, share),))]

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import count
 from typing import Final
 
-from tltlc.program.tree import Assign, Declare, If, Negate, NumericCall, ProgramExpression, Statement, Variable
+from tltlc.program.tree import Assign, Declare, If, Negate, NumericCall, ProgramExpression, ProgramVariable, Statement
 
 PART: Final = "part"
 """The prefix of the variables that :func:`split_deep_values` adds, which are numbered from 1."""
@@ -63,7 +63,7 @@ def _cut(value: ProgramExpression, lines: list[Statement], names: Iterator[str])
         if depth >= _DEEPEST:
             name = next(names)
             lines.append(Declare(name, "real", cut))
-            cut, depth = Variable(name), 0
+            cut, depth = ProgramVariable(name), 0
         args.append(cut)
         deepest = max(deepest, depth)
     return NumericCall(value.function, tuple(args)), deepest + 1

@@ -26,9 +26,9 @@ from tltlc.program.tree import (
     Negate,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 from tltlc.program.used_names import variables_read
 
@@ -91,7 +91,7 @@ class _StateCode:
         lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
         # The guards of the edges towards a goal are false, so their robustness is at most 0 without `min(0, …)`.
         share = BinaryNumber(
-            "/", BinaryNumber("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size))
+            "/", BinaryNumber("+", Real(1.0), ProgramVariable(NEAREST)), Real(float(self._tables.fspa.spec_size))
         )
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
@@ -140,8 +140,8 @@ class _StateCode:
         for index, prime in enumerate(following):
             if index:
                 lines.append(Assign(OTHER, self._least(prime)))
-            better = (Assign(NEAREST, Variable(OTHER)), *self._limiting_statements(prime, OTHER))
-            lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
+            better = (Assign(NEAREST, ProgramVariable(OTHER)), *self._limiting_statements(prime, OTHER))
+            lines.append(If(((Compare(">", ProgramVariable(OTHER), ProgramVariable(NEAREST)), better),)))
         # A single prime implicant with one literal is compared with nothing: drop NEAREST if nothing reads it.
         return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
@@ -156,7 +156,7 @@ class _StateCode:
         if not before:
             return [otherwise]
         cases = [
-            (Compare("==", self._value(atom, polarity), Variable(value)), (Assign(LIMITING, Int(atom)),))
+            (Compare("==", self._value(atom, polarity), ProgramVariable(value)), (Assign(LIMITING, Int(atom)),))
             for atom, polarity in before
         ]
         return [If(tuple(cases), (otherwise,))]
@@ -185,7 +185,7 @@ def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
     values: dict[tuple[int, bool], ProgramExpression] = {}
     tests: dict[tuple[int, bool], ProgramExpression] = {}
     for index, name in enumerate(atoms):
-        variable = Variable(name)
+        variable = ProgramVariable(name)
         values[index, True], values[index, False] = variable, Negate(variable)
         tests[index, True], tests[index, False] = Compare(">", variable, _ZERO), Compare("<=", variable, _ZERO)
     return values, tests

@@ -13,16 +13,16 @@ from tltlc.core.record import record
 
 Type = Literal["real", "int", "bool"]
 
-Comparison = Literal["<", "<=", ">", ">=", "==", "!="]
+ComparisonOp = Literal["<", "<=", ">", ">=", "==", "!="]
 
-Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
+NumericFunction = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
 """The numeric functions.
 
 ``min`` and ``max`` take two arguments, and return the first one if both are equal:
 ``b < a ? b : a`` and ``b > a ? b : a``.
 """
 
-FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp"})
+FAILING: Final[frozenset[NumericFunction]] = frozenset({"divide", "power", "sqrt", "exp"})
 """Functions that have no value for some arguments."""
 
 
@@ -51,7 +51,7 @@ class Bool:
 
 
 @record
-class Variable:
+class ProgramVariable:
     """A variable, by its name in the program, which :class:`tltlc.program.names.VariableNames` has chosen."""
 
     name: str
@@ -77,7 +77,7 @@ class BinaryNumber:
 class NumericCall:
     """A call of a numeric function."""
 
-    function: Function
+    function: NumericFunction
     args: tuple[ProgramExpression, ...]
 
 
@@ -85,7 +85,7 @@ class NumericCall:
 class Compare:
     """A comparison of two numbers of the same type."""
 
-    op: Comparison
+    op: ComparisonOp
     left: ProgramExpression
     right: ProgramExpression
 
@@ -111,7 +111,7 @@ class Any:
     args: tuple[ProgramExpression, ...]
 
 
-ProgramExpression = Union[Real, Int, Bool, Variable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
+ProgramExpression = Union[Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
 
 
 # --- statements -----------------------------------------------------------------------------------

@@ -15,23 +15,23 @@ from tltlc.program.tree import (
     BinaryNumber,
     Compare,
     Declare,
-    Function,
     If,
     Negate,
     Not,
     NumericCall,
+    NumericFunction,
     ProgramExpression,
+    ProgramVariable,
     Statement,
-    Variable,
 )
 
 
 def variables_read(statements: Iterable[Statement]) -> frozenset[str]:
     """Return the names of the variables that the statements read."""
-    return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
+    return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, ProgramVariable))
 
 
-def functions_called(statements: Iterable[Statement]) -> frozenset[Function]:
+def functions_called(statements: Iterable[Statement]) -> frozenset[NumericFunction]:
     """Return the functions that the statements call."""
     return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.calls import calls
-from tltlc.automaton.infinite.cycles import Edge, decomposition
+from tltlc.automaton.infinite.cycles import MarkedEdge, decomposition
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks
 from tltlc.automaton.infinite.products import separating_component
 from tltlc.automaton.work import OutOfWork, Work
@@ -16,12 +16,12 @@ BUDGET = 20_000
 MOST_CALLS = 20 * BUDGET
 
 
-def ring(marks: Marks) -> list[Edge]:
+def ring(marks: Marks) -> list[MarkedEdge]:
     """Return a cycle of ``SIZE`` edges that all have these marks."""
     return [(state, (state + 1) % SIZE, marks) for state in range(SIZE)]
 
 
-def spends(edges: list[Edge], clauses: list[MarkClause]) -> int:
+def spends(edges: list[MarkedEdge], clauses: list[MarkClause]) -> int:
     """Return the number of calls that a decomposition makes until it runs out of its budget."""
 
     def work() -> None:

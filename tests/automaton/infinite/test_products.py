@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, separating_component
+from tltlc.automaton.infinite.products import PairLeaf, StatePair, conditions, separating_component
 from tltlc.automaton.work import OutOfWork, Work
 
 START, OVER = (0, 0), (1, 1)
@@ -12,7 +12,7 @@ ONE_FIN, ONE_INF, OTHER_FIN, OTHER_INF = range(4)
 """The marks of two automata with one pair each."""
 
 
-def loops(*marks: set[int]) -> dict[StatePair, list[Leaf]]:
+def loops(*marks: set[int]) -> dict[StatePair, list[PairLeaf]]:
     """Return two states on one cycle, with a loop at the second state for each set of marks."""
     leaves = [(OVER, frozenset(loop_marks)) for loop_marks in marks]
     return {START: [(OVER, frozenset())], OVER: [(START, frozenset()), *leaves]}
@@ -31,12 +31,12 @@ def loops(*marks: set[int]) -> dict[StatePair, list[Leaf]]:
     ],
 )
 def test_cycles_that_only_one_automaton_accepts_are_found(
-    graph: dict[StatePair, list[Leaf]], ways: tuple[bool, bool]
+    graph: dict[StatePair, list[PairLeaf]], ways: tuple[bool, bool]
 ) -> None:
     one, other = conditions(1, 1)
     visited: list[StatePair] = []
 
-    def leaves(both: StatePair) -> list[Leaf]:
+    def leaves(both: StatePair) -> list[PairLeaf]:
         visited.append(both)
         return graph[both]
 

@@ -21,9 +21,9 @@ from tltlc.program.tree import (
     Not,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 
 Value = float | int | bool
@@ -65,7 +65,7 @@ class Scope:
         match node:
             case Real(value) | Int(value) | Bool(value):
                 return value
-            case Variable(name):
+            case ProgramVariable(name):
                 return self.values[name]
             case Negate(operand):
                 return -self.value(operand)

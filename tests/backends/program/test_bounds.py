@@ -20,18 +20,20 @@ from tltlc.core.record import replace
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.logic import formula as f
 from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
-from tltlc.program.bounds import Range, prove_ranges, range_between
+from tltlc.program.bounds import ValueRange, prove_ranges, range_between
 from tltlc.program.build import program
 from tltlc.program.tree import Statement
 from tltlc.program.used_names import functions_called
 from tltlc.resolve import spec
 
 ROOT = Path(__file__).resolve().parents[3]
-KNOWN = {"s1": range_between(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 1e4)}
+KNOWN = {"s1": range_between(0.0, None), "health": ValueRange(0.0, 1.0), "size": ValueRange(2.0, 1e4)}
 S1, HEALTH, SIZE = SignalValue("distance(s1)"), SignalValue("health"), ParamValue("level_size")
 
 
-def with_proved_ranges(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
+def with_proved_ranges(
+    expression: Expression,
+) -> tuple[tuple[Statement, ...], tuple[Statement, ...], ValueRange | None]:
     """Return the plain statements, the statements simplified by the proven ranges, and the range of the value."""
     arithmetic = ExpressionTranslator({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
     statements = arithmetic.assign("value", expression)
@@ -87,21 +89,21 @@ def test_values_are_the_same_and_in_their_range(expression: Expression, s1: floa
     ("expression", "range_"),
     [
         (S1, range_between(0.0, None)),
-        (less(Op("*", (Const(2.0), HEALTH)), Const(1.0)), Range(-1.0, 1.0)),
+        (less(Op("*", (Const(2.0), HEALTH)), Const(1.0)), ValueRange(-1.0, 1.0)),
         (quotient(S1, less(SIZE, Const(1.0))), range_between(0.0, None)),
         (quotient(Const(1.0), HEALTH), None),
         (Op("clamp", (quotient(S1, HEALTH), Const(-1.0), Const(1.0))), None),
-        (Op("clamp", (Op("*", (S1, S1)), Const(-1.0), Const(1.0))), Range(0.0, 1.0)),
-        (way, Range(-1.0, 1.0)),
-        (Op("^", (less(HEALTH, Const(1.0)), Const(2.0))), Range(0.0, 1.0)),
+        (Op("clamp", (Op("*", (S1, S1)), Const(-1.0), Const(1.0))), ValueRange(0.0, 1.0)),
+        (way, ValueRange(-1.0, 1.0)),
+        (Op("^", (less(HEALTH, Const(1.0)), Const(2.0))), ValueRange(0.0, 1.0)),
         (less(Op("*", (S1, S1)), Op("*", (S1, S1))), None),
         (Op("*", (Op("*", (S1, S1)), HEALTH)), None),
-        (Op("tanh", (S1,)), Range(-2.0, 2.0)),
-        (Op("abs", (less(HEALTH, Const(0.25)),)), Range(0.0, 0.75)),
+        (Op("tanh", (S1,)), ValueRange(-2.0, 2.0)),
+        (Op("abs", (less(HEALTH, Const(0.25)),)), ValueRange(0.0, 0.75)),
         (Op("exp", (HEALTH,)), None),
     ],
 )
-def test_expressions_have_the_ranges_computed_by_hand(expression: Expression, range_: Range | None) -> None:
+def test_expressions_have_the_ranges_computed_by_hand(expression: Expression, range_: ValueRange | None) -> None:
     assert with_proved_ranges(expression)[2] == range_
 
 

@@ -9,10 +9,10 @@ from tltlc.backends import emit
 from tltlc.backends.javascript import _JavaScript
 from tltlc.backends.languages.lua_syntax import LuaPrinter
 from tltlc.program.printer import Printer
-from tltlc.program.tree import All, Compare, Variable
+from tltlc.program.tree import All, Compare, ProgramVariable
 
-EQUAL = Compare("==", Variable("a"), Variable("b"))
-OTHER = Compare("!=", Variable("a"), Variable("b"))
+EQUAL = Compare("==", ProgramVariable("a"), ProgramVariable("b"))
+OTHER = Compare("!=", ProgramVariable("a"), ProgramVariable("b"))
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from tltlc.program.arithmetic import ExpressionTranslator, with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer
 from tltlc.program.states import ROBUSTNESS
-from tltlc.program.tree import Assign, Declare, If, Statement, Variable
+from tltlc.program.tree import Assign, Declare, If, ProgramVariable, Statement
 from tltlc.program.used_names import parts, variables_read
 from tltlc.resolve import spec
 
@@ -170,7 +170,7 @@ def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[flo
     assert isinstance(branch, If)
     for body in (branch.cases[0][1], branch.otherwise):
         (robustness,) = (line.value for line in body if isinstance(line, Assign) and line.name == ROBUSTNESS)
-        assert sum(isinstance(part, Variable) for part in parts([robustness])) == 4
+        assert sum(isinstance(part, ProgramVariable) for part in parts([robustness])) == 4
     outcome = step(compiled, 0, 1, 0.0, False, dict(zip(compiled.atoms, sample, strict=True)))
     assert outcome["robustness"] == Monitor(fspa).step_atoms(sample).robustness
 

@@ -16,9 +16,9 @@ from tltlc.program.tree import (
     Negate,
     NumericCall,
     ProgramExpression,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 
 
@@ -35,7 +35,7 @@ def test_values_stay_the_same() -> None:
     draw = random.Random(7)
     numbers = [Real(draw.uniform(-1.0, 1.0)) for _ in range(200)]
     deep = NumericCall("min", (Negate(greatest(numbers[:150])), NumericCall("min", (Real(0.5), greatest(numbers)))))
-    statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(Variable("x"))))),))]
+    statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(ProgramVariable("x"))))),))]
     cut = split_deep_values(statements)
     actual, expected = Scope({}), Scope({})
     actual.run([Declare("y", "real", None, changes=True), *cut])
@@ -50,6 +50,6 @@ def test_shallow_statements_are_unchanged() -> None:
 
 
 def test_new_names_avoid_existing_ones() -> None:
-    statements = [Assign("x", greatest(Variable(f"part{number}") for number in range(70)))]
+    statements = [Assign("x", greatest(ProgramVariable(f"part{number}") for number in range(70)))]
     cut = split_deep_values(statements, [f"part{number}" for number in range(70)])
     assert [line.name for line in cut if isinstance(line, Declare)] == ["part_1", "part_2"]

@@ -11,20 +11,20 @@ from tltlc.program.tree import (
     Negate,
     Not,
     NumericCall,
+    ProgramVariable,
     Real,
     Statement,
-    Variable,
 )
 from tltlc.program.used_names import functions_called, variables_read
 
-x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
+x, y, z, zero = ProgramVariable("x"), ProgramVariable("y"), ProgramVariable("z"), Real(0.0)
 STATEMENTS: list[Statement] = [
     CommentLine("of `comment`"),
     Declare("a", "real"),
     Declare("b", "real", Negate(NumericCall("sqrt", (BinaryNumber("+", x, zero),)))),
     If(
         ((All((Compare(">", y, zero), Not(Compare("<", NumericCall("abs", (y,)), zero)))), (Assign("a", z),)),),
-        (Assign("a", NumericCall("max", (NumericCall("divide", (x, zero)), Variable("b")))),),
+        (Assign("a", NumericCall("max", (NumericCall("divide", (x, zero)), ProgramVariable("b")))),),
     ),
 ]
 

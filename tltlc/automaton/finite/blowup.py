@@ -24,7 +24,7 @@ _PART_BUDGET = 2_000
 """The state budget for the automaton of one clause alone: enough to compare the clauses, small enough to be quick."""
 
 
-class Size(NamedTuple):
+class ClauseSize(NamedTuple):
     """The size of the automaton of one clause alone: a number for comparing clauses, and its text in messages."""
 
     number: int
@@ -53,12 +53,12 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
     remaining = WORK["states of blamed parts"]
 
-    def size(part: Conjunct, spec: Spec) -> Size | None:
+    def size(part: Conjunct, spec: Spec) -> ClauseSize | None:
         nonlocal remaining
         if remaining < 0:
             # The budget for measuring is used up. The message names the three largest clauses, and more have been
             # measured by now. Size 0 puts this clause behind them.
-            return Size(0, "")
+            return ClauseSize(0, "")
         measured = _size(part, spec)
         remaining -= measured.number if measured else 0
         return measured
@@ -78,7 +78,11 @@ def failure_text(reason: Exception) -> str:
 
 
 def error_with_clauses(
-    spec: Spec, reason: Exception, too_large: str, size: Callable[[Conjunct, Spec], Size | None], advice: str = ADVICE
+    spec: Spec,
+    reason: Exception,
+    too_large: str,
+    size: Callable[[Conjunct, Spec], ClauseSize | None],
+    advice: str = ADVICE,
 ) -> TltlError:
     """Return the error for a spec whose automaton is too large, with labels on at most three clauses.
 
@@ -89,7 +93,7 @@ def error_with_clauses(
     size of the automaton of one clause alone, or None if it is too large to build. ``advice`` is
     the suggestion of the message.
     """
-    sizes: dict[Conjunct, Size | None] = {}
+    sizes: dict[Conjunct, ClauseSize | None] = {}
     alone: list[Conjunct] = []
     for part in spec.parts:
         sizes[part] = size(part, spec)
@@ -139,7 +143,7 @@ def _cause_label(part: Conjunct) -> Label:
     return Label(bound.source, bound.span, "because of this bound")
 
 
-def _size(part: Conjunct, spec: Spec) -> Size | None:
+def _size(part: Conjunct, spec: Spec) -> ClauseSize | None:
     """Return the number of states of the automaton of one clause; None if it is too large to build.
 
     It is too large if it has :data:`_PART_BUDGET` states or more, or if its diagrams take too many
@@ -152,4 +156,4 @@ def _size(part: Conjunct, spec: Spec) -> Size | None:
         states = len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
     except (OutOfStates, OutOfSteps, RecursionError):
         return None
-    return Size(states, f"{states} state{'s' * (states != 1)}") if states < _PART_BUDGET else None
+    return ClauseSize(states, f"{states} state{'s' * (states != 1)}") if states < _PART_BUDGET else None

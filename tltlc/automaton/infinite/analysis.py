@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Fspa, Verdict
-from tltlc.automaton.infinite.cycles import Edge, Edges, accepting_parts, parts, rejecting_parts
+from tltlc.automaton.infinite.cycles import MarkedEdge, MarkedEdges, accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import pair_clauses, pair_marks
 from tltlc.automaton.work import Work
 from tltlc.resolve.spec import Judge
@@ -46,7 +46,7 @@ class Analysis:
     may raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
-    def __init__(self, states: int, edges: Sequence[Edge], pairs: int, work: Work) -> None:
+    def __init__(self, states: int, edges: Sequence[MarkedEdge], pairs: int, work: Work) -> None:
         self._work = work
         self._clauses = pair_clauses(pairs)
         self.targets: dict[int, list[int]] = {state: [] for state in range(states)}
@@ -89,7 +89,7 @@ class Analysis:
                     stack.append(target)
         return "limit" if reached & rejected else "goal"
 
-    def _states_on_rejected_cycles(self, edges: Edges) -> set[int]:
+    def _states_on_rejected_cycles(self, edges: MarkedEdges) -> set[int]:
         """Return the states on a cycle of ``edges`` that is not accepted."""
         rejected = (
             cycle for part in parts(edges, self._work) for cycle in rejecting_parts(part, self._clauses, self._work)
@@ -112,5 +112,5 @@ class Analysis:
         return reaching
 
 
-def _endpoints(parts_: Iterable[Edges]) -> set[int]:
+def _endpoints(parts_: Iterable[MarkedEdges]) -> set[int]:
     return {state for part in parts_ for source, target, _ in part for state in (source, target)}

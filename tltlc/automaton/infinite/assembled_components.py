@@ -11,20 +11,20 @@ from typing import Any
 
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
-from tltlc.automaton.infinite.component import IMPOSSIBLE, State
+from tltlc.automaton.infinite.component import IMPOSSIBLE, ComponentState
 from tltlc.automaton.infinite.pairs import RabinComponent
 
-Place = tuple[int, State]
+ComponentPlace = tuple[int, ComponentState]
 """The number of a component, and one of its states."""
 
 
 def join_components(
     letters: Diagrams[Any],
     components: Sequence[RabinComponent],
-    entry: Mapping[int, Place],
-    initial: Place,
+    entry: Mapping[int, ComponentPlace],
+    initial: ComponentPlace,
     apart: Collection[int] = (),
-) -> tuple[Rabin, dict[Place, int]]:
+) -> tuple[Rabin, dict[ComponentPlace, int]]:
     """Return the automaton that joins ``components``, and the number of each reachable state in it.
 
     The automaton has only the states that can be reached from ``initial``, which becomes state 0.
@@ -36,7 +36,7 @@ def join_components(
     reached = _reachable(letters, steps, initial)
     is_apart = [components[index].labels[state] in apart for index, state in reached]
     number = _number_states(letters, steps, reached, is_apart)
-    first: dict[int, Place] = {}
+    first: dict[int, ComponentPlace] = {}
     for place in reached:
         first.setdefault(number[place], place)
     memo: dict[int, int] = {}
@@ -46,18 +46,20 @@ def join_components(
 
 
 def _steps(
-    letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, Place]
-) -> dict[Place, int]:
+    letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, ComponentPlace]
+) -> dict[ComponentPlace, int]:
     """Return the step of each state of the components.
 
     The step is a function from the letter to the next state and the marks of the edge, or to None
     if ``exclusive`` rules the letter out. An edge to a label of another component leads to the
     state that ``entry`` has for this label.
     """
-    steps: dict[Place, int] = {}
+    steps: dict[ComponentPlace, int] = {}
     for number, component in enumerate(components):
 
-        def leaf(inner: tuple[State, PairMarks], number: int = number) -> tuple[Place, PairMarks] | None:
+        def leaf(
+            inner: tuple[ComponentState, PairMarks], number: int = number
+        ) -> tuple[ComponentPlace, PairMarks] | None:
             target, marks = inner
             if target[0] != "exit":
                 return (number, target), marks
@@ -69,7 +71,9 @@ def _steps(
     return steps
 
 
-def _reachable(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Place) -> list[Place]:
+def _reachable(
+    letters: Diagrams[Any], steps: Mapping[ComponentPlace, int], initial: ComponentPlace
+) -> list[ComponentPlace]:
     reached, seen = [initial], {initial}
     for place in reached:
         for leaf in letters.values(steps[place]):
@@ -80,8 +84,11 @@ def _reachable(letters: Diagrams[Any], steps: Mapping[Place, int], initial: Plac
 
 
 def _number_states(
-    letters: Diagrams[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
-) -> dict[Place, int]:
+    letters: Diagrams[Any],
+    steps: Mapping[ComponentPlace, int],
+    reached: Sequence[ComponentPlace],
+    apart: Sequence[bool],
+) -> dict[ComponentPlace, int]:
     """Number the states from 0 in the order of ``reached``.
 
     States that are merged get the same number. States are merged if they have the same value in
@@ -89,26 +96,26 @@ def _number_states(
     refinement: a block of states is split while its states have different steps, and only states
     that lead to a state of a new block are examined again.
     """
-    sources: dict[Place, list[Place]] = {place: [] for place in reached}
+    sources: dict[ComponentPlace, list[ComponentPlace]] = {place: [] for place in reached}
     for place in reached:
         for leaf in letters.values(steps[place]):
             if leaf is not None:
                 sources[leaf[0]].append(place)
-    block: dict[Place, int] = dict(zip(reached, map(int, apart), strict=True))
+    block: dict[ComponentPlace, int] = dict(zip(reached, map(int, apart), strict=True))
     sizes = Counter(block.values())
     signature: dict[int, int | None] = dict.fromkeys(sizes)
     """The step of all states of a block, with blocks as targets.
 
     It is None until the block is examined.
     """
-    dirty: Iterable[Place] = reached
+    dirty: Iterable[ComponentPlace] = reached
     while dirty:
         memo: dict[int, int] = {}
-        groups: dict[tuple[int, int], list[Place]] = {}
+        groups: dict[tuple[int, int], list[ComponentPlace]] = {}
         for place in dirty:
             letters.work.spend()
             groups.setdefault((block[place], _number_targets(letters, steps[place], block, memo)), []).append(place)
-        moved: list[Place] = []
+        moved: list[ComponentPlace] = []
         for (number, step), members in groups.items():
             if signature[number] == step:
                 continue
@@ -125,6 +132,8 @@ def _number_states(
     return {place: numbers.setdefault(block[place], len(numbers)) for place in reached}
 
 
-def _number_targets(letters: Diagrams[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:
+def _number_targets(
+    letters: Diagrams[Any], step: int, number: Mapping[ComponentPlace, int], memo: dict[int, int]
+) -> int:
     """Return a step (see :func:`_steps`) with each target state replaced by its number."""
     return letters.map_leaves(lambda leaf: leaf and (number[leaf[0]], leaf[1]), step, memo)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.diagrams import OutOfSteps
-from tltlc.automaton.finite.blowup import ADVICE, Size, error_with_clauses, failure_text
+from tltlc.automaton.finite.blowup import ADVICE, ClauseSize, error_with_clauses, failure_text
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.construct import rabin
 from tltlc.automaton.work import OutOfWork
@@ -28,12 +28,12 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
         too_large, advice = "takes too long to build", f"{ADVICE}; or allow more work with `--state-budget`"
     remaining = _FOR_ALL_PARTS
 
-    def size(part: Conjunct, spec: Spec) -> Size | None:
+    def size(part: Conjunct, spec: Spec) -> ClauseSize | None:
         nonlocal remaining
         if remaining < _FOR_A_PART:
             # The budget for measuring is used up. The message names the three largest clauses, and more have been
             # measured by now. Size 0 puts this clause behind them.
-            return Size(0, "")
+            return ClauseSize(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)
         except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError):
@@ -42,6 +42,6 @@ def budget_error(spec: Spec, reason: Exception) -> TltlError:
         remaining -= _FOR_A_PART - automaton.letters.work.left
         states, pairs = len(automaton.steps), automaton.pairs
         words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
-        return Size(states * max(pairs, 1), words)
+        return ClauseSize(states * max(pairs, 1), words)
 
     return error_with_clauses(spec, reason, too_large, size, advice)

@@ -22,10 +22,10 @@ from tltlc.logic.formula import Formula
 IMPOSSIBLE: Final = -1
 """Takes the place of a label where a letter has no successor because ``exclusive`` rules it out."""
 
-State = tuple[Any, ...]
+ComponentState = tuple[Any, ...]
 """A label, then the memory of each part. A target outside the component is ``("exit", label)``."""
 
-Leaf = tuple[State, Marks]
+ComponentLeaf = tuple[ComponentState, Marks]
 """The state after a letter, and the marks of the edge: the indices of the parts that mark the letter."""
 
 _NONE: Final[Marks] = frozenset()
@@ -36,12 +36,12 @@ class ComponentAutomaton:
     """A strongly connected component of the after-automaton, with an acceptance condition.
 
     ``labels`` maps each state to its label, ``steps`` each state to a function from the letter to a
-    :data:`Leaf`. A run that stays in the component is accepted if it meets a clause of
+    :data:`ComponentLeaf`. A run that stays in the component is accepted if it meets a clause of
     ``accepts``.
     """
 
-    labels: dict[State, int]
-    steps: dict[State, int]
+    labels: dict[ComponentState, int]
+    steps: dict[ComponentState, int]
     accepts: tuple[MarkClause, ...]
 
 
@@ -112,7 +112,7 @@ def bottom_component(
     this product that no edge leaves, except to labels outside ``inside``. ``step_of`` returns, for
     a label, a function from the letter to the next label.
     """
-    initial: State = (first, *(part.initial for part in parts))
+    initial: ComponentState = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
     kinds = [part.kind for part in parts]
     values = [part.final_value(memory) for part, memory in zip(parts, best[0][1:], strict=True)]
@@ -125,16 +125,16 @@ def bottom_component(
 
 
 def explore(
-    letters: Diagrams[Any], initial: State, step_of: Callable[[State], int]
-) -> tuple[dict[State, int], list[State]]:
+    letters: Diagrams[Any], initial: ComponentState, step_of: Callable[[ComponentState], int]
+) -> tuple[dict[ComponentState, int], list[ComponentState]]:
     """Return the steps of all reachable states, and the states of a bottom component.
 
     ``step_of`` returns the step of a state: a function from the letter to the next state and marks.
     The states of the steps are in breadth-first order. The bottom component is the smallest
     strongly connected component that no edge leaves, except to targets ``("exit", label)``.
     """
-    steps: dict[State, int] = {}
-    targets: dict[State, list[State]] = {}
+    steps: dict[ComponentState, int] = {}
+    targets: dict[ComponentState, list[ComponentState]] = {}
     queue = [initial]
     seen = {initial}
     for state in queue:
@@ -160,7 +160,7 @@ def merge_equal_states(letters: Diagrams[Any], component: ComponentAutomaton) ->
     while True:
         memo: dict[int, int] = {}
 
-        def change(leaf: Leaf, block: dict[State, int] = block) -> Any:
+        def change(leaf: ComponentLeaf, block: dict[ComponentState, int] = block) -> Any:
             target, marks = leaf
             return leaf if target[0] == "exit" else (block[target], marks & used)
 
@@ -170,12 +170,12 @@ def merge_equal_states(letters: Diagrams[Any], component: ComponentAutomaton) ->
         if len(numbers) == count:
             break
         count = len(numbers)
-    first: dict[int, State] = {}
+    first: dict[int, ComponentState] = {}
     for state in steps:
         first.setdefault(block[state], state)
     memo = {}
 
-    def final(leaf: Leaf) -> Leaf:
+    def final(leaf: ComponentLeaf) -> ComponentLeaf:
         target, marks = leaf
         return leaf if target[0] == "exit" else (first[block[target]], marks & used)
 
@@ -187,18 +187,18 @@ def _step(
     letters: Diagrams[Any],
     step_of: Callable[[int], int],
     inside: Collection[int],
-    state: State,
+    state: ComponentState,
     parts: Sequence[LeafAutomaton],
 ) -> int:
-    """Return, for a state of the product, a function from the letter to the next state and marks (:data:`Leaf`)."""
+    """Return, for a state of the product, the function from the letter to a :data:`ComponentLeaf`."""
 
-    def start(label: int) -> Leaf:
+    def start(label: int) -> ComponentLeaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)
 
     step = letters.map_leaves(start, step_of(state[0]), {})
     for index, (part, memory) in enumerate(zip(parts, state[1:], strict=True)):
 
-        def add(leaf: Leaf, part_leaf: tuple[Memory, bool], index: int = index) -> Leaf:
+        def add(leaf: ComponentLeaf, part_leaf: tuple[Memory, bool], index: int = index) -> ComponentLeaf:
             target, marks = leaf
             if target[0] == "exit":
                 return leaf

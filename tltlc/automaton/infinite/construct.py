@@ -17,11 +17,11 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps, at_most_one
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
-from tltlc.automaton.infinite.assembled_components import Place, join_components
+from tltlc.automaton.infinite.assembled_components import ComponentPlace, join_components
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
 from tltlc.automaton.infinite.component import (
     IMPOSSIBLE,
-    State,
+    ComponentState,
     bottom_component,
     has_turns,
     merge_equal_states,
@@ -52,7 +52,7 @@ _FOR_SHRINKING: Final = 400_000
 When they are used up, the remaining states stay.
 """
 
-Labels = dict[int, int]
+LabelMap = dict[int, int]
 """A map from labels to labels, states or positions.
 
 A label is an obligation of an
@@ -104,7 +104,7 @@ class _Construction:
             pass
         return first
 
-    def _equal_labels(self, automaton: Rabin, state_of: Labels, depth: Labels) -> Labels:
+    def _equal_labels(self, automaton: Rabin, state_of: LabelMap, depth: LabelMap) -> LabelMap:
         """Map each label to one label that represents all labels with the same language.
 
         The representative has the lowest ``depth`` (the position of its component) of these labels,
@@ -112,13 +112,13 @@ class _Construction:
         ``automaton``.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
-        representatives: Labels = {}
-        best: Labels = {}
+        representatives: LabelMap = {}
+        best: LabelMap = {}
         for label in sorted(state_of, key=lambda label: (depth[label], self._size(label))):
             representatives[label] = best.setdefault(same[state_of[label]], label)
         return representatives
 
-    def _construct(self, representatives: Labels) -> tuple[Rabin, Labels, Labels]:
+    def _construct(self, representatives: LabelMap) -> tuple[Rabin, LabelMap, LabelMap]:
         """Build the automaton, with labels replaced by their representatives.
 
         Returns the automaton, the state of each label, and the position of each label's component.
@@ -148,8 +148,8 @@ class _Construction:
 
         initial = representatives.get(self.initial, self.initial)
         rabin_components: list[RabinComponent] = []
-        entry: dict[int, Place] = {}
-        depth: Labels = {}
+        entry: dict[int, ComponentPlace] = {}
+        depth: LabelMap = {}
         for number, group in enumerate(components([initial], targets)):
             component = self._rabin_component(step_of, group)
             rabin_components.append(component)
@@ -232,6 +232,6 @@ class _Construction:
         return sum(1 for _ in self.after.formula(label).walk())
 
 
-def _key_function(chosen: Sequence[int]) -> Callable[[State], State]:
+def _key_function(chosen: Sequence[int]) -> Callable[[ComponentState], ComponentState]:
     """Return a function that reduces a state to its label and its memories at the indices ``chosen``."""
     return lambda state: (state[0], *(state[index] for index in chosen))

@@ -18,17 +18,17 @@ from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks
 from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
-Edge = tuple[Any, Any, Marks]
+MarkedEdge = tuple[Any, Any, Marks]
 """The source, the target and the marks of an edge; a state is any hashable value."""
 
-Edges = frozenset[Edge]
+MarkedEdges = frozenset[MarkedEdge]
 
 LOOKS_PER_STEP: Final = 16
 """How many edges a function may read for one step of work."""
 
 
 @record
-class Node:
+class CycleNode:
     """A node of an alternating cycle decomposition: a strongly connected set of edges, accepted or rejected.
 
     ``index`` numbers the nodes of a tree from 0. ``states`` are the sources and targets of
@@ -36,13 +36,13 @@ class Node:
     """
 
     index: int
-    edges: Edges
+    edges: MarkedEdges
     states: frozenset[Any]
     accepted: bool
-    children: tuple[Node, ...]
+    children: tuple[CycleNode, ...]
 
 
-def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Work) -> Node:
+def decomposition(edges: Iterable[MarkedEdge], clauses: Sequence[MarkClause], work: Work) -> CycleNode:
     """Return the root of the alternating cycle decomposition of a strongly connected set of edges.
 
     A set is accepted if one of ``clauses`` accepts its marks. Children have the order of their
@@ -52,7 +52,7 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Wo
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0
 
-    def node(members: Edges) -> Node:
+    def node(members: MarkedEdges) -> CycleNode:
         nonlocal count
         index, count = count, count + 1
         accepted = _accepts(members, clauses, work)
@@ -61,15 +61,15 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[MarkClause], work: Wo
         maximal = sorted(maximal, key=lambda part: sorted(map(order.__getitem__, part)))
         children = tuple(node(part) for part in maximal)
         states = frozenset(state for source, target, _ in members for state in (source, target))
-        return Node(index, members, states, accepted, children)
+        return CycleNode(index, members, states, accepted, children)
 
     return node(frozenset(order))
 
 
-def _maximal(sets: Sequence[Edges], work: Work) -> list[Edges]:
+def _maximal(sets: Sequence[MarkedEdges], work: Work) -> list[MarkedEdges]:
     """Return the sets that are not contained in another one, without duplicates."""
     distinct = sorted(dict.fromkeys(sets), key=len, reverse=True)
-    maximal: list[Edges] = []
+    maximal: list[MarkedEdges] = []
     for candidate in distinct:
         work.spend(1 + len(maximal) // LOOKS_PER_STEP)
         if not any(candidate < other for other in maximal):
@@ -77,18 +77,18 @@ def _maximal(sets: Sequence[Edges], work: Work) -> list[Edges]:
     return maximal
 
 
-def _accepts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> bool:
+def _accepts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> bool:
     work.spend((len(edges) + len(clauses)) // LOOKS_PER_STEP)
     marks = marks_of(edges)
     return any(clause.accepts(marks) for clause in clauses)
 
 
-def marks_of(edges: Iterable[Edge]) -> Marks:
+def marks_of(edges: Iterable[MarkedEdge]) -> Marks:
     """Return all marks of the edges."""
     return frozenset().union(*(edge[2] for edge in edges))
 
 
-def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
+def accepting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> list[MarkedEdges]:
     """Return, for each clause, the maximal strongly connected subsets of ``edges`` that the clause accepts."""
     work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
@@ -99,12 +99,12 @@ def accepting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
     ]
 
 
-def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> list[Edges]:
+def rejecting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> list[MarkedEdges]:
     """Return strongly connected subsets of ``edges`` that no clause accepts: all maximal ones, and
     possibly smaller ones.
     """
-    rejected: dict[Edges, None] = {}
-    seen: set[Edges] = set()
+    rejected: dict[MarkedEdges, None] = {}
+    seen: set[MarkedEdges] = set()
     stack = [edges]
     while stack:
         part = stack.pop()
@@ -123,9 +123,9 @@ def rejecting_parts(edges: Edges, clauses: Sequence[MarkClause], work: Work) -> 
     return list(rejected)
 
 
-def parts(edges: Iterable[Edge], work: Work) -> list[Edges]:
+def parts(edges: Iterable[MarkedEdge], work: Work) -> list[MarkedEdges]:
     """Return the maximal strongly connected subsets of ``edges``."""
-    leaving: dict[Any, list[Edge]] = {}
+    leaving: dict[Any, list[MarkedEdge]] = {}
     for edge in edges:
         leaving.setdefault(edge[0], []).append(edge)
         work.spend()

@@ -23,7 +23,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
-from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State
+from tltlc.automaton.infinite.component import ComponentAutomaton, ComponentLeaf, ComponentState
 from tltlc.automaton.infinite.cycles import accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import Marks
 from tltlc.automaton.infinite.pairs import RabinComponent
@@ -32,12 +32,12 @@ from tltlc.automaton.work import Work
 _MOST_TOGETHER: Final = 48
 """The most states of a component that a factor may merge into one."""
 
-_Edge = tuple[State, State, Marks, int]
+_RankedEdge = tuple[ComponentState, ComponentState, Marks, int]
 """An edge of the component (source, target, marks), and the number of the factor's edge that replaces it."""
 
 
 def factor(
-    letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[State], State], work: Work
+    letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[ComponentState], ComponentState], work: Work
 ) -> RabinComponent | None:
     """Return the component with the states that have the same key merged into one.
 
@@ -45,14 +45,14 @@ def factor(
     some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key. Raises
     OutOfWork.
     """
-    groups: dict[State, list[State]] = {}
+    groups: dict[ComponentState, list[ComponentState]] = {}
     for state in component.steps:
         groups.setdefault(key(state), []).append(state)
     if max(map(len, groups.values())) > _MOST_TOGETHER:
         return None
-    together: dict[State, int] = {}
-    classes: dict[tuple[State, tuple[Leaf, ...]], int] = {}
-    edges: list[_Edge] = []
+    together: dict[ComponentState, int] = {}
+    classes: dict[tuple[ComponentState, tuple[ComponentLeaf, ...]], int] = {}
+    edges: list[_RankedEdge] = []
     for name, states in groups.items():
         step = letters.leaf(())
         for state in states:
@@ -78,7 +78,7 @@ def factor(
     steps = {}
     for name, step in together.items():
 
-        def change(leaves: tuple[Leaf, ...], name: State = name) -> tuple[State, PairMarks]:
+        def change(leaves: tuple[ComponentLeaf, ...], name: ComponentState = name) -> tuple[ComponentState, PairMarks]:
             target = leaves[0][0]
             if target[0] == "exit":
                 return target, NO_MARKS
@@ -88,7 +88,7 @@ def factor(
     return RabinComponent({name: component.labels[states[0]] for name, states in groups.items()}, steps, len(accepting))
 
 
-def _ranks(edges: list[_Edge], component: ComponentAutomaton, work: Work) -> dict[int, int] | None:
+def _ranks(edges: list[_RankedEdge], component: ComponentAutomaton, work: Work) -> dict[int, int] | None:
     """Return the rank of each edge of the factor; None if some edge gets no rank."""
     # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
     unranked: frozenset[Any] = frozenset(edges)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
-Node = TypeVar("Node", bound=Hashable)
+GraphNode = TypeVar("GraphNode", bound=Hashable)
 
 
-def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node]]) -> list[list[Node]]:
+def components(
+    roots: Iterable[GraphNode], successors: Callable[[GraphNode], Iterable[GraphNode]]
+) -> list[list[GraphNode]]:
     """Return the strongly connected components of the nodes that can be reached from ``roots``.
 
     A component comes after all components that can be reached from it.
@@ -16,11 +18,11 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
     The algorithm is from R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J.
     Comput. 1972.
     """
-    index: dict[Node, int] = {}
-    low: dict[Node, int] = {}
-    on_stack: set[Node] = set()
-    stack: list[Node] = []
-    groups: list[list[Node]] = []
+    index: dict[GraphNode, int] = {}
+    low: dict[GraphNode, int] = {}
+    on_stack: set[GraphNode] = set()
+    stack: list[GraphNode] = []
+    groups: list[list[GraphNode]] = []
     for root in roots:
         if root in index:
             continue
@@ -57,7 +59,7 @@ def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node
     return groups
 
 
-def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
+def smallest_bottom(targets: Mapping[GraphNode, Sequence[GraphNode]], root: GraphNode) -> list[GraphNode]:
     """Return the smallest strongly connected component that no edge leaves and ``root`` can reach.
 
     ``targets`` maps each node to its successors. Of several smallest components, returns the first

@@ -25,10 +25,10 @@ _MOST_TERMS: Final = 48
 _MOST_STEPS: Final = 20_000
 """The most steps of the diagrams for one form of a formula. A form that takes more is left out."""
 
-_Term = frozenset[int]
+_LiteralSet = frozenset[int]
 """A set of literals. The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
 
-_Op = Literal["or", "and"]
+_JoiningOp = Literal["or", "and"]
 """The operator that joins terms: ``or`` for implicants (conjunctions), ``and`` for implicates
 (disjunctions).
 """
@@ -46,21 +46,21 @@ class Factoring:
 
     def __init__(self, atoms: Sequence[str]) -> None:
         self._after = ObligationAutomaton(atoms, Diagrams(Work(0)))
-        nothing: _Term = frozenset()
-        self._terms: dict[tuple[_Op, int], tuple[_Term, ...]] = {
+        nothing: _LiteralSet = frozenset()
+        self._terms: dict[tuple[_JoiningOp, int], tuple[_LiteralSet, ...]] = {
             ("or", FALSE): (),
             ("or", TRUE): (nothing,),
             ("and", TRUE): (),
             ("and", FALSE): (nothing,),
         }
-        self._redundant: dict[tuple[_Op, int], _Term] = {}
+        self._redundant: dict[tuple[_JoiningOp, int], _LiteralSet] = {}
 
     def forms(self, formula: Formula) -> Iterator[Formula]:
         """Yield the formula as a disjunction of prime implicants and as a conjunction of prime implicates.
 
         Both have their common factors in front. A form with too many terms is left out.
         """
-        operators: tuple[_Op, ...] = ("or", "and")
+        operators: tuple[_JoiningOp, ...] = ("or", "and")
         for op in operators:
             try:
                 with self._after.obligations.limit.at_most(_MOST_STEPS):
@@ -74,7 +74,7 @@ class Factoring:
 
     # --- terms ------------------------------------------------------------------------------------
 
-    def _primes(self, obligation: int, op: _Op) -> tuple[_Term, ...]:
+    def _primes(self, obligation: int, op: _JoiningOp) -> tuple[_LiteralSet, ...]:
         """Return all prime implicants of an obligation if ``op`` is ``or``, all prime implicates if it is ``and``."""
         primes = self._terms.get((op, obligation))
         if primes is None:
@@ -93,7 +93,7 @@ class Factoring:
             self._terms[op, obligation] = primes
         return primes
 
-    def _drop_redundant_terms(self, terms: Sequence[_Term], op: _Op) -> list[_Term]:
+    def _drop_redundant_terms(self, terms: Sequence[_LiteralSet], op: _JoiningOp) -> list[_LiteralSet]:
         """Return the terms without redundant literals and without redundant terms."""
         kept = [self._drop_redundant_literals(term, op) for term in terms]
         for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
@@ -103,13 +103,13 @@ class Factoring:
                 kept = others
         return kept
 
-    def _drop_redundant_literals(self, term: _Term, op: _Op) -> _Term:
+    def _drop_redundant_literals(self, term: _LiteralSet, op: _JoiningOp) -> _LiteralSet:
         for literal in sorted(term) if len(term) > 1 else ():
             if any(literal in self._redundant_beside(other, op) for other in term):
                 term -= {literal}
         return term
 
-    def _redundant_beside(self, literal: int, op: _Op) -> _Term:
+    def _redundant_beside(self, literal: int, op: _JoiningOp) -> _LiteralSet:
         """Return the literals that are redundant in a term with ``literal``.
 
         For example, ``F b`` is redundant in an ``and`` with ``F(a & X F b)``.
@@ -124,7 +124,7 @@ class Factoring:
             self._redundant[op, literal] = redundant
         return redundant
 
-    def _is_consensus(self, term: _Term, others: Sequence[_Term], op: _Op) -> bool:
+    def _is_consensus(self, term: _LiteralSet, others: Sequence[_LiteralSet], op: _JoiningOp) -> bool:
         """Whether a term is redundant beside the other terms together, as ``b & c`` beside ``a & b | !a & c``."""
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
@@ -133,12 +133,12 @@ class Factoring:
         without = self._obligation(others, op)
         return combine(without, self._obligation([term], op)) == without
 
-    def _obligation(self, terms: Iterable[_Term], op: _Op) -> int:
+    def _obligation(self, terms: Iterable[_LiteralSet], op: _JoiningOp) -> int:
         return self._after.obligation(self._join(terms, op))
 
     # --- factors ----------------------------------------------------------------------------------
 
-    def _factor(self, terms: Sequence[_Term], op: _Op) -> Formula:
+    def _factor(self, terms: Sequence[_LiteralSet], op: _JoiningOp) -> Formula:
         """Return the terms as a formula, with the literals that all terms share in front.
 
         If the terms share no literal, the literal that most terms have is factored out. The rests
@@ -167,10 +167,10 @@ class Factoring:
         whole = _join_factors(op, (self._factor(factors, op), self._factor(rests, op)))
         return _join_terms(op, (whole, self._factor(others, op))) if others else whole
 
-    def _join(self, terms: Iterable[_Term], op: _Op) -> Formula:
+    def _join(self, terms: Iterable[_LiteralSet], op: _JoiningOp) -> Formula:
         return _join_terms(op, (self._term(term, op) for term in terms))
 
-    def _term(self, term: _Term, op: _Op) -> Formula:
+    def _term(self, term: _LiteralSet, op: _JoiningOp) -> Formula:
         return _join_factors(op, map(self._literal, sorted(term)))
 
     def _literal(self, literal: int) -> Formula:
@@ -178,9 +178,9 @@ class Factoring:
         return not_(formula) if literal % 2 else formula
 
 
-def _join_terms(op: _Op, operands: Iterable[Formula]) -> Formula:
+def _join_terms(op: _JoiningOp, operands: Iterable[Formula]) -> Formula:
     return disjunction(operands) if op == "or" else conjunction(operands)
 
 
-def _join_factors(op: _Op, operands: Iterable[Formula]) -> Formula:
+def _join_factors(op: _JoiningOp, operands: Iterable[Formula]) -> Formula:
     return conjunction(operands) if op == "or" else disjunction(operands)

@@ -7,7 +7,7 @@ from random import Random
 from typing import Final
 
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks, Rabin
-from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, product_leaves, separating_component
+from tltlc.automaton.infinite.products import PairLeaf, StatePair, conditions, product_leaves, separating_component
 from tltlc.automaton.work import Work
 
 _WORDS: Final = 48
@@ -37,7 +37,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
     steps, pairs = automaton.steps, automaton.pairs
     together = product_leaves(automaton.letters, pairs, lambda leaf: leaf is None)
 
-    def leaves(both: StatePair) -> list[Leaf]:
+    def leaves(both: StatePair) -> list[PairLeaf]:
         successors = together(steps[both[0]], steps[both[1]])
         work.spend(5 + len(successors))
         # From two equal states, no trace can be accepted by only one: do not explore further.

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
-from tltlc.automaton.infinite.mark_conditions import Kind
+from tltlc.automaton.infinite.mark_conditions import MarkKind
 from tltlc.automaton.infinite.normal_form import substitute_operands
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
@@ -31,7 +31,7 @@ class LeafAutomaton(Protocol):
     many (``kind`` is ``fin``).
     """
 
-    kind: Kind
+    kind: MarkKind
     initial: Memory
 
     def step(self, memory: Memory) -> int:
@@ -56,7 +56,7 @@ class Breakpoint:
       The formula holds if only finitely many letters are marked.
     """
 
-    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind) -> None:
+    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: MarkKind) -> None:
         self.kind = kind
         self._after = after
         self._weakened: dict[int, int] = {}
@@ -117,7 +117,7 @@ class Recurrence:
     ``F G p``: fails). The other attempts are then dropped, unless ``keep`` is true.
     """
 
-    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: Kind, *, keep: bool) -> None:
+    def __init__(self, after: ObligationAutomaton, formula: Formula, kind: MarkKind, *, keep: bool) -> None:
         self.kind = kind
         self._after = after
         self._keep = keep

@@ -13,7 +13,7 @@ from tltlc.automaton.fspa import Mark
 from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
-Kind = Literal["inf", "fin"]
+MarkKind = Literal["inf", "fin"]
 """Whether a run must take a mark infinitely often or only finitely often."""
 
 Marks = frozenset[int]
@@ -56,7 +56,7 @@ def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
 
 
 def clauses(
-    skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work
+    skeleton: Skeleton, kinds: Sequence[MarkKind], values: Sequence[bool | None], work: Work
 ) -> list[MarkClause] | bool:
     """Return conditions on marks: a run satisfies the formula of a skeleton if it meets one of them.
 
@@ -73,7 +73,9 @@ def clauses(
     return result
 
 
-def _clauses(skeleton: Skeleton, kinds: Sequence[Kind], values: Sequence[bool | None], work: Work) -> list[MarkClause]:
+def _clauses(
+    skeleton: Skeleton, kinds: Sequence[MarkKind], values: Sequence[bool | None], work: Work
+) -> list[MarkClause]:
     if skeleton[0] == "leaf":
         index = skeleton[1]
         if values[index] is not None:

@@ -16,8 +16,8 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Mark
 from tltlc.automaton.infinite.automaton import NO_MARKS, PairMarks
-from tltlc.automaton.infinite.component import ComponentAutomaton, Leaf, State, explore
-from tltlc.automaton.infinite.cycles import Edge, Node, decomposition
+from tltlc.automaton.infinite.component import ComponentAutomaton, ComponentLeaf, ComponentState, explore
+from tltlc.automaton.infinite.cycles import CycleNode, MarkedEdge, decomposition
 from tltlc.automaton.work import OutOfWork, Work
 from tltlc.core.record import record
 
@@ -27,7 +27,7 @@ _FOR_FEWER_PAIRS: Final = 100_000
 The decomposition may need fewer pairs than there are clauses.
 """
 
-Walk = tuple[Any, ...]
+TreePosition = tuple[Any, ...]
 """The position of a run below a node of the tree.
 
 If the position is in one child: the child's index and the position below the child. If it is in
@@ -43,8 +43,8 @@ class RabinComponent:
     to the next state and the marks of Rabin pairs that the edge has.
     """
 
-    labels: dict[State, int]
-    steps: dict[State, int]
+    labels: dict[ComponentState, int]
+    steps: dict[ComponentState, int]
     pairs: int
 
 
@@ -78,7 +78,7 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
     if any(len(clause.infs) > 1 for clause in component.accepts):
         return None
 
-    def change(leaf: Leaf) -> tuple[State, PairMarks]:
+    def change(leaf: ComponentLeaf) -> tuple[ComponentState, PairMarks]:
         target, marks = leaf
         if target[0] == "exit":
             return target, NO_MARKS
@@ -100,10 +100,10 @@ def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: W
     orders = [sorted(clause.infs) for clause in component.accepts]
     first = next(iter(component.steps))
 
-    def step_of(state: State) -> int:
+    def step_of(state: ComponentState) -> int:
         inner, waiting = state
 
-        def change(leaf: Leaf) -> tuple[State, PairMarks]:
+        def change(leaf: ComponentLeaf) -> tuple[ComponentState, PairMarks]:
             target, marks = leaf
             if target[0] == "exit":
                 return target, NO_MARKS
@@ -130,7 +130,7 @@ def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: W
     )
 
 
-def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Edge]:
+def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[MarkedEdge]:
     return [
         (state, target, marks)
         for state, step in component.steps.items()
@@ -146,16 +146,16 @@ class _Walks:
     that contain the state of the run, or in only one of them if ``one_at_a_time``.
     """
 
-    def __init__(self, tree: Node, *, one_at_a_time: bool) -> None:
+    def __init__(self, tree: CycleNode, *, one_at_a_time: bool) -> None:
         self._one_at_a_time = one_at_a_time
         self.tree = tree
         self.pair: dict[int, int] = {}
         self._assign_pairs(tree)
         self.pairs = len(set(self.pair.values()))
 
-    def _assign_pairs(self, tree: Node) -> None:
+    def _assign_pairs(self, tree: CycleNode) -> None:
         """Choose a Rabin pair for each accepted node, and store its number in ``pair`` under the node's index."""
-        taken: list[list[Node]] = []
+        taken: list[list[CycleNode]] = []
         stack = [tree]
         while stack:
             node = stack.pop(0)
@@ -174,7 +174,7 @@ class _Walks:
                 taken[free].append(node)
                 self.pair[node.index] = free
 
-    def begin(self, node: Node, state: State) -> Walk:
+    def begin(self, node: CycleNode, state: ComponentState) -> TreePosition:
         """Return the initial position below a node of the tree for a run that is in ``state``."""
         places = [place for place, child in enumerate(node.children) if state in child.states]
         if not places:
@@ -183,7 +183,9 @@ class _Walks:
             return (places[0], self.begin(node.children[places[0]], state))
         return tuple(self.begin(node.children[place], state) for place in places)
 
-    def step(self, node: Node, walk: Walk, edge: Edge, active: set[int], marked: set[int]) -> Walk:
+    def step(
+        self, node: CycleNode, walk: TreePosition, edge: MarkedEdge, active: set[int], marked: set[int]
+    ) -> TreePosition:
         """Return the position of a run below a node after the run takes an edge that the node contains.
 
         ``walk`` is the position before the edge. This method also adds indices of accepted nodes at
@@ -219,15 +221,15 @@ class _Walks:
 
 
 def _follow_tree(
-    letters: Diagrams[Any], component: ComponentAutomaton, tree: Node, *, one_at_a_time: bool, work: Work
+    letters: Diagrams[Any], component: ComponentAutomaton, tree: CycleNode, *, one_at_a_time: bool, work: Work
 ) -> RabinComponent:
     walks = _Walks(tree, one_at_a_time=one_at_a_time)
     first = next(iter(component.steps))
 
-    def step_of(state: State) -> int:
+    def step_of(state: ComponentState) -> int:
         inner, walk = state
 
-        def change(leaf: Leaf) -> tuple[State, PairMarks]:
+        def change(leaf: ComponentLeaf) -> tuple[ComponentState, PairMarks]:
             target, marks = leaf
             if target[0] == "exit":
                 return target, NO_MARKS

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from tltlc.automaton.diagrams import Diagrams
-from tltlc.automaton.infinite.cycles import Edge, Edges, marks_of, parts
+from tltlc.automaton.infinite.cycles import MarkedEdge, MarkedEdges, marks_of, parts
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.mark_conditions import MarkClause, Marks, pair_clauses, pair_marks
 from tltlc.automaton.work import Work
@@ -14,7 +14,7 @@ from tltlc.automaton.work import Work
 StatePair = tuple[Any, Any]
 """A state of the first automaton and a state of the second."""
 
-Leaf = tuple[StatePair, Marks]
+PairLeaf = tuple[StatePair, Marks]
 """The states after a letter, and the marks of both edges.
 
 The second automaton's marks have the higher numbers.
@@ -38,7 +38,7 @@ def conditions(pairs: int, others: int) -> tuple[list[MarkClause], list[MarkClau
 
 def product_leaves(
     letters: Diagrams[Any], pairs: int, is_over: Callable[[Any], bool]
-) -> Callable[[int, int], list[Leaf]]:
+) -> Callable[[int, int], list[PairLeaf]]:
     """Return a function that lists the successors of a pair of states in the product of two automata.
 
     The function takes the steps of the two states. A step is a function from the letter to a target
@@ -48,12 +48,12 @@ def product_leaves(
     """
     memo: dict[tuple[int, int], int] = {}
 
-    def together(one: Any, other: Any) -> Leaf | None:
+    def together(one: Any, other: Any) -> PairLeaf | None:
         if is_over(one):
             return None
         return (one[0], other[0]), pair_marks(one[1]) | pair_marks(other[1], first=2 * pairs)
 
-    def leaves(one: int, other: int) -> list[Leaf]:
+    def leaves(one: int, other: int) -> list[PairLeaf]:
         step = letters.apply(together, one, other, memo)
         return [leaf for leaf in letters.values(step) if leaf is not None]
 
@@ -61,8 +61,11 @@ def product_leaves(
 
 
 def separating_component(
-    starts: Iterable[StatePair], leaves: Callable[[StatePair], Sequence[Leaf]], alternatives: Alternatives, work: Work
-) -> Edges | None:
+    starts: Iterable[StatePair],
+    leaves: Callable[[StatePair], Sequence[PairLeaf]],
+    alternatives: Alternatives,
+    work: Work,
+) -> MarkedEdges | None:
     """Return a strongly connected set of edges that meets one of ``alternatives``; None if no set does.
 
     The edges belong to a product of two automata, and can be reached from ``starts``. The set meets
@@ -70,7 +73,7 @@ def separating_component(
     second list does. ``leaves`` returns the successors of a pair of states and is called once for
     each pair. Raises OutOfWork.
     """
-    known: dict[StatePair, Sequence[Leaf]] = {}
+    known: dict[StatePair, Sequence[PairLeaf]] = {}
 
     def targets(both: StatePair) -> list[StatePair]:
         known[both] = leaves(both)
@@ -86,8 +89,8 @@ def separating_component(
 
 
 def _separating_part(
-    edges: Sequence[Edge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
-) -> Edges | None:
+    edges: Sequence[MarkedEdge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
+) -> MarkedEdges | None:
     """Return a strongly connected subset of ``edges`` that separates two automata; None if no subset does.
 
     A clause of ``accepting`` accepts the marks of the subset, and no clause of ``rejecting`` does.

@@ -13,7 +13,7 @@ from typing import Any
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.pairs import RabinComponent
-from tltlc.automaton.infinite.products import Leaf, StatePair, conditions, product_leaves, separating_component
+from tltlc.automaton.infinite.products import PairLeaf, StatePair, conditions, product_leaves, separating_component
 from tltlc.automaton.work import OutOfWork, Work
 
 
@@ -77,7 +77,7 @@ def _is_equal(letters: Diagrams[Any], one: RabinComponent, other: RabinComponent
     """
     together = product_leaves(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 
-    def leaves(both: StatePair) -> list[Leaf]:
+    def leaves(both: StatePair) -> list[PairLeaf]:
         successors = together(one.steps[both[0]], other.steps[both[1]])
         work.spend(5 + len(successors))
         return successors

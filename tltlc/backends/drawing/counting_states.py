@@ -16,7 +16,7 @@ from tltlc.core.record import replace
 
 CountingState = tuple[int, ...]
 """The states of parallel runs that have the same place in their runs: one state of each run."""
-Steps = Mapping[int, Mapping[EdgeLabel, int]]
+EdgeTargets = Mapping[int, Mapping[EdgeLabel, int]]
 """For each state and each label of an edge that leaves it, the target of the edge."""
 
 
@@ -83,7 +83,7 @@ def _paths_from(
     counting: CountingState,
     following: CountingState,
     states: Sequence[State],
-    steps: Steps,
+    steps: EdgeTargets,
     entering: Sequence[set[int]],
 ) -> list[list[CountingState]]:
     """Return the paths of counting states that begin with ``counting`` and ``following``, in order.
@@ -109,7 +109,7 @@ def _paths_from(
 
 
 def _next_states(
-    counting: CountingState, following: CountingState, states: Sequence[State], steps: Steps
+    counting: CountingState, following: CountingState, states: Sequence[State], steps: EdgeTargets
 ) -> dict[int, int] | None:
     """Map each state of the counting state ``following`` to the next state of its run.
 

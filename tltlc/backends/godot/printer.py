@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
 from tltlc.program.printer import Printer
-from tltlc.program.tree import Assign, Declare, Negate, NumericCall, ProgramExpression, Real, Type, Variable
+from tltlc.program.tree import Assign, Declare, Negate, NumericCall, ProgramExpression, ProgramVariable, Real, Type
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
@@ -89,4 +89,4 @@ class Gd(Printer):
 
 def _is_simple(node: ProgramExpression) -> bool:
     """Whether an expression is a variable, a number or the negative of one, and so may be computed twice."""
-    return isinstance(node.operand if isinstance(node, Negate) else node, (Variable, Real))
+    return isinstance(node.operand if isinstance(node, Negate) else node, (ProgramVariable, Real))

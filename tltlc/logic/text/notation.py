@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_bounds
-from tltlc.logic.formula import Formula, Op
+from tltlc.logic.formula import Formula, FormulaOp
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 
 OPERAND: Final = 6
@@ -15,7 +15,7 @@ OPERAND: Final = 6
 An operand of a unary operator needs brackets if its own operator is weaker.
 """
 
-STRENGTH: Final[Mapping[Op, int]] = {
+STRENGTH: Final[Mapping[FormulaOp, int]] = {
     "iff": 1,
     "implies": 2,
     "or": 3,
@@ -38,9 +38,9 @@ class Spelling(NamedTuple):
     ``{}`` is the number n + 1 of samples if ``during_counts_samples``.
     """
 
-    prefix: Mapping[Op, str]
-    infix: Mapping[Op, str]
-    constants: Mapping[Op, str]
+    prefix: Mapping[FormulaOp, str]
+    infix: Mapping[FormulaOp, str]
+    constants: Mapping[FormulaOp, str]
     space_before_bracket: bool
     brackets_between_infix: bool = False
     brackets_around_comparisons: bool = True
@@ -49,7 +49,7 @@ class Spelling(NamedTuple):
     during_counts_samples: bool = False
 
 
-LETTERS: Final[Mapping[Op, str]] = {"U": " U ", "W": " W ", "R": " R ", "M": " M "}
+LETTERS: Final[Mapping[FormulaOp, str]] = {"U": " U ", "W": " W ", "R": " R ", "M": " M "}
 
 ASCII: Final = Spelling(
     {"not": "!", "X": "X ", "N": "N ", "F": "F ", "G": "G "},
@@ -87,7 +87,7 @@ WORDS: Final = Spelling(
 )
 
 
-_Item = str | tuple[Formula, int]
+_TextItem = str | tuple[Formula, int]
 """A text; or a formula to be written, with the least strength at which it needs no brackets."""
 
 
@@ -121,7 +121,7 @@ def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrint
     brackets: a number as in :data:`STRENGTH`. An explicit stack replaces recursion, since formulas
     nest deep.
     """
-    stack: list[_Item] = [(formula, least)]
+    stack: list[_TextItem] = [(formula, least)]
     while stack:
         item = stack.pop()
         if isinstance(item, str):
@@ -158,12 +158,12 @@ def _bounded_prefix(bound: Bounded, spelling: Spelling, counts: CountPrinter) ->
     return spelling.during.format(counts.number(count))
 
 
-def _push_operand(stack: list[_Item], prefix: str, operand: Formula, spelling: Spelling) -> None:
+def _push_operand(stack: list[_TextItem], prefix: str, operand: Formula, spelling: Spelling) -> None:
     bracket = _needs_brackets(operand, OPERAND, spelling) and not spelling.space_before_bracket
     stack += [(operand, OPERAND), prefix.rstrip() if bracket else prefix]
 
 
-def _push_infix(stack: list[_Item], node: Formula, spelling: Spelling) -> None:
+def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> None:
     """Push onto ``stack`` what remains to be printed for ``node``, a formula with an infix operator.
 
     This is the operands, the last one first, with the symbol of the operator between them.

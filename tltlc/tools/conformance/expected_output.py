@@ -14,7 +14,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.evaluate import evaluate
 from tltlc.monitor import Monitor, Step
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, read_rows
-from tltlc.monitor.traces import Sample, read_trace
+from tltlc.monitor.traces import TraceSample, read_trace
 
 RejectionKind = Literal[
     "no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"
@@ -63,7 +63,7 @@ class ExpectedOutput:
 
 def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
     """Return what every monitor of the automaton must print for the CSV file ``trace``."""
-    monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), Sample()
+    monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), TraceSample()
     rejection = None
     try:
         for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
@@ -79,7 +79,7 @@ def _row_cells(number: int, step: Step) -> tuple[str, ...]:
     return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
 
 
-def _rejection(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Rejection:
+def _rejection(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: TraceSample) -> Rejection:
     """Return the rejection that a diagnostic reports.
 
     Its names are computed from the sample or the trace, not read from the text of the diagnostic.
@@ -107,12 +107,12 @@ def _missing_signals(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
     return tuple(signal.name for signal in fspa.signals if signal.name not in header)
 
 
-def _infinite_signals(fspa: Fspa, sample: Sample) -> list[str]:
+def _infinite_signals(fspa: Fspa, sample: TraceSample) -> list[str]:
     """Return the signals whose values are infinite or NaN."""
     return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
 
 
-def _without_value(fspa: Fspa, sample: Sample) -> tuple[RejectionKind, str]:
+def _without_value(fspa: Fspa, sample: TraceSample) -> tuple[RejectionKind, str]:
     """Return why an atom has no value, and the name of this atom: the one that monitors report."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
@@ -131,7 +131,7 @@ def _without_value(fspa: Fspa, sample: Sample) -> tuple[RejectionKind, str]:
     return "too large", too_large
 
 
-def _conflicting_atoms(fspa: Fspa, sample: Sample) -> tuple[str, ...]:
+def _conflicting_atoms(fspa: Fspa, sample: TraceSample) -> tuple[str, ...]:
     """Return the atoms that hold together, from the first exclusive group of which several hold."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from tltlc.automaton.compare import Literals, Trace, separating
+from tltlc.automaton.compare import NamedLiterals, Trace, separating
 from tltlc.core.record import replace
 from tltlc.expression.tree import Const, ParamValue
 from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
@@ -30,9 +30,9 @@ class FeasibleLetters:
     ``impossible``.
     """
 
-    def __init__(self, a: Fspa, b: Fspa, never: tuple[Literals, ...]) -> None:
+    def __init__(self, a: Fspa, b: Fspa, never: tuple[NamedLiterals, ...]) -> None:
         self._never = never
-        self.impossible: dict[Literals, None] = {}
+        self.impossible: dict[NamedLiterals, None] = {}
         self._searches_left = _MOST
         self._joint = _joint_automaton(a, b)
         self._finder = None if self._joint is None else SampleFinder(self._joint)
@@ -53,7 +53,7 @@ class FeasibleLetters:
             trace = separating(accepting, rejecting, work, (*self._never, *self.impossible))
         return trace
 
-    def _obstacles(self, trace: Trace) -> list[Literals]:
+    def _obstacles(self, trace: Trace) -> list[NamedLiterals]:
         """Return the conjunctions of literals in the letters of a trace for which no sample is found."""
         if self._joint is None or self._finder is None:
             return []

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final, Literal
 
-from tltlc.automaton.compare import Literals, Trace, separating
+from tltlc.automaton.compare import NamedLiterals, Trace, separating
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork
 from tltlc.core.record import record, replace
 from tltlc.tools.diff.values import meaning, value_difference
@@ -57,7 +57,7 @@ class Comparison:
     only_a: Trace | None = None
     only_b: Trace | None = None
     split_names: tuple[str, ...] = ()
-    impossible: tuple[Literals, ...] = ()
+    impossible: tuple[NamedLiterals, ...] = ()
     exclusive: tuple[ExclusiveGroup, ...] = ()
     beginnings: Comparison | None = None
 
@@ -98,7 +98,7 @@ def compare(
     if len(never) > work // _STEPS_OF_A_PAIR:
         raise OutOfWork
     only_a, only_b = separating(a, b, work, never), separating(b, a, work, never)
-    impossible: dict[Literals, None] = {}
+    impossible: dict[NamedLiterals, None] = {}
     if feasible_only and (only_a or only_b):
         from tltlc.tools.diff.feasible_letters import FeasibleLetters
 
@@ -144,7 +144,7 @@ def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[Exclusive
     return tuple(merged.values())
 
 
-def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[Literals]:
+def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[NamedLiterals]:
     """Yield each pair of exclusive atoms, as two literals that cannot both be true.
 
     Groups that are part of a group in ``own_groups`` are left out.

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
-from tltlc.automaton.compare import Literals, Trace
+from tltlc.automaton.compare import NamedLiterals, Trace
 from tltlc.automaton.text import label_text
 from tltlc.io.spec_file import STDIN, STDIN_NAME
 from tltlc.resolve.spec import Param, Signal
@@ -112,7 +112,7 @@ def _split(names: tuple[str, ...]) -> str:
     )
 
 
-def _left_out(impossible: Sequence[Literals]) -> str:
+def _left_out(impossible: Sequence[NamedLiterals]) -> str:
     lines = ["  no values of the signals were found that give these, so traces with them are left out:"]
     for literals in impossible[:_MOST_LEFT_OUT]:
         terms = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.core.record import EMPTY, record
 from tltlc.grammar import tree
-from tltlc.logic.formula import Op
+from tltlc.logic.formula import FormulaOp
 from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Spelling
 
 _ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
@@ -64,7 +64,7 @@ def _style(
     )
 
 
-def _by_text(table: Mapping[Op, str]) -> dict[str, str]:
+def _by_text(table: Mapping[FormulaOp, str]) -> dict[str, str]:
     return {str(op): spelling for op, spelling in table.items()}
 
 

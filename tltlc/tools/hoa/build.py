@@ -10,9 +10,9 @@ from tltlc.automaton.finite.build import distances, verdicts
 from tltlc.automaton.finite.machine import OutOfStates
 from tltlc.automaton.fspa import Verdict
 from tltlc.automaton.infinite.analysis import Analysis, analysis_of_rabin
-from tltlc.automaton.infinite.assembled_components import Place, join_components
+from tltlc.automaton.infinite.assembled_components import ComponentPlace, join_components
 from tltlc.automaton.infinite.automaton import NO_MARKS, Rabin
-from tltlc.automaton.infinite.component import IMPOSSIBLE, ComponentAutomaton, State
+from tltlc.automaton.infinite.component import IMPOSSIBLE, ComponentAutomaton, ComponentState
 from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.pairs import RabinComponent, clauses_as_pairs, with_pairs
 from tltlc.automaton.work import Work
@@ -118,7 +118,9 @@ def _finite_automaton(
         return (("exit", IMPOSSIBLE), NO_MARKS) if move is NOT_ALLOWED else ((move[0],), NO_MARKS)
 
     memo: dict[int, int] = {}
-    steps: dict[State, int] = {(number,): letters.map_leaves(leaf, step, memo) for number, step in moves.items()}
+    steps: dict[ComponentState, int] = {
+        (number,): letters.map_leaves(leaf, step, memo) for number, step in moves.items()
+    }
     accepting = {state.number for state in hoa.states if state.sets.numbers}
     piece = RabinComponent({(number,): number for number in moves}, steps, 0)
     automaton, _ = join_components(letters, [piece], {}, (0, hoa.starts[0].states), accepting)
@@ -135,7 +137,7 @@ def _infinite_automaton(
         return [move[0] for move in letters.values(moves[number]) if move is not NOT_ALLOWED]
 
     pieces: list[RabinComponent] = []
-    entry: dict[int, Place] = {}
+    entry: dict[int, ComponentPlace] = {}
     (initial,) = hoa.starts[0].states
     for group in components([initial], targets):
         inside = frozenset(group)
@@ -147,8 +149,10 @@ def _infinite_automaton(
             return ((target,), acceptance.marks(sets)) if target in inside else (("exit", target), NO_MARKS)
 
         memo: dict[int, int] = {}
-        labels: dict[State, int] = {(number,): number for number in group}
-        steps: dict[State, int] = {(number,): letters.map_leaves(leaf, moves[number], memo) for number in group}
+        labels: dict[ComponentState, int] = {(number,): number for number in group}
+        steps: dict[ComponentState, int] = {
+            (number,): letters.map_leaves(leaf, moves[number], memo) for number in group
+        }
         stays = any(target in inside for number in group for target in targets(number))
         piece = (
             _piece(letters, ComponentAutomaton(labels, steps, acceptance.clauses))

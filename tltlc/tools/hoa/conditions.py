@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from tltlc.automaton.infinite.mark_conditions import Kind, MarkClause, Marks, Skeleton, clauses
+from tltlc.automaton.infinite.mark_conditions import MarkClause, MarkKind, Marks, Skeleton, clauses
 from tltlc.automaton.work import Work
 from tltlc.tools.hoa.tree import Hoa, HoaExpression
 
@@ -20,9 +20,9 @@ class Acceptance:
     """
 
     def __init__(self, hoa: Hoa, work: Work) -> None:
-        self._places: dict[tuple[Kind, int, bool], int] = {}
+        self._places: dict[tuple[MarkKind, int, bool], int] = {}
         skeleton = self._skeleton(hoa.condition)
-        kinds: list[Kind] = [kind for kind, _, _ in self._places]
+        kinds: list[MarkKind] = [kind for kind, _, _ in self._places]
         disjuncts = clauses(skeleton, kinds, [None] * len(kinds), work)
         if isinstance(disjuncts, bool):
             disjuncts = [MarkClause(frozenset(), frozenset())] if disjuncts else []
@@ -36,7 +36,7 @@ class Acceptance:
         if term.op in ("fin", "inf"):
             number = term.value
             assert isinstance(number, int)
-            kind: Kind = "fin" if term.op == "fin" else "inf"
+            kind: MarkKind = "fin" if term.op == "fin" else "inf"
             return ("leaf", self._places.setdefault((kind, number, term.outside), len(self._places)))
         if term.op in ("true", "false"):
             return ("and",) if term.op == "true" else ("or",)

@@ -16,7 +16,7 @@ from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.sample_times import times_fit
 from tltlc.monitor.samples import MonitorError, Samples
-from tltlc.monitor.traces import Sample, in_trace, read_trace
+from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
@@ -51,7 +51,7 @@ class Judge:
         If the trace cannot be judged, the result has the errors of
         :func:`~tltlc.monitor.traces.read_trace` or of :meth:`~tltlc.monitor.monitor.Monitor.step`.
         """
-        samples: list[Sample] = []
+        samples: list[TraceSample] = []
         try:
             text = as_text(data, name, self._fspa.signals)
             plain = self._plain_samples(text)
@@ -65,14 +65,14 @@ class Judge:
         return self._judged(name, samples, run, warnings)
 
     def _judged(
-        self, name: str, samples: Sequence[Sample], run: TraceRun, warnings: Sequence[Diagnostic]
+        self, name: str, samples: Sequence[TraceSample], run: TraceRun, warnings: Sequence[Diagnostic]
     ) -> JudgedTrace:
         cause = None if run.outcome.accepted else self._cause(samples, run)
         details = self._details(samples, run) if self._with_details else None
         verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details)
         return JudgedTrace(name, verdict, in_trace(name, warnings))
 
-    def _details(self, samples: Sequence[Sample], run: TraceRun) -> TraceDetails:
+    def _details(self, samples: Sequence[TraceSample], run: TraceRun) -> TraceDetails:
         unmet = run.state if run.broken_state is None else run.broken_state
         nearest = None
         if not run.outcome.accepted:
@@ -84,7 +84,7 @@ class Judge:
             nearest = nearest_edge(self._fspa, unmet, values)
         return TraceDetails(run.arrivals, unmet, nearest)
 
-    def _unjudged(self, name: str, samples: Sequence[Sample], error: TltlError) -> JudgedTrace:
+    def _unjudged(self, name: str, samples: Sequence[TraceSample], error: TltlError) -> JudgedTrace:
         """Return what is known of a trace with an error, given the samples that could be read.
 
         If traces are judged as episodes, and the episode ends before the error, the trace is judged
@@ -99,7 +99,7 @@ class Judge:
             return self._judged(name, samples, run, warnings)
         return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
 
-    def _faultless(self, samples: Sequence[Sample]) -> Sequence[Sample]:
+    def _faultless(self, samples: Sequence[TraceSample]) -> Sequence[TraceSample]:
         """Return the samples before the first one that the monitor rejects; all if it rejects none."""
         with suppress(MonitorError):
             if samples:
@@ -113,7 +113,7 @@ class Judge:
                 return samples[:count]
         return samples
 
-    def _plain_samples(self, data: bytes) -> list[Sample] | None:
+    def _plain_samples(self, data: bytes) -> list[TraceSample] | None:
         """Return the samples of a trace in plain CSV; None for any other trace.
 
         The result is also None if the trace has times that
@@ -128,7 +128,7 @@ class Judge:
         names = tuple(signal.name for signal in self._fspa.signals)
         return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]
 
-    def _cause(self, samples: Sequence[Sample], run: TraceRun) -> RejectionCause:
+    def _cause(self, samples: Sequence[TraceSample], run: TraceRun) -> RejectionCause:
         """Return why a trace is not accepted."""
         samples = samples[: run.outcome.steps]
         if run.broken_at is None or run.broken_state is None:
@@ -146,13 +146,13 @@ class Judge:
             return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms)
         return RejectionCause("broken", run.broken_at, self._texts(broken), atoms)
 
-    def _unmet(self, samples: Sequence[Sample]) -> list[int]:
+    def _unmet(self, samples: Sequence[TraceSample]) -> list[int]:
         """Return the indices of the clauses that would not accept the samples as a whole trace."""
         return [
             index for index, runner in enumerate(self._clause_runners) if not runner.run(samples)[0].outcome.accepted
         ]
 
-    def _blocked(self, samples: Sequence[Sample]) -> list[int]:
+    def _blocked(self, samples: Sequence[TraceSample]) -> list[int]:
         """Return the indices of the unmet clauses that can no longer be met together with the met ones.
 
         A met clause accepts the samples as a whole trace; an unmet one does not. An unmet clause is
@@ -165,7 +165,7 @@ class Judge:
         met = [index for index in range(len(self._clause_runners)) if index not in unmet]
         return [index for index in unmet if self._is_broken(tuple(sorted((*met, index))), samples)]
 
-    def _is_broken(self, chosen: tuple[int, ...], samples: Sequence[Sample]) -> bool:
+    def _is_broken(self, chosen: tuple[int, ...], samples: Sequence[TraceSample]) -> bool:
         """Whether no continuation of the samples can meet the chosen clauses together."""
         assert self._clauses is not None
         if chosen not in self._joint_runners:
@@ -179,7 +179,7 @@ class Judge:
     def _texts(self, indices: Sequence[int]) -> tuple[str, ...]:
         return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
 
-    def _breaking_atoms(self, sample: Sample, state: int, number: int) -> tuple[str, ...]:
+    def _breaking_atoms(self, sample: TraceSample, state: int, number: int) -> tuple[str, ...]:
         """Return the atoms that decide the guard which the sample makes true in ``state``.
 
         They are the atoms of the guard's most robust prime implicant. ``number`` is the number of the

@@ -15,7 +15,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.run import TraceOutcome
-from tltlc.monitor.traces import Sample
+from tltlc.monitor.traces import TraceSample
 
 _SAMPLES_PER_STATE: Final = 20
 """The generated monitor is loaded after this many samples for each state of the automaton.
@@ -62,7 +62,7 @@ class TraceRunner:
         self._generated: Any = None
         self._samples = 0
 
-    def run(self, samples: Sequence[Sample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
+    def run(self, samples: Sequence[TraceSample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
         """Run the automaton over ``samples``, of which there must be at least one.
 
         Return the result of the run, and warnings about clamped values. Pass ``cut_off`` if the
@@ -101,7 +101,7 @@ class TraceRunner:
         broken = bisect_left(steps, True, key=lambda step: step.verdict == "violated")
         return TraceRun(outcome, last.state, last.done, arrivals, broken + 1, steps[broken - 1].state if broken else 0)
 
-    def _slow_run(self, monitor: Monitor, samples: Sequence[Sample], *, cut_off: bool) -> TraceRun:
+    def _slow_run(self, monitor: Monitor, samples: Sequence[TraceSample], *, cut_off: bool) -> TraceRun:
         """Run a monitor over the samples, step by step, and return the result."""
         total, number, states = 0.0, 0, [0]
         broken_at = broken_state = step = None

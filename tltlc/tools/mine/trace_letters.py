@@ -10,7 +10,7 @@ from tltlc.automaton.compare import Letter
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
-from tltlc.monitor.traces import Sample, in_trace, read_trace
+from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.mine.evidence import LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary
@@ -62,7 +62,7 @@ def check_trace(file: TraceFile) -> None:
         pass
 
 
-def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[Sample]:
+def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[TraceSample]:
     return read_trace(io.BytesIO(file.data), file.name, signals, clock_s)
 
 
