@@ -34,7 +34,7 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
     floor = (Op("min", (_margin(left, right), Const(LEAST))),) if is_lost and holding.width > 1 else ()
     if failing.width == 0 or failing.order == holding.order:
         return _max_of(share, *floor)
-    # Of the two quotients, the one with the smaller divisor is the greater one above 0 and the smaller one below 0.
+    # Above 0, the quotient with the smaller divisor is the greater one. Below 0, it is the smaller one.
     failing_share = _share(left, right, failing)
     if holding.order < failing.order:
         return _max_of(share, *floor, failing_share)
