@@ -17,7 +17,7 @@ from tltlc.automaton.infinite.after_automaton import ObligationAutomaton
 from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.automaton.work import Work
 from tltlc.logic import formula as f
-from tltlc.logic.bounded import count_down
+from tltlc.logic.bounded_operators import count_down
 from tltlc.logic.formula import Formula
 
 A, B = f.atom("a"), f.atom("b")

@@ -13,7 +13,7 @@ from tltlc.grammar.parser import parse
 from tltlc.io.limits import WORK
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.range_proof import work
+from tltlc.resolve.range_proof import work_budget
 from tltlc.resolve.resolution import resolve
 
 
@@ -160,7 +160,7 @@ def test_a_check_stays_within_its_step_limit(
     body: str, expected_codes: list[str], reason: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
-    with work.step_limit(10**9) as spent:
+    with work_budget.step_limit(10**9) as spent:
         _, diagnostics = resolve_text(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
     assert 10**9 - spent.left <= WORK["check of a predicate"]
     assert [diagnostic.code for diagnostic in diagnostics] == expected_codes
@@ -172,7 +172,7 @@ def test_the_checks_of_all_predicates_stay_within_their_step_limit(monkeypatch: 
     monkeypatch.setitem(WORK, "check of a predicate", 50_000)  # type: ignore[attr-defined]
     monkeypatch.setitem(WORK, "checks of all predicates", 150_000)  # type: ignore[attr-defined]
     predicates = " ".join(f"predicate p{n} in [-1, 1] = {nested(8, n)}" for n in range(6))
-    with work.step_limit(10**9) as spent:
+    with work_budget.step_limit(10**9) as spent:
         _, diagnostics = resolve_text(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
     assert 10**9 - spent.left <= 150_000
     assert [diagnostic.code for diagnostic in diagnostics] == ["TLT0503"] * 4
@@ -185,7 +185,7 @@ def test_cached_answers_count_the_same_steps(monkeypatch: pytest.MonkeyPatch, tm
     text = f"{SIGNALS} predicate p in [-1, 1] = {nested(3)} spec s = F p"
     counted = []
     for _ in range(2):
-        with work.step_limit(10**9) as spent:
+        with work_budget.step_limit(10**9) as spent:
             codes(text)
         counted.append(10**9 - spent.left)
     assert counted[0] == counted[1]
@@ -225,7 +225,7 @@ def test_libraries_and_examples_need_less_than_a_hundredth_of_the_steps(
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
     for path in sorted(folder.glob("*.tltl")):
         module, _ = parse(SourceFile(str(path), path.read_text("utf-8")))
-        with work.step_limit(10**9) as spent:
+        with work_budget.step_limit(10**9) as spent:
             diagnostics = resolve(module, ResolveOptions()).diagnostics
         assert 10**9 - spent.left < WORK["check of a predicate"] / 100
         assert not {"TLT0401", "TLT0402", "TLT0503"} & {diagnostic.code for diagnostic in diagnostics}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tltlc.logic.bounded import bounded_operator, operands_with_bounds
+from tltlc.logic.bounded_operators import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, and_
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Conjunct, Judge

@@ -19,8 +19,8 @@ from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
+from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.shallow import split_deep_values
 from tltlc.program.tree import FAILING, Assign, Declare, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal

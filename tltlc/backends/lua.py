@@ -27,7 +27,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import printable_line
-from tltlc.program.shallow import split_deep_values
+from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.tree import FAILING, Declare, If, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal

@@ -20,8 +20,8 @@ from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
+from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer
-from tltlc.program.shallow import split_deep_values
 from tltlc.program.tree import (
     FAILING,
     Assign,

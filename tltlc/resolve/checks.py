@@ -35,7 +35,7 @@ def check_predicates(context: Context) -> None:
     All checks together may take a limited number of steps. If no steps are left, one warning
     (TLT0503) names the first predicate that was not checked and counts the others.
     """
-    from tltlc.resolve.range_proof.work import step_limit
+    from tltlc.resolve.range_proof.work_budget import step_limit
 
     unchecked: list[Instance] = []
     with step_limit(WORK["checks of all predicates"]) as work:

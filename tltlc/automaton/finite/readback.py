@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 from tltlc.automaton.finite.successors import Successors
 from tltlc.automaton.transitions import FALSE, TRUE
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import bounded_operator, count_down
+from tltlc.logic.bounded_operators import bounded_operator, count_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64

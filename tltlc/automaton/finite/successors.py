@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.transitions import ACCEPT, FALSE, REJECT, TRUE, TransitionDiagrams
-from tltlc.logic.bounded import count_down, count_down_from
+from tltlc.logic.bounded_operators import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 

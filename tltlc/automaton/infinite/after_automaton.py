@@ -16,7 +16,7 @@ from tltlc.automaton.infinite.normal_form import conjunction, disjunction
 from tltlc.automaton.transitions import FALSE, TRUE, ObligationDiagrams
 from tltlc.automaton.work import OutOfWork
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import count_down, count_down_from
+from tltlc.logic.bounded_operators import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 STEPS_PER_OBLIGATION: Final = 100

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import Bounded, bounded_operator, operands_with_bounds
+from tltlc.logic.bounded_operators import Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify

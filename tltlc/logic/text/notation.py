@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
-from tltlc.logic.bounded import LEAST, Bounded, bounded_operator, operands_with_bounds
+from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, FormulaOp
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 

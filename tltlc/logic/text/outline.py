@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.core.record import record
-from tltlc.logic.bounded import bounded_operator, operands_with_bounds
+from tltlc.logic.bounded_operators import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula, always
 from tltlc.logic.text.english import clause_text, goal_texts, invariant_text, recurring_text, without_constants
 from tltlc.logic.text.phrases import is_state

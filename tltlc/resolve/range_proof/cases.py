@@ -7,7 +7,7 @@ from itertools import islice
 
 from tltlc.core.record import record
 from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When, nodes
-from tltlc.resolve.range_proof.work import spend
+from tltlc.resolve.range_proof.work_budget import spend
 
 LARGEST_NUMBER_OF_CASES = 64
 MOST_MEETING_CASES = 24

@@ -33,7 +33,7 @@ from tltlc.resolve.range_proof.cases import (
 )
 from tltlc.resolve.range_proof.proof import ProofGoal, unproved_goals
 from tltlc.resolve.range_proof.region import Box, ConstrainedBox, Variable
-from tltlc.resolve.range_proof.work import OutOfWorkError, spend, step_limit
+from tltlc.resolve.range_proof.work_budget import OutOfWorkError, spend, step_limit
 
 FindingKind = Literal[
     "range_wrong",

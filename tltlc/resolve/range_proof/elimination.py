@@ -21,7 +21,7 @@ from tltlc.resolve.range_proof.cases import Constraint
 from tltlc.resolve.range_proof.interval import Interval, UndefinedError
 from tltlc.resolve.range_proof.proof import TOLERANCE, proves_within
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
-from tltlc.resolve.range_proof.work import spend
+from tltlc.resolve.range_proof.work_budget import spend
 
 LARGEST_DEGREE = 8
 

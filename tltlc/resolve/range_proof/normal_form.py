@@ -13,7 +13,7 @@ from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import interval
 from tltlc.resolve.range_proof.interval import Interval
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
-from tltlc.resolve.range_proof.work import current_budget, spend
+from tltlc.resolve.range_proof.work_budget import current_budget, spend
 
 Monomial = frozenset[tuple[Expression, int]]
 Polynomial = dict[Monomial, Fraction]

@@ -17,7 +17,7 @@ from tltlc.expression.tree import Expression, Op
 from tltlc.resolve.range_proof.cases import Constraints, size
 from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError, intersection
 from tltlc.resolve.range_proof.region import ConstrainedBox, bound
-from tltlc.resolve.range_proof.work import spend
+from tltlc.resolve.range_proof.work_budget import spend
 
 TOLERANCE = 1e-9  # the most that rounding may add to a value on a bound
 MOST_PARTS = 300

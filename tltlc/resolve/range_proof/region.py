@@ -10,7 +10,7 @@ from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue
 from tltlc.resolve.range_proof import interval
 from tltlc.resolve.range_proof.cases import Constraint
 from tltlc.resolve.range_proof.interval import EVERYTHING, Interval, UndefinedError
-from tltlc.resolve.range_proof.work import spend
+from tltlc.resolve.range_proof.work_budget import spend
 
 Variable = SignalValue | ParamValue
 Box = Mapping[Variable, Interval]

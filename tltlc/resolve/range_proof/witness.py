@@ -15,7 +15,7 @@ from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import LEAST, Const, Expression, ParamValue, SignalValue, nodes
 from tltlc.resolve.range_proof.interval import Interval, midpoint
 from tltlc.resolve.range_proof.region import Box, Variable
-from tltlc.resolve.range_proof.work import OutOfWorkError, spend
+from tltlc.resolve.range_proof.work_budget import OutOfWorkError, spend
 
 Point = Mapping[Variable, float]
 

@@ -15,7 +15,7 @@ from tltlc.resolve.range_proof.check import box_of
 from tltlc.resolve.range_proof.proof import TOLERANCE, ProofGoal, unproved_goals
 from tltlc.resolve.range_proof.region import ConstrainedBox
 from tltlc.resolve.range_proof.witness import points, value_at
-from tltlc.resolve.range_proof.work import OutOfWorkError, step_limit
+from tltlc.resolve.range_proof.work_budget import OutOfWorkError, step_limit
 from tltlc.resolve.spec import Atom, Param, Signal
 
 Sign = Literal["positive", "not positive", "negative", "not negative"]

@@ -17,7 +17,7 @@ class OutOfWorkError(Exception):
 
 
 class ProofBudget:
-    """What is left of a :func:`step_limit`, and a cache that lives as long as the limit is active.
+    """The remaining steps of a :func:`step_limit`, and a cache that lives as long as the limit is active.
 
     ``left`` is the number of steps that remain. ``memo`` is the cache.
     """

@@ -6,8 +6,8 @@ from functools import reduce
 from itertools import accumulate
 
 from tests.backends.program.interpreter import Scope
+from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer
-from tltlc.program.shallow import split_deep_values
 from tltlc.program.tree import (
     Assign,
     Bool,
