@@ -17,7 +17,7 @@ from tltlc.grammar.tree import (
 from tltlc.grammar.walk import expressions, parts
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.units import Dimension
+from tltlc.resolve.units import Dimension, SiUnit
 from tltlc.resolve.values import Env, Quantity
 
 
@@ -32,23 +32,24 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
     raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.dimension_text(left.dimension)}")
 
 
-def _keeps_value(written_unit: str | None, expected_unit: str | None, actual: Dimension) -> bool:
+def _keeps_value(written_unit: str | None, expected_unit: SiUnit | None, actual: Dimension) -> bool:
     """Whether the fix for a wrong unit may keep the number and only change the unit after it.
 
-    It may if no unit was written, or if the written unit begins the expected one, as ``m`` begins
-    ``m/s``. If no unit is expected, the written unit must be the SI unit.
+    It may if no unit was written, or if the written unit is the numerator of the expected one, as
+    ``m`` is that of ``m/s``. If no unit is expected, the written unit must be the SI unit.
     """
     if expected_unit is None:
-        return written_unit == units.si_unit(actual)
-    return written_unit is None or expected_unit.startswith(f"{written_unit}/")
+        unit = units.si_unit(actual)
+        return written_unit == (unit and str(unit))
+    return written_unit is None or (expected_unit.denominator is not None and written_unit == expected_unit.numerator)
 
 
-def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
+def _has_other_units(dimension: Dimension, unit: SiUnit, env: Env) -> bool:
     """Whether a visible declaration of this dimension uses units other than the SI unit.
 
     Looks at signals, params, and the parameters of lets and predicates.
     """
-    usual = {unit, *unit.split("/")}
+    usual = {unit.numerator, unit.denominator}
     for binding in env.scope.names.values():
         declaration = binding.declaration
         if not isinstance(declaration, NameExpr) and _has_dimension(dimension, declaration):

@@ -53,7 +53,7 @@ def _override_param(old: Param, text: str) -> Param | Diagnostic:
     dimension = units.TYPES[old.type]
     if parsed is None or parsed[1] not in (None, dimension):
         unit = units.si_unit(dimension)
-        advice = f"write a number, e.g. `{old.name}={number_text(old.value)}{' ' + unit if unit else ''}`"
+        advice = f"write a number, e.g. `{old.name}={number_text(old.value)}{f' {unit}' if unit else ''}`"
         return Diagnostic("TLT0308", f"`{text}` is not a value for the param `{old.name}`", (), advice)
     low, high = -inf if old.low is None else old.low, inf if old.high is None else old.high
     if not low <= parsed[0] <= high:

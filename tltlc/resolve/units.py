@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Final, cast
+from typing import Final, NamedTuple, cast
 
 from tltlc.resolve.spec import ValueType
 
@@ -46,12 +46,23 @@ _NAMES: Final[dict[Dimension, str]] = {
     _FREQUENCY: "a frequency",
 }
 
-_SI: Final[dict[Dimension, str]] = {
-    TYPES["length"]: "m",
-    TYPES["time"]: "s",
-    TYPES["speed"]: "m/s",
-    TYPES["angle"]: "rad",
-    _FREQUENCY: "Hz",
+
+class SiUnit(NamedTuple):
+    """An SI unit: ``m``, or with a denominator ``m/s``."""
+
+    numerator: str
+    denominator: str | None = None
+
+    def __str__(self) -> str:
+        return self.numerator if self.denominator is None else f"{self.numerator}/{self.denominator}"
+
+
+_SI: Final[dict[Dimension, SiUnit]] = {
+    TYPES["length"]: SiUnit("m"),
+    TYPES["time"]: SiUnit("s"),
+    TYPES["speed"]: SiUnit("m", "s"),
+    TYPES["angle"]: SiUnit("rad"),
+    _FREQUENCY: SiUnit("Hz"),
 }
 
 
@@ -87,7 +98,7 @@ def time_units() -> tuple[str, ...]:
     return tuple(unit for unit, (_, _, dimension) in _UNITS.items() if dimension == TYPES["time"])
 
 
-def si_unit(dimension: Dimension) -> str | None:
+def si_unit(dimension: Dimension) -> SiUnit | None:
     """Return the SI unit of a dimension, or None if it has no unit with a name."""
     return _SI.get(dimension)
 
