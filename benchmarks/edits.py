@@ -27,6 +27,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.evaluation.figures import Figures
+    from tltl_runtime.game.level_name import Variant
     from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
     from tltl_runtime.regression.suite.suite import Case, Suite
     from tltl_runtime.regression.verdict.baseline import Reference
@@ -121,7 +122,7 @@ def truth(case: Case, before: Record, plan: Plan) -> Record:
     return {"truth": kind_of_truth, "far": now["far"], "expert": figures}
 
 
-def expert(level: str, variant: str, plan: Plan) -> Record:
+def expert(level: str, variant: str | Variant, plan: Plan) -> Record:
     """Play episodes of the careful expert with seeds from 0, and find what nobody can reach.
 
     In the record, ``far`` has a warning for each thing that nobody can reach, and ``undoable`` says

@@ -126,7 +126,7 @@ def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Ref
     if recorded.outdated:
         click.echo(plain_text(f"    {recorded.outdated}"), err=True)
     for case in recorded.cases:
-        verdict = verdict_if_unchanged(suite, case, reference) if case.variant == case.reference else "pass"
+        verdict = verdict_if_unchanged(suite, case, reference) if case.plays_reference else "pass"
         if verdict != "pass":
             advice = _advice(passed / count, case, suite.error / len(suite.cases))
             click.echo(plain_text(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)

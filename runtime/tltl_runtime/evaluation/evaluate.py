@@ -11,6 +11,7 @@ from typing import Literal
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
+from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
@@ -27,7 +28,7 @@ Pool = int | Literal["ray"]
 def evaluate(
     policy: Policy | str | Path,
     level: str | None = None,
-    variant: str | None = None,
+    variant: str | Variant | None = None,
     *,
     episodes: int,
     seed: int,
@@ -54,7 +55,7 @@ def evaluate(
 def set_up(
     policy: Policy,
     level: str | None,
-    variant: str | None,
+    variant: str | Variant | None,
     spec: str | Path | Fspa | None,
     seed: int,
     recorded: RecordMode | None = None,
@@ -71,15 +72,17 @@ def set_up(
     """
     game, card = registered_game(), policy.card
     name = level or card.level
-    variant_name = variant or (card.variant if level is None else "v0")
-    loaded_level = game.load_level(name, variant_name)
+    variant = variant or (card.variant if level is None else "v0")
+    if isinstance(variant, str):
+        variant = parse_variant(variant)
+    loaded_level = game.load_level(name, variant)
     offered = game.params(loaded_level)
     own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
     check_policy(card, loaded_level, task.fspa)
     game.check_fit(loaded_level, task.fspa, card.fspa if spec is None else spec)
     check_limit(task.fspa)
-    return Setup(policy, name, variant_name, task.fspa, seed, task.params, recorded)
+    return Setup(policy, name, variant, task.fspa, seed, task.params, recorded)
 
 
 def check_limit(fspa: Fspa) -> None:

@@ -9,6 +9,7 @@ import gymnasium
 
 from tltl_runtime.evaluation.play import play
 from tltl_runtime.game.episode import Trajectory, trajectory
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.blas_threads import blas_threads
@@ -34,7 +35,7 @@ class Setup:
 
     policy: Policy
     level: str
-    variant: str
+    variant: Variant
     fspa: Fspa
     seed: int
     params: Mapping[str, float] = EMPTY

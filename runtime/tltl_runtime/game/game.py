@@ -13,6 +13,7 @@ import gymnasium
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_files import LevelFiles, LevelT
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -55,8 +56,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     # --- levels ------------------------------------------------------------------------------------
 
     @abstractmethod
-    def load_level(self, name: str, variant: str = "v0") -> LevelT:
+    def load_level(self, name: str, variant: str | Variant = "v0") -> LevelT:
         """Load a level in one of its variants; ``name`` may be the path of a file.
+
+        A text ``VARIANT+OVERLAY`` is parsed as in arguments.
 
         Raises:
             TltlError: there is no such level or variant, or its file is invalid.
@@ -114,7 +117,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def make_env(
         self,
         level: str | os.PathLike[str],
-        variant: str = "v0",
+        variant: str | Variant = "v0",
         spec: str | Path | Fspa | None = None,
         *,
         sensors: SensorChoice | None = None,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_name import Variant
 
 LevelT = TypeVar("LevelT", bound=Level)
 
@@ -39,7 +40,7 @@ class LevelFiles(ABC, Generic[LevelT]):
         """Return the names of the overlays that can be added to the variants of a level."""
 
     @abstractmethod
-    def load_with_changes(self, name: str, variant: str) -> tuple[LevelT, tuple[str, ...]]:
+    def load_with_changes(self, name: str, variant: Variant) -> tuple[LevelT, tuple[str, ...]]:
         """Load a level in one of its variants; also return the descriptions of the variant's overlays.
 
         Raises:
@@ -47,7 +48,7 @@ class LevelFiles(ABC, Generic[LevelT]):
         """
 
     @abstractmethod
-    def dependencies(self, name: str, variant: str) -> Iterator[Path]:
+    def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.
 
         The level need not load: if a file has errors, the method uses what can be read of it. Also
@@ -55,7 +56,7 @@ class LevelFiles(ABC, Generic[LevelT]):
         """
 
     @abstractmethod
-    def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
+    def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
         """Yield the paths at which one of a level's files may be.
 
         ``file_name`` is the name of the file as ``Level.files`` has it.

@@ -4,12 +4,48 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
+from tltlc.api import record
+
 _PLACE: Final = re.compile(r"(.+?):([A-Za-z_][A-Za-z0-9_]*(?:\+.+)?)\Z", re.DOTALL)
 _OVERLAY: Final = re.compile(r"\+([^+/\\]*(?=\+|\Z)|.+?\.toml(?=\+|\Z)|[^+]*)", re.DOTALL)
+
+
+@record
+class Variant:
+    """A variant of a level, and the overlays that are added to it, in order.
+
+    An overlay is a name or the path of a ``.toml`` file.
+    """
+
+    name: str
+    overlays: tuple[str, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The variant as an argument: the text that :func:`parse_variant` parses.
+
+        Paths that contain a ``+`` are made absolute: the text would be ambiguous otherwise.
+        """
+        has_plus = re.compile(r".*\+.*\.toml\Z", re.DOTALL).match
+        return "+".join(
+            (self.name, *(_absolute(overlay) if has_plus(overlay) else overlay for overlay in self.overlays))
+        )
+
+    @property
+    def title(self) -> str:
+        """The variant as reports show it: overlays that are paths have only their names."""
+        overlays = (Path(overlay).stem if overlay.endswith(".toml") else overlay for overlay in self.overlays)
+        return "+".join((self.name, *overlays))
+
+    def absolute(self) -> Variant:
+        """Return the variant with absolute overlay paths, for loading from another folder."""
+        return Variant(
+            self.name,
+            tuple(_absolute(overlay) if overlay.endswith(".toml") else overlay for overlay in self.overlays),
+        )
 
 
 def split_level(argument: str) -> tuple[str, str | None]:
@@ -27,36 +63,15 @@ def split_level(argument: str) -> tuple[str, str | None]:
     return level, variant
 
 
-def with_overlays(variant: str, overlays: Iterable[str]) -> str:
-    """Return a variant with added overlays; :func:`split_overlays` is the inverse.
-
-    An overlay is a name or the path of a ``.toml`` file. Paths that contain a ``+`` are made absolute.
-    """
-    has_plus = re.compile(r".*\+.*\.toml\Z", re.DOTALL).match
-    return "+".join(
-        (variant, *(str(Path(overlay).absolute()) if has_plus(overlay) else overlay for overlay in overlays))
-    )
-
-
-def split_overlays(variant: str) -> tuple[str, tuple[str, ...]]:
-    """Return the variant without its added overlays, and the overlays in order.
+def parse_variant(text: str) -> Variant:
+    """Parse ``VARIANT`` or ``VARIANT+OVERLAY+…``, as arguments and files contain it.
 
     A path may contain a ``+`` after its first part: ``v0+/home/c++/wider.toml`` is ``v0`` and one
     overlay.
     """
-    base, plus, added = variant.partition("+")
-    return base, tuple(_OVERLAY.findall(plus + added))
+    name, plus, overlays = text.partition("+")
+    return Variant(name, tuple(_OVERLAY.findall(plus + overlays)))
 
 
-def variant_text(variant: str) -> str:
-    """Return the variant as reports show it: overlays that are paths have only their names."""
-    base, added = split_overlays(variant)
-    return "+".join((base, *(Path(overlay).stem if overlay.endswith(".toml") else overlay for overlay in added)))
-
-
-def absolute_variant(variant: str) -> str:
-    """Return the variant with absolute overlay paths, for loading from another folder."""
-    base, added = split_overlays(variant)
-    return "+".join(
-        (base, *(str(Path(overlay).absolute()) if overlay.endswith(".toml") else overlay for overlay in added))
-    )
+def _absolute(overlay: str) -> str:
+    return str(Path(overlay).absolute())

@@ -15,6 +15,7 @@ from gymnasium.error import ClosedEnvironmentError
 from numpy.typing import NDArray
 
 from tltl_runtime.game.level import default_spec
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -69,7 +70,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     def __init__(
         self,
         level: str | os.PathLike[str],
-        variant: str = "v0",
+        variant: str | Variant = "v0",
         sensors: SensorChoice | None = None,
         render_mode: str | None = None,
         render_view: View = "third_person",
@@ -77,7 +78,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ) -> None:
         if not isinstance(level, (str, os.PathLike)):
             raise TypeError(f"the level must be a text or a path, not {level!r:.60}")
-        if not isinstance(variant, str):
+        if not isinstance(variant, (str, Variant)):
             raise TypeError(f"the variant must be a text, not {variant!r:.60}")
         self.level = load_level(os.fspath(level), variant)
         self._screen = Screen(self.level, render_mode, render_view, render_size)
@@ -176,7 +177,7 @@ def _action_list(action: Any) -> list[int]:
 
 def make_env(
     level: str | os.PathLike[str],
-    variant: str = "v0",
+    variant: str | Variant = "v0",
     spec: str | Path | Fspa | None = None,
     *,
     sensors: SensorChoice | None = None,

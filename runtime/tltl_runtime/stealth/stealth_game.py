@@ -17,6 +17,7 @@ from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_files import LevelFiles
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -60,15 +61,15 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         """Return the names of the overlays beside a level's file and in the package."""
         return file.shared_names(file.level_path(name), "overlays")
 
-    def load_with_changes(self, name: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
+    def load_with_changes(self, name: str, variant: Variant) -> tuple[StealthLevel, tuple[str, ...]]:
         """Load a level in a variant; return it with the descriptions of the variant's overlays."""
         return file.level_and_changes(name, variant)
 
-    def dependencies(self, name: str, variant: str) -> Iterator[Path]:
+    def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
         """Yield the files that a level depends on: its own, assets, overlays, and its spec."""
         return level_dependencies(file.level_path(name), variant)
 
-    def candidates(self, name: str, variant: str, file_name: str) -> Iterator[Path]:
+    def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
         """Yield the paths at which one of a level's files may be.
 
         ``file_name`` is the name of the file in the ``files`` of the level.
@@ -84,7 +85,7 @@ class StealthGame(Game[StealthLevel, Episode]):
     level_files = StealthLevelFiles()
     modules = (__name__, "tltl_runtime.stealth.episode_recorder")
 
-    def load_level(self, name: str, variant: str = "v0") -> StealthLevel:
+    def load_level(self, name: str, variant: str | Variant = "v0") -> StealthLevel:
         """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants."""
         return file.load_level(name, variant)
 
@@ -136,7 +137,7 @@ class StealthGame(Game[StealthLevel, Episode]):
     def make_env(
         self,
         level: str | os.PathLike[str],
-        variant: str = "v0",
+        variant: str | Variant = "v0",
         spec: str | Path | Fspa | None = None,
         *,
         sensors: SensorChoice | None = None,

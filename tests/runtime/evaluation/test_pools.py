@@ -23,6 +23,7 @@ from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import WorkerLostError, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.stealth.levels.file import load_level
@@ -31,6 +32,7 @@ from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 EPISODES = 8
+V0 = Variant("v0")
 
 CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
 """A spec that an untrained policy meets in some episodes, but not in all."""
@@ -112,7 +114,7 @@ def out_of_the_level() -> None:
 
 @pytest.mark.parametrize("workers", POOLS)
 def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) -> None:
-    setup = Setup(Deadly(policy, kill_this_process), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
+    setup = Setup(Deadly(policy, kill_this_process), "cover_and_hide", V0, policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(TltlError) as caught, closing(results(setup, [EpisodeRequest(6)], workers)) as playing:
         next(playing)
     (diagnostic,) = caught.value.diagnostics
@@ -125,7 +127,7 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) 
 
 @pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
 def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
-    setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
+    setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", V0, policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as caught:
         list(results(setup, [EpisodeRequest(0)], workers))
     assert caught.value.body == "player"
@@ -149,7 +151,7 @@ def test_a_lost_worker_is_reported_for_any_player() -> None:
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
 def test_an_error_at_the_start_of_a_worker_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
-    setup = Setup(policy, "nowhere", "v0", policy.card.fspa, 3, policy.card.params)
+    setup = Setup(policy, "nowhere", V0, policy.card.fspa, 3, policy.card.params)
     with pytest.raises(TltlError, match="there is no level `nowhere`"):
         list(results(setup, [EpisodeRequest(0)], workers))
 

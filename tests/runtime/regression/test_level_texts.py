@@ -10,6 +10,7 @@ import pytest
 from tests.runtime.regression.game import edit
 from tests.runtime.regression.handmade import PLAYED, some_episodes
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.regression.suite.suite import SHIPPED, read_suite
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_of, read_baseline, text_sha256, write_baseline
 from tltl_runtime.regression.verdict.level_texts import baseline_level, level_texts
@@ -23,7 +24,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 def test_every_file_of_a_level_has_a_text(name: str) -> None:
     for variant in variants(name):
         level = load_level(name, variant)
-        texts = level_texts(name, variant, level.files)
+        texts = level_texts(name, Variant(variant), level.files)
         assert tuple((file, text_sha256(text)) for file, text in texts) == level.files
 
 
@@ -31,7 +32,7 @@ def test_an_overlay_in_another_folder_has_a_text(tmp_path: Path) -> None:
     overlay = tmp_path / "mine" / "slow.toml"
     overlay.parent.mkdir()
     overlay.write_bytes(b'doc = "Slow."\r\n[change.guard]\r\nwalk_speed = 0.5\r\n')
-    variant = f"v0+{overlay}"
+    variant = Variant("v0", (str(overlay),))
     files = load_level("cover_and_hide", variant).files
     texts = dict(level_texts("cover_and_hide", variant, files))
     assert texts["overlays/slow.toml"] == 'doc = "Slow."\n[change.guard]\nwalk_speed = 0.5\n'

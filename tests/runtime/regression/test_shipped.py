@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import SHIPPED, Case, read_suite
@@ -27,7 +28,7 @@ def test_the_suite_has_all_variants_of_the_levels_with_policies() -> None:
 
 @pytest.mark.parametrize("case", SUITE.cases, ids=lambda case: case.name)
 def test_the_baseline_matches_the_policy_and_the_spec(case: Case) -> None:
-    played = prepare_case(case, SUITE.seed, case.reference).played
+    played = prepare_case(case, SUITE.seed, Variant(case.reference)).played
     reference = reference_of(read_baseline(SUITE.baseline), played, SUITE)
     assert reference.played.level_hash == played.level_hash, "record it again"
     assert len(reference.accounts) == case.episodes

@@ -10,6 +10,7 @@ import pytest
 
 from tests import pipes
 from tests.runtime.regression.handmade import ROOM
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
 from tltl_runtime.stealth.levels.default_spec import LEVELS
@@ -27,7 +28,9 @@ def read(folder: Path, text: str) -> tuple[Case, ...]:
 def test_the_shipped_suite_plays_the_shipped_policies_in_every_variant() -> None:
     suite = read_suite(SHIPPED)
     assert [(case.level, case.variant) for case in suite.cases] == [
-        (level, variant) for level in ("navigation", "cover_and_hide", "branching") for variant in variants(level)
+        (level, Variant(variant))
+        for level in ("navigation", "cover_and_hide", "branching")
+        for variant in variants(level)
     ]
     assert {case.level for case in suite.cases} == set(shipped_policies())
     assert all(case.policy == shipped_policy(case.level) and case.reference == "v0" for case in suite.cases)
@@ -39,7 +42,7 @@ def test_a_case_without_settings_gets_the_defaults(tmp_path: Path) -> None:
     assert case == Case(
         name="branching:v0",
         level="branching",
-        variant="v0",
+        variant=Variant("v0"),
         reference="v0",
         spec=None,
         policy=shipped_policy("branching"),  # type: ignore[arg-type]
@@ -69,7 +72,7 @@ pass_rate = 0.6
     first, second = read(tmp_path, text)
     assert (first.episodes, first.thresholds) == (50, Thresholds(0.9, 0.5, 0.05, 0.2))
     assert (second.episodes, second.thresholds) == (25, Thresholds(0.6, 0.5, 0.05, 0.2))
-    assert (second.name, second.variant, second.reference) == ("shut", "v2", "v1")
+    assert (second.name, second.variant, second.reference) == ("shut", Variant("v2"), "v1")
 
 
 def test_paths_are_relative_to_the_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,14 +93,14 @@ policy = "trained"
     monkeypatch.chdir(tmp_path)
     (case,) = read_suite(Path("game/game.toml")).cases
     assert case.level == "game/levels/vault.toml"
-    assert case.variant == "v0+guard_alert+game/edits/wide.toml"
+    assert case.variant == Variant("v0", ("guard_alert", "game/edits/wide.toml"))
     assert case.name == "vault:v0+guard_alert+wide"
     assert (case.spec, case.policy) == ("game/levels/plans.tltl:careful", Path("game/trained"))
 
 
 def test_a_single_overlay_needs_no_list(tmp_path: Path) -> None:
     (case,) = read(tmp_path, '[[case]]\nlevel = "branching"\noverlay = "guard_alert"\n')
-    assert (case.variant, case.name) == ("v0+guard_alert", "branching:v0+guard_alert")
+    assert (case.variant, case.name) == (Variant("v0", ("guard_alert",)), "branching:v0+guard_alert")
 
 
 def test_a_shipped_policy_is_named_by_its_level(tmp_path: Path) -> None:
@@ -110,7 +113,7 @@ def test_a_level_that_does_not_load_is_no_error_in_the_suite(tmp_path: Path, tex
     (tmp_path / "vault.toml").write_text(text, encoding="utf-8")
     case = '[[case]]\nlevel = "vault.toml"\n' + POLICY
     first, second = read(tmp_path, case + case + 'variant = "v3"\n')
-    assert (first.variant, second.variant) == ("v0", "v3")
+    assert (first.variant, second.variant) == (Variant("v0"), Variant("v3"))
 
 
 @pytest.mark.parametrize("name", ["nowhere.toml", "."])

@@ -23,7 +23,7 @@ from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.game.level import default_spec
-from tltl_runtime.game.level_name import absolute_variant, split_level
+from tltl_runtime.game.level_name import parse_variant, split_level
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
@@ -289,8 +289,8 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
     where = f"the training in `{run.folder}`"
     if options.level is not None:
         path, variant = split_level(options.level)
-        ours = level_path(run.level).resolve(), absolute_variant(run.variant)
-        if (level_path(path).resolve(), absolute_variant(variant or "v0")) != ours:
+        ours = level_path(run.level).resolve(), parse_variant(run.variant).absolute()
+        if (level_path(path).resolve(), parse_variant(variant or "v0").absolute()) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
     if options.spec is not None:
         fspa, _ = read_spec(options.spec)

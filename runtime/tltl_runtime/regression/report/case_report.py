@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
-from tltl_runtime.game.level_name import variant_text
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
@@ -161,10 +160,9 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """
     causes = ("it cannot be played", *map(one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
-    variant = variant_text(case.variant)
     name = Path(case.level).stem
     return CaseReport(
-        case.name, name, variant, "fail", causes, told=": ".join(causes[:2]), fault_at=error_location(error)
+        case.name, name, case.variant.title, "fail", causes, told=": ".join(causes[:2]), fault_at=error_location(error)
     )
 
 
@@ -173,9 +171,8 @@ def report_on_edited(case: Case, error: TltlError) -> CaseReport:
 
     Its verdict is ``review``, and it has no figures.
     """
-    variant = variant_text(case.variant)
     causes = tuple(map(one_line, error.diagnostics))
-    return CaseReport(case.name, Path(case.level).stem, variant, "review", causes, certain=False)
+    return CaseReport(case.name, Path(case.level).stem, case.variant.title, "review", causes, certain=False)
 
 
 def one_line(diagnostic: Diagnostic) -> str:

@@ -11,7 +11,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import split_level, split_overlays, with_overlays
+from tltl_runtime.game.level_name import Variant, parse_variant, split_level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
@@ -61,13 +61,18 @@ class Case:
 
     name: str
     level: str
-    variant: str
+    variant: Variant
     reference: str
     spec: str | None
     policy: Path
     episodes: int
     thresholds: Thresholds
     place: str = ""
+
+    @property
+    def plays_reference(self) -> bool:
+        """Whether the case plays the variant that it is compared with."""
+        return self.variant == Variant(self.reference)
 
 
 SuiteCase = Case | TraceCase
@@ -213,7 +218,7 @@ def _case(
             )
     base = variant or variant_names[0]
     name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
-    played = with_overlays(base, overlays)
+    played = Variant(base, overlays)
     return Case(
         name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place
     ), table.label
@@ -257,20 +262,19 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
         exists = name in level_files.names() or fileio.is_file(folder / name)
         help_text = diagnostic.help
         if variant and exists:
-            help_text = _separate_keys_help(name, variant)
+            help_text = _separate_keys_help(name, parse_variant(variant))
         elif not level.endswith((".tltl", ".json")) and "+" not in level:
             help_text = similar_level(level, folder) or diagnostic.help
         table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.label_of("level"),), help_text))
     return level, ""
 
 
-def _separate_keys_help(level: str, variant: str) -> str:
+def _separate_keys_help(level: str, variant: Variant) -> str:
     """Return a help text that says how to write ``LEVEL:VARIANT+OVERLAY`` in a suite."""
-    base, overlays = split_overlays(variant)
     lines = [
         f'`level = "{level}"`',
-        f'`variant = "{base}"`',
-        *([f"`overlay = {json.dumps(overlays)}`"] if overlays else []),
+        f'`variant = "{variant.name}"`',
+        *([f"`overlay = {json.dumps(variant.overlays)}`"] if variant.overlays else []),
     ]
     return f"write {', '.join(lines)}"
 

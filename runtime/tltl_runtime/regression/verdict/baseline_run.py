@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES, Case, Suite
@@ -133,7 +134,7 @@ def _groups(suite: Suite) -> list[list[PreparedCase]]:
 def _prepare(case: Case, seed: int) -> PreparedCase:
     """Set up a case to play the variant of its baseline. Errors name the case."""
     try:
-        return prepare_case(case, seed, case.reference)
+        return prepare_case(case, seed, Variant(case.reference))
     except TltlError as error:
         diagnostics = [
             replace(diagnostic, title=f"case `{case.name}`: {diagnostic.title}") for diagnostic in error.diagnostics

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
@@ -21,7 +22,7 @@ _BASELINE: Final = fileio.Archive(
 _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
-def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
+def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
     """Return the name and the text of each of a level's ``files``, in order.
 
     ``files`` are pairs of a name and a SHA-256. A file that has another hash now is left out: it
@@ -37,7 +38,7 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
     return tuple(texts)
 
 
-def current_text(name_or_path: str, variant: str, name: str) -> str | None:
+def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
     """Return the current text of a level's file called ``name``; None if it cannot be read."""
     level_files = registered_game().level_files
     candidates = level_files.candidates(name_or_path, variant, name)

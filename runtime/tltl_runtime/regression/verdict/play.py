@@ -13,6 +13,7 @@ from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, Setup
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.fit import differences
@@ -67,7 +68,7 @@ class JudgedCase:
     episodes: tuple[CaseEpisode, ...]
 
 
-def prepare_case(case: Case, seed: int, variant: str | None = None) -> PreparedCase:
+def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> PreparedCase:
     """Set up a case to be played, by default in its own variant.
 
     Raises:
@@ -118,7 +119,7 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
 
 def _replay_command(prepared: PreparedCase, task: EpisodeRequest) -> str:
     """Return the shell command that plays only the requested episode of the case."""
-    place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant}"]
+    place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant.text}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
     episode = ["--seed", str(prepared.setup.seed), "--first", str(task.index), "--episodes", "1"]
     return join(["tltlc", "evaluate", str(prepared.case.policy), *place, *spec, *episode])

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.game.level_name import split_overlays
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
 from tltl_runtime.stealth.levels.default_spec import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio
@@ -16,14 +16,13 @@ _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
 _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 
-def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
+def level_dependencies(level: Path, variant: Variant) -> Iterator[Path]:
     """Yield the files of the level, the assets and overlays of the variant, and the level's spec.
 
     The files need not load: if the level's file is not TOML, every quoted text in it counts as a
     possible name. Also yield each path where a new file would be used instead of an existing one.
     """
     yield level
-    base, added = split_overlays(variant)
     text = source_of(level)
     table = _table(text)
     if table is None:
@@ -33,20 +32,21 @@ def level_dependencies(level: Path, variant: str) -> Iterator[Path]:
         asset_names = [use.get("asset") for use in _tables(table.get("use"))]
         asset_names += [enemy.get("kind") for enemy in _tables(table.get("enemy"))]
         variants = table.get("variants")
-        variant_overlays = variants.get(base) if isinstance(variants, dict) else None
+        variant_overlays = variants.get(variant.name) if isinstance(variants, dict) else None
         assets, specs = _texts(asset_names), _texts([table.get("spec")])
         overlays = _texts(variant_overlays if isinstance(variant_overlays, list) else [])
     places = (level.parent, LEVELS)
     yield from _shared_files(assets, "assets", places, sure=table is not None)
     yield from _shared_files(overlays, "overlays", places, sure=table is not None)
-    yield from (Path(name) for name in added if name.endswith(".toml"))
-    yield from _shared_files([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
+    yield from (Path(name) for name in variant.overlays if name.endswith(".toml"))
+    added = [name for name in variant.overlays if not name.endswith(".toml")]
+    yield from _shared_files(added, "overlays", places, sure=True)
     for match in filter(None, map(_SPEC.match, specs)):
         for path in up_to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
             yield from spec_files(path)
 
 
-def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
+def file_candidates(level: Path, variant: Variant, name: str) -> Iterator[Path]:
     """Yield the paths at which one of a level's files may be.
 
     ``level`` is the path of the level's own file. ``name`` is the name of the file in the field
@@ -56,7 +56,7 @@ def file_candidates(level: Path, variant: str, name: str) -> Iterator[Path]:
     if name == level.name:
         yield level
     yield from (level.parent / name, LEVELS / name)
-    for overlay in split_overlays(variant)[1]:
+    for overlay in variant.overlays:
         if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
             yield Path(overlay)
 

@@ -14,7 +14,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import split_overlays, variant_text
+from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Mover, Region, Solid, StealthLevel, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
@@ -49,7 +49,7 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 
 
 @fileio.resource_limits()
-def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
+def changes(name_or_path: str, variant: str | Variant) -> tuple[str, ...]:
     """Return the descriptions of a variant's overlays, in the order in which they are applied.
 
     Raises the errors of :func:`load_level`.
@@ -58,19 +58,19 @@ def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
 
 
 @fileio.resource_limits()
-def level_and_changes(name_or_path: str, variant: str) -> tuple[StealthLevel, tuple[str, ...]]:
+def level_and_changes(name_or_path: str, variant: str | Variant) -> tuple[StealthLevel, tuple[str, ...]]:
     """Return the results of :func:`load_level` and :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
 @fileio.resource_limits()
-def load_level(name_or_path: str, variant: str = "v0") -> StealthLevel:
+def load_level(name_or_path: str, variant: str | Variant = "v0") -> StealthLevel:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
     ``VARIANT+OVERLAY`` is a variant with one more overlay, ``VARIANT+A+B`` with two more. An
     overlay is a name, as in the list of a variant, or the path of a ``.toml`` file
-    (:func:`~tltl_runtime.game.level_name.split_overlays`).
+    (:func:`~tltl_runtime.game.level_name.parse_variant`).
 
     :func:`read_level` also returns warnings.
 
@@ -87,7 +87,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> StealthLevel:
 
 
 @fileio.resource_limits()
-def read_level(name_or_path: str, variant: str = "v0") -> tuple[StealthLevel, tuple[Diagnostic, ...]]:
+def read_level(name_or_path: str, variant: str | Variant = "v0") -> tuple[StealthLevel, tuple[Diagnostic, ...]]:
     """Return the result of :func:`load_level`, and warnings.
 
     A warning, TLT0809, says that the path of a mover or an enemy looks like a mistake.
@@ -145,18 +145,19 @@ class _Loading:
         self.table = CheckedTable(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
 
-    def level(self, variant: str) -> StealthLevel:
-        """Return the level in a variant; ``variant`` may add overlays, as in :func:`load_level`."""
-        base, added = split_overlays(variant)
-        if base not in self.variants:
-            title = f"the level `{self.path.stem}` has no variant `{base}`"
+    def level(self, variant: str | Variant) -> StealthLevel:
+        """Return the level in a variant; parse a text as in :func:`load_level`."""
+        if isinstance(variant, str):
+            variant = parse_variant(variant)
+        if variant.name not in self.variants:
+            title = f"the level `{self.path.stem}` has no variant `{variant.name}`"
             label = self.table.label_of("variants")
-            raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(base, self.variants))])
+            raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(variant.name, self.variants))])
         table, places = self.table, self.places
         doc, spec = table.text("doc"), read_default_spec(table, self.path)
         bounds = self._bounds()
         start = table.table("start")
-        uses, assets = self._assets(base, added)
+        uses, assets = self._assets(variant)
         kinds = {
             name: parts.enemy_kind(part, name)
             for name, part in assets.items()
@@ -176,7 +177,7 @@ class _Loading:
             raise TltlError([Diagnostic("TLT0006", title, (table.label_of("bounds"),), help_)])
         level = StealthLevel(
             name=self.path.stem,
-            variant=variant_text(variant),
+            variant=variant.title,
             doc=doc,
             bounds=bounds,
             start=parts.start(start if start is not None else CheckedTable(self.root, "the start", [])),
@@ -257,10 +258,11 @@ class _Loading:
             )
         return box
 
-    def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
+    def _assets(self, variant: Variant) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
         """Return the ``[[use]]`` tables of the level's file, and the assets it uses, by name.
 
-        The overlays of ``variant`` and the ``added`` ones are applied to the assets.
+        The overlays that the level lists for the variant, and then the added ones, are applied to the
+        assets.
         """
         uses = self.table.tables("use")
         references = [(use, "asset") for use in uses]
@@ -271,10 +273,10 @@ class _Loading:
             if name and name not in entries and (path := self._find_shared("assets", name, table.label_of(key))):
                 entries[name] = self._read(path, f"assets/{name}.toml")
         trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
-        named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
-        names = self.variants[variant]
+        names = self.variants[variant.name]
+        named = self.table.entries["variants"].value[variant.name].label if names else self.table.label
         overlays = [(name, self._find_shared("overlays", name, named)) for name in names[: fileio.limits.OVERLAYS + 1]]
-        overlays += [(name, self._overlay_path(name)) for name in added[: fileio.limits.OVERLAYS + 1]]
+        overlays += [(name, self._overlay_path(name)) for name in variant.overlays[: fileio.limits.OVERLAYS + 1]]
         if len(overlays) > fileio.limits.OVERLAYS:
             title = f"a variant of the level `{self.path.stem}` has more than {fileio.limits.OVERLAYS} overlays"
             raise TltlError([Diagnostic("TLT0006", title, (named,), "combine their changes in one overlay")])

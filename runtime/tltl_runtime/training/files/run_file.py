@@ -12,7 +12,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
-from tltl_runtime.game.level_name import absolute_variant
+from tltl_runtime.game.level_name import parse_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
@@ -110,7 +110,7 @@ def write_run(run: TrainingRun) -> None:
         "version": _VERSION,
         **{name: to_json(getattr(run, name)) for name in _PLAIN},
         "level": level,
-        "variant": absolute_variant(run.variant),
+        "variant": parse_variant(run.variant).absolute().text,
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "initial": run.initial and to_json(replace(run.initial, path=str(Path(run.initial.path).absolute()))),
         "level_hash": current_level_hash(run),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.game.level_name import absolute_variant, split_level, split_overlays, variant_text, with_overlays
+from tltl_runtime.game.level_name import Variant, parse_variant, split_level
 from tltl_runtime.stealth.levels.file import changes, level_and_changes, load_level
 from tltl_runtime.stealth.levels.identity import level_hash
 from tltlc.diagnostics.diagnostic import TltlError
@@ -55,21 +55,22 @@ def test_a_path_that_exists_is_not_split(tmp_path: Path, monkeypatch: pytest.Mon
         ("v0++wide", ("", "wide")),
     ],
 )
-def test_a_variant_is_split_into_its_base_and_overlays(variant: str, overlays: tuple[str, ...]) -> None:
-    assert split_overlays(variant) == ("v0", overlays)
+def test_the_text_of_a_variant_is_parsed_into_its_name_and_overlays(variant: str, overlays: tuple[str, ...]) -> None:
+    assert parse_variant(variant) == Variant("v0", overlays)
     if "\\" not in variant:
-        assert with_overlays("v0", overlays) == variant.replace("./a+b.toml", f"{Path.cwd()}/a+b.toml")
+        assert Variant("v0", overlays).text == variant.replace("./a+b.toml", f"{Path.cwd()}/a+b.toml")
 
 
 def test_the_path_of_an_overlay_may_contain_a_plus(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c++").mkdir()
     (tmp_path / "c++" / "a+b.toml").write_text(WIDER, encoding="utf-8")
-    variant = with_overlays("v0", ["c++/a+b.toml", "guard_alert"])
-    assert split_overlays(variant) == ("v0", (str(tmp_path / "c++" / "a+b.toml"), "guard_alert"))
-    assert absolute_variant(variant) == variant
+    variant = Variant("v0", ("c++/a+b.toml", "guard_alert"))
+    absolute = Variant("v0", (str(tmp_path / "c++" / "a+b.toml"), "guard_alert"))
+    assert parse_variant(variant.text) == variant.absolute() == absolute.absolute() == absolute
     loaded = load_level("branching", variant)
-    assert loaded.variant == variant_text(variant) == "v0+a+b+guard_alert"
+    assert loaded.variant == variant.title == "v0+a+b+guard_alert"
+    assert load_level("branching", variant.text) == loaded
     assert level_and_changes("branching", variant) == (loaded, changes("branching", variant))
     assert changes("branching", variant)[0] == "The guard sees further."
 
