@@ -2,11 +2,36 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Protocol
 
 from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.game.sensors import Sensors
-from tltlc.api import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, record
+
+
+@record
+class LevelSpec:
+    """The spec that a level is made for: the spec called ``name`` in ``file``.
+
+    In a recorded level, ``file`` has no folder.
+    """
+
+    file: Path
+    name: str
+
+    @property
+    def text(self) -> str:
+        """The spec as the argument ``FILE.tltl:NAME`` of commands and functions."""
+        return f"{self.file}:{self.name}" if self.name else str(self.file)
+
+
+def parse_level_spec(text: str) -> LevelSpec | None:
+    """Parse ``FILE.tltl:NAME``, as files of levels and recordings contain it; None for an empty text."""
+    file, colon, name = text.rpartition(":")
+    if not text:
+        return None
+    return LevelSpec(Path(file), name) if colon else LevelSpec(Path(text), "")
 
 
 class Level(Protocol):
@@ -21,8 +46,8 @@ class Level(Protocol):
         """The name of the variant, and the names of overlays added to it: ``v0`` or ``v0+OVERLAY``."""
 
     @property
-    def spec(self) -> str:
-        """The spec that the level is made for, as ``FILE.tltl:NAME``; empty if there is none."""
+    def spec(self) -> LevelSpec | None:
+        """The spec that the level is made for; None if there is none."""
 
     @property
     def sensors(self) -> Sensors:
@@ -42,12 +67,12 @@ class Level(Protocol):
 
 
 def default_spec(level: Level) -> str:
-    """Return the spec that a level is made for, as ``FILE.tltl:NAME``.
+    """Return the spec that a level is made for, as the argument ``FILE.tltl:NAME``.
 
     Raises:
         TltlError: TLT0721, the level is made for no spec.
     """
-    if not level.spec:
+    if level.spec is None:
         title, help_ = f"the level `{level.name}` does not name a spec", "name one: `FILE.tltl:NAME`"
         raise TltlError([Diagnostic("TLT0721", title, help=help_)])
-    return level.spec
+    return level.spec.text

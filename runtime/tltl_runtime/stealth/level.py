@@ -7,11 +7,13 @@ axes. No code depends on the name of a level.
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Literal
 
 from tltl_runtime.game.geometry import Box as Box
 from tltl_runtime.game.geometry import Point as Point
 from tltl_runtime.game.geometry import Region as Region
+from tltl_runtime.game.level import LevelSpec, parse_level_spec
 from tltl_runtime.game.sensors import MapSensor as MapSensor
 from tltl_runtime.game.sensors import Sensors as Sensors
 from tltlc.api import record
@@ -141,6 +143,10 @@ class Start:
     spread: float = 0.0
 
 
+def _spec_text(spec: LevelSpec | None) -> str:
+    return "" if spec is None else spec.text
+
+
 @record
 class StealthLevel:
     """One variant of a level.
@@ -149,6 +155,8 @@ class StealthLevel:
     specs. ``files`` are the files that the level was read from, with their SHA-256, so that a
     report can show which of them changed.
     """
+
+    json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
 
     name: str
     variant: str
@@ -163,8 +171,8 @@ class StealthLevel:
     enemies: tuple[Enemy, ...]
     exits: tuple[Exit, ...]
     sensors: Sensors
-    spec: str
-    """The spec that the level is made for, as ``FILE.tltl:NAME``; empty if there is none."""
+    spec: LevelSpec | None
+    """The spec that the level is made for; None if there is none."""
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
     """Pairs of an alias and its signal, such as (``open_right``, ``open(right)``).

@@ -7,6 +7,9 @@ already contains JSON data.
 The class of a record may have an attribute ``json_inlined``. It maps the name of a field whose
 value is another record to names of fields of that inner record. In JSON, these inner fields are
 keys of the outer object, in place of an inner object. The inner fields must not have defaults.
+
+The class may also have an attribute ``json_texts``, for fields that are texts in JSON. It maps the
+name of such a field to two functions: one returns the text of a value, the other parses it.
 """
 
 from __future__ import annotations
@@ -216,6 +219,12 @@ def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
     return inlined
 
 
+def _texts(kind: type) -> Mapping[str, tuple[Callable[[Any], str], Callable[[str], object]]]:
+    """Return the fields that are texts in JSON, each with the function that writes it and the one that parses it."""
+    texts: Mapping[str, tuple[Callable[[Any], str], Callable[[str], object]]] = getattr(kind, "json_texts", {})
+    return texts
+
+
 def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
     """Replace in ``values`` the keys that stand for an inlined field by the inner record.
 
@@ -250,7 +259,14 @@ def _getters(kind: Any) -> tuple[tuple[str, Callable[[object], object]], ...] | 
         return None
     inlined = _inlined(kind)
     paths = {key: f"{name}.{key}" if name in inlined else name for name in names for key in inlined.get(name, (name,))}
-    return tuple((key, attrgetter(path)) for key, path in paths.items())
+    getters: dict[str, Callable[[object], object]] = {key: attrgetter(path) for key, path in paths.items()}
+    for name, (text_of, _) in _texts(kind).items():
+        getters[name] = _text_getter(name, text_of)
+    return tuple(getters.items())
+
+
+def _text_getter(name: str, text_of: Callable[[Any], str]) -> Callable[[object], object]:
+    return lambda value: text_of(getattr(value, name))
 
 
 @cache
@@ -262,12 +278,19 @@ def _hints(kind: Any) -> Mapping[str, Any]:
 @cache
 def _field_readers(kind: Any) -> Mapping[str, _Read]:
     """Return the functions that read the values of a record's keys in JSON, in order."""
-    hints, inlined = _hints(kind), _inlined(kind)
+    hints, inlined, texts = _hints(kind), _inlined(kind), _texts(kind)
     readers: dict[str, _Read] = {}
     for name in kind.__match_args__:
         inner = _hints(hints[name]) if name in inlined else hints
-        readers |= {key: _reader(inner[key]) for key in inlined.get(name, (name,))}
+        readers |= {key: _reader(inner[key]) for key in inlined.get(name, (name,)) if key not in texts}
+        if name in texts:
+            readers[name] = _text_reader(texts[name][1])
     return readers
+
+
+def _text_reader(parse: Callable[[str], object]) -> _Read:
+    read = _plain_reader(str)
+    return lambda data: parse(cast(str, read(data)))
 
 
 def _mismatch(expected: str, data: object) -> _Misfit:

@@ -9,6 +9,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, inside, tltlc  # noqa: F401
 from tltl_runtime.cli.support.level_copy import NAMES
+from tltl_runtime.game.level import LevelSpec
 from tltl_runtime.stealth.capabilities.reach import compute_reach
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recordings.file import read_episode
@@ -20,7 +21,7 @@ def test_a_copy_is_complete(tltlc, inside: Path, name: str) -> None:  # type: ig
     assert created.status == 0
     assert created.err.endswith(f"Next: tltlc check --level mine/{name}.toml\n")
     level = load_level(f"mine/{name}.toml")
-    assert level.spec == f"mine/{name}.tltl:{'unseen' if name == 'vault' else name}"
+    assert level.spec == LevelSpec(Path(f"mine/{name}.tltl"), "unseen" if name == "vault" else name)
     assert all((Path("mine") / file).is_file() for file, _ in level.files)
     assert tltlc("test", f"mine/{name}.tltl").status == 0
     checked: Outcome = tltlc("check", "--level", f"mine/{name}.toml:v0")

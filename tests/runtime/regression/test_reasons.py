@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.handmade import PLAYED, summaries
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
@@ -87,7 +88,7 @@ def test_a_certain_change_is_not_called_uncertain_too() -> None:
 
 def test_an_unreachable_entity_is_reported() -> None:
     level = load_level("navigation", "v2")
-    task = load_task(level.spec)
+    task = load_task(default_spec(level))
     # The exit cannot be reached either, since the path to it ends at the same obstacle.
     (sentence,) = obstacles(level, task.fspa)
     assert sentence == (

@@ -14,6 +14,7 @@ from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
 from tests.runtime.regression.handmade import changed
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.retrain.retrain import (
@@ -94,7 +95,7 @@ def test_a_case_with_an_unreachable_goal_is_not_retrained(game: Suite) -> None:
     *_, hopeless = judged(game)
     assert hopeless.prepared and hopeless.training_obstacle is None
     level = load_level("navigation", "v2")
-    setup = replace(hopeless.prepared.setup, fspa=load_task(level.spec).fspa)
+    setup = replace(hopeless.prepared.setup, fspa=load_task(default_spec(level)).fspa)
     shut = replace(hopeless, prepared=replace(hopeless.prepared, level=level, setup=setup))
     assert shut.training_obstacle == "nobody can do what `navigation` asks, as reported above"
     assert shut.case_to_train is None

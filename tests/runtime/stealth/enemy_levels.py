@@ -80,7 +80,7 @@ def level(
         enemies=tuple(Enemy(f"guard{i}", kind, route) for i, route in enumerate(routes)),
         exits=(Exit("exit", (9.5, 7.5, 0.0)),),
         sensors=Sensors((), (), map_sensor),
-        spec="",
+        spec=None,
         files=(),
     )
 

@@ -204,7 +204,7 @@ def test_a_missing_entity_is_reported_at_its_place_in_the_spec(tmp_path: Path) -
 
 def test_a_level_without_a_spec_needs_one() -> None:
     with pytest.raises(TltlError, match="TLT0721: the level `bare` does not name a spec"):
-        default_spec(replace(load_level("navigation"), name="bare", spec=""))
+        default_spec(replace(load_level("navigation"), name="bare", spec=None))
 
 
 @pytest.mark.parametrize(

@@ -109,8 +109,9 @@ def test_a_laser_burns() -> None:
 @pytest.mark.parametrize("name", level_names())
 def test_each_level_supplies_the_signals_of_its_spec(name: str) -> None:
     level = load_level(name)
-    file, _, spec = level.spec.partition(":")
-    (fspa,) = (automaton for automaton in tltlc.compile_file(ROOT / "examples" / file) if automaton.name == spec)
+    assert level.spec is not None
+    automata = tltlc.compile_file(ROOT / "examples" / level.spec.file)
+    (fspa,) = (automaton for automaton in automata if automaton.name == level.spec.name)
     game = Simulation(level)
     assert {signal.name for signal in fspa.signals} <= set(game.signals())
     game.close()

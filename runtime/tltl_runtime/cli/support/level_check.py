@@ -85,11 +85,11 @@ class _LevelCheck:
 
     def _compile_own_spec(self, level: StealthLevel) -> list[cli.Input]:
         """Compile the spec that a level is made for."""
-        if not level.spec:
+        if level.spec is None:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             self._say(f"{level.name}: the level does not name a spec; {advice}")
             return []
-        opened = cli.open_input(path_text(Path(level.spec)), self._settings)
+        opened = cli.open_input(path_text(Path(level.spec.text)), self._settings)
         self._add(opened.diagnostics)
         return [opened]
 

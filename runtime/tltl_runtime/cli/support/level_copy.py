@@ -33,11 +33,11 @@ def files(name: str) -> dict[str, str]:
     levels = [load_level(str(path), variant) for variant in variants(str(path))]
     names = dict.fromkeys(name for level in levels for name, _ in level.files)
     paths = {name: next(place / name for place in (path.parent, LEVELS) if (place / name).is_file()) for name in names}
-    spec = Path(levels[0].spec.rpartition(":")[0])
-    if spec.name:
-        paths[spec.name] = spec
+    spec = levels[0].spec
+    if spec:
+        paths[spec.file.name] = spec.file
     texts = {name: fileio.read_source(file, name).text for name, file in paths.items()}
-    return {**texts, "README.md": _README.format(level=path.name, spec=spec.name or "SPEC.tltl")}
+    return {**texts, "README.md": _README.format(level=path.name, spec=spec.file.name if spec else "SPEC.tltl")}
 
 
 _README: Final = """\

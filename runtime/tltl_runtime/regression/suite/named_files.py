@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
@@ -96,10 +97,15 @@ def level_with_fitting_policy(level: str) -> str | None:
     """
     game = registered_game()
     with suppress(TltlError):
-        levels_by_spec = {Path(game.load_level(name).spec).name: name for name in shipped_policies()}
+        levels_by_spec = {_spec_names(game.load_level(name)): name for name in shipped_policies()}
         first_variant = game.level_files.variants(level)[0]
-        return levels_by_spec.get(Path(game.load_level(level, first_variant).spec).name)
+        return levels_by_spec.get(_spec_names(game.load_level(level, first_variant)))
     return None
+
+
+def _spec_names(level: Level) -> tuple[str, str] | None:
+    """Return the name of the file of a level's spec, and the name of the spec; None if it has no spec."""
+    return (level.spec.file.name, level.spec.name) if level.spec else None
 
 
 def _with_label(label: Label, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.level import LevelSpec, parse_level_spec
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.shown_path import path_text
 from tltl_runtime.support.suggestion import suggestion
@@ -17,35 +18,35 @@ SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 """The folders of the levels' specs: in an installed package, and in a checkout."""
 
 
-def read_default_spec(table: CheckedTable, level: Path) -> str:
-    """Return the spec that the key ``spec`` of a level names, as ``FILE:NAME``.
+def read_default_spec(table: CheckedTable, level: Path) -> LevelSpec | None:
+    """Return the spec that the key ``spec`` of a level names.
 
-    ``level`` is the path of the level's file. FILE is the path of the spec's file, which is beside
-    the level or in the package.
+    ``level`` is the path of the level's file. The spec's file is beside the level or
+    in the package.
 
-    - If there is no key, return an empty text.
-    - If the value of the key is wrong, log TLT0803 and return an empty text.
-    - If there is no such file, log TLT0805 and return an empty text.
-    - If the file does not contain the spec, log TLT0805, but return FILE:NAME all the same.
+    - If there is no key, return None.
+    - If the value of the key is wrong, log TLT0803 and return None.
+    - If there is no such file, log TLT0805 and return None.
+    - If the file does not contain the spec, log TLT0805, but return the spec all the same.
     """
     text = table.text("spec", "")
-    file, _, name = text.rpartition(":")
-    if not text:
-        return ""
-    if not file.endswith(".tltl") or not name:
+    spec = parse_level_spec(text)
+    if spec is None:
+        return None
+    if not str(spec.file).endswith(".tltl") or not spec.name:
         table.log.append(wrong_value(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
-        return ""
-    label = table.label_of("spec")
-    path = next((folder / file for folder in (level.parent, *SPECS) if fileio.is_file(folder / file)), None)
+        return None
+    label, file = table.label_of("spec"), spec.file.as_posix()
+    path = next((folder / spec.file for folder in (level.parent, *SPECS) if fileio.is_file(folder / spec.file)), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
         table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))
-        return ""
+        return None
     specs = _spec_names(path)
-    if name not in specs:
-        title = f"`{file}` contains no spec `{name}`"
-        table.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
-    return f"{path}:{name}"
+    if spec.name not in specs:
+        title = f"`{file}` contains no spec `{spec.name}`"
+        table.log.append(Diagnostic("TLT0805", title, (label,), suggestion(spec.name, specs)))
+    return LevelSpec(path, spec.name)
 
 
 def is_packaged(spec: str) -> bool:

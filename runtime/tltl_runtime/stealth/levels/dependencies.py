@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from tltl_runtime.game.level import parse_level_spec
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
 from tltl_runtime.stealth.levels.default_spec import LEVELS, SPECS
 from tltlc.api import SourceFile, TltlError, fileio
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
-_SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 
 def level_dependencies(level: Path, variant: Variant) -> Iterator[Path]:
@@ -41,9 +41,10 @@ def level_dependencies(level: Path, variant: Variant) -> Iterator[Path]:
     yield from (Path(name) for name in variant.overlays if name.endswith(".toml"))
     added = [name for name in variant.overlays if not name.endswith(".toml")]
     yield from _shared_files(added, "overlays", places, sure=True)
-    for match in filter(None, map(_SPEC.match, specs)):
-        for path in up_to_first_file(folder / match[1] for folder in (level.parent, *SPECS)):
-            yield from spec_files(path)
+    for spec in filter(None, map(parse_level_spec, specs)):
+        if spec.file.suffix == ".tltl":
+            for path in up_to_first_file(folder / spec.file for folder in (level.parent, *SPECS)):
+                yield from spec_files(path)
 
 
 def file_candidates(level: Path, variant: Variant, name: str) -> Iterator[Path]:

@@ -151,7 +151,7 @@ def _automaton(artefact: str) -> Fspa:
 
 
 def _meta(episode: Episode) -> Meta:
-    level = episode.level
+    level, spec = episode.level, episode.level.spec
     return Meta(
         format=FORMAT,
         version=VERSION,
@@ -166,7 +166,7 @@ def _meta(episode: Episode) -> Meta:
         modes=_modes(episode),
         names=_names(level, episode.fspa),
         # Keep the file name only: the folder means nothing on another machine.
-        level=replace(level, spec=level.spec.replace("\\", "/").rpartition("/")[2]),
+        level=replace(level, spec=spec and replace(spec, file=Path(spec.file.name))),
     )
 
 

@@ -58,7 +58,7 @@ def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] =
         enemies=(),
         exits=(Exit("exit", end),),
         sensors=Sensors((), (), None),
-        spec="",
+        spec=None,
         files=(),
     )
 

@@ -18,6 +18,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tltl_runtime.game.level import LevelSpec, default_spec
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
@@ -60,7 +61,7 @@ def assert_same(first_episode: Episode, second_episode: Episode) -> None:
     other_fields = [name for name in Episode.__match_args__ if name not in (*NUMBERS, "level")]  # type: ignore[attr-defined]
     assert all(getattr(first_episode, name) == getattr(second_episode, name) for name in other_fields)
     assert repr(first_episode.snapshots) == repr(second_episode.snapshots)  # -0.0 is not 0.0
-    assert replace(first_episode.level, spec="") == replace(second_episode.level, spec="")
+    assert replace(first_episode.level, spec=None) == replace(second_episode.level, spec=None)
 
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -399,7 +400,18 @@ def test_random_values_in_meta_are_read_or_rejected(episode: Episode) -> None:
 @pytest.mark.parametrize(("name", "variant"), [(name, variant) for name in level_names() for variant in variants(name)])
 def test_a_level_is_equal_after_a_round_trip_through_json(name: str, variant: str) -> None:
     level = load_level(name, variant)
-    assert from_json(StealthLevel, json.loads(json.dumps(to_json(level))), "level") == level
+    document = json.loads(json.dumps(to_json(level)))
+    assert document["spec"] == default_spec(level)
+    assert from_json(StealthLevel, document, "level") == level
+
+
+def test_the_spec_of_a_level_is_a_text_in_json_and_has_no_folder_in_a_recording(episode: Episode) -> None:
+    assert from_bytes(to_bytes(episode), "episode.npz").level.spec == LevelSpec(Path("branching.tltl"), "branching")
+    document = to_json(replace(episode.level, spec=None))
+    assert document["spec"] == ""
+    assert from_json(StealthLevel, document, "level").spec is None
+    with pytest.raises(RecordJsonError, match=r"`level\.spec` is 1, but a text was expected"):
+        from_json(StealthLevel, {**document, "spec": 1}, "level")
 
 
 # --- messages ---------------------------------------------------------------------------------------

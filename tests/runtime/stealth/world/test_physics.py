@@ -65,7 +65,7 @@ def arena(
         enemies=(),
         exits=(),
         sensors=Sensors((), (), None),
-        spec="",
+        spec=None,
         files=(),
     )
 
