@@ -88,7 +88,7 @@ def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Itera
             yield from _check_declaration(signal, offered[signal.name], level, places)
         else:
             title = f"the level `{level.name}` has no signal `{signal.name}`"
-            yield Diagnostic("TLT0811", title, places.signal(signal.name), _hint(signal, level, offered))
+            yield Diagnostic("TLT0811", title, places.signal(signal), _hint(signal, level, offered))
 
 
 def _check_declaration(
@@ -106,7 +106,7 @@ def _check_declaration(
             f"but the level `{level.name}` supplies {_with_article(offer.type)}"
         )
         help_ = f"declare it as {_with_article(offer.type)}, or rename it if you mean another signal"
-        yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_)
+        yield Diagnostic("TLT0812", title, places.declaration(signal), help_)
         return
     low, high = _ends(signal.low, signal.high)
     least, most = _ends(offer.low, offer.high)
@@ -116,7 +116,7 @@ def _check_declaration(
             f"but in {monitors.range_text(*_rounded_range(offer))} in the level `{level.name}`"
         )
         help_ = "widen its range: a value outside it counts as the nearest value inside"
-        yield Diagnostic("TLT0812", title, places.declaration(signal.name), help_, "warning")
+        yield Diagnostic("TLT0812", title, places.declaration(signal), help_, "warning")
 
 
 def _hint(signal: Signal, level: StealthLevel, offered: dict[str, OfferedSignal]) -> str:

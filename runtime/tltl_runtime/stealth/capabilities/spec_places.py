@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from tltlc.api import Label, Span, Spec, expressions, syntax
+from tltlc.api import Label, Signal, Span, Spec, expressions, syntax
 
 
 class SpecPlaces:
@@ -41,16 +41,18 @@ class SpecPlaces:
             or _first(entity.span for entity in declared if entity.name == name)
         )
 
-    def signal(self, name: str) -> tuple[Label, ...]:
+    def signal(self, signal: Signal) -> tuple[Label, ...]:
         """Return the label of the first use of a signal in the spec, directly or through an atom.
 
+        A use with the same arguments comes first, then a use with others, then one through an atom.
         If the spec does not use the signal, return the label of the signal's declaration.
         """
-        users = [self._base_name(name), *self._atoms_of(name)]
+        exact = _first(part.span for part in _parts(self._declarations_of_spec) if _is_use(part, signal))
+        users = [signal.base, *self._atoms_of(signal)]
         spans = (_first_use(self._declarations_of_spec, user) for user in users)
-        return self._label(self._text_span(name) or next(filter(None, spans), None) or self._declaration_span(name))
+        return self._label(exact or next(filter(None, spans), None) or self._declaration_span(signal))
 
-    def declaration(self, signal: str) -> tuple[Label, ...]:
+    def declaration(self, signal: Signal) -> tuple[Label, ...]:
         """Return the label of the declaration of a signal.
 
         If the declaration is in another file, return the label of the signal's first use instead.
@@ -69,38 +71,31 @@ class SpecPlaces:
             _first(declaration.span for declaration in self._declarations if isinstance(declaration, syntax.ClockDecl))
         )
 
-    def _atoms_of(self, signal: str) -> list[str]:
+    def _atoms_of(self, signal: Signal) -> list[str]:
         """Return the names of the atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
-        return [atom.base for atom in atoms if expressions.SignalValue(signal) in expressions.nodes(atom.expression)]
+        return [
+            atom.base for atom in atoms if expressions.SignalValue(signal.name) in expressions.nodes(atom.expression)
+        ]
 
-    def _base_name(self, signal: str) -> str:
-        """Return the name of a signal without its arguments, such as ``distance``."""
-        signals = self._spec.signals if self._spec else ()
-        return next((declared.base for declared in signals if declared.name == signal), signal)
-
-    def _declaration_span(self, signal: str) -> Span | None:
-        base = self._base_name(signal)
+    def _declaration_span(self, signal: Signal) -> Span | None:
         return _first(
             declaration.name_span
             for declaration in self._declarations
-            if isinstance(declaration, syntax.SignalDecl) and declaration.name == base
-        )
-
-    def _text_span(self, text: str) -> Span | None:
-        """Return the span of the first expression in the spec that has this text.
-
-        Return None if no expression has it. Differences in blanks do not count.
-        """
-        if self._spec is None:
-            return None
-        source, bare = self._spec.source, "".join(text.split())
-        return _first(
-            part.span for part in _parts(self._declarations_of_spec) if "".join(source.slice(part.span).split()) == bare
+            if isinstance(declaration, syntax.SignalDecl) and declaration.name == signal.base
         )
 
     def _label(self, span: Span | None) -> tuple[Label, ...]:
         return (Label(self._spec.source, span or self._spec.name_span),) if self._spec else ()
+
+
+def _is_use(part: syntax.Expr, signal: Signal) -> bool:
+    """Whether a part of an expression is the signal, with its arguments."""
+    if isinstance(part, syntax.CallExpr):
+        values = [argument.value for argument in part.arguments if argument.name is None]
+        names = tuple(value.name for value in values if isinstance(value, syntax.NameExpr))
+        return part.name == signal.base and len(names) == len(part.arguments) and names == signal.arguments
+    return isinstance(part, syntax.NameExpr) and part.name == signal.base and not signal.arguments
 
 
 def _first_use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
