@@ -116,8 +116,8 @@ def _search(record: Mapping[str, Any]) -> str:
     lengths = search.get("lengths") if isinstance(search, dict) else None
     if not isinstance(lengths, list) or not all(type(length) is int for length in lengths):
         return ""
-    ways = f"{len(lengths)} way{'s' * (len(lengths) != 1)} to meet the spec"
-    return f"{ways}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"
+    demonstrations = f"{len(lengths)} way{'s' * (len(lengths) != 1)} to meet the spec"
+    return f"{demonstrations}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"
 
 
 def _demonstrations(record: Mapping[str, Any]) -> str:

@@ -19,7 +19,7 @@ from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.capabilities.capabilities import check_supply
+from tltl_runtime.stealth.capabilities.capabilities import check_capabilities
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.level import StealthLevel
@@ -192,7 +192,7 @@ def make_env(
 
     Raises:
         TltlError: the spec needs something that the level does not supply, see
-            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_supply`; TLT0721, ``spec``
+            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_capabilities`; TLT0721, ``spec``
             is None, and the level is made for no spec.
     """
     game = GameEnv(level, variant, sensors, **render)
@@ -212,12 +212,12 @@ def check_fit(level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
     The error lists everything that is lacking, with the places in the source of ``spec``. ``fspa``
     is the automaton of ``spec``.
     """
-    if _supply_errors(level, fspa, SpecPlaces(None)):
-        raise TltlError(_supply_errors(level, fspa, SpecPlaces(read_spec(spec)[1])))
+    if _capability_errors(level, fspa, SpecPlaces(None)):
+        raise TltlError(_capability_errors(level, fspa, SpecPlaces(read_spec(spec)[1])))
 
 
-def _supply_errors(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    return [diagnostic for diagnostic in check_supply(level, fspa, places) if diagnostic.severity == "error"]
+def _capability_errors(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+    return [diagnostic for diagnostic in check_capabilities(level, fspa, places) if diagnostic.severity == "error"]
 
 
 # `gymnasium.make` reads the render modes from the attribute `metadata` of this function.

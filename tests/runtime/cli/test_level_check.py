@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
-from tltl_runtime.stealth.capabilities.vocabulary import offered_signals
+from tltl_runtime.stealth.capabilities.vocabulary import available_signals
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.signals import readers
 
@@ -19,7 +19,7 @@ SHIPPED = [(name, variant) for name in level_names() for variant in variants(nam
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
 def test_every_signal_has_a_type_and_a_range(name: str, variant: str) -> None:
     level = load_level(name, variant)
-    assert offered_signals(level).keys() == readers(level).keys()
+    assert available_signals(level).keys() == readers(level).keys()
 
 
 def test_the_shipped_levels_supply_the_signals_of_their_specs(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811

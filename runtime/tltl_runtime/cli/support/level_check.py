@@ -11,7 +11,7 @@ from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import senses_options
 from tltl_runtime.game.level_name import split_level
-from tltl_runtime.stealth.capabilities.capabilities import check_supply, params_from_level, used_entities
+from tltl_runtime.stealth.capabilities.capabilities import check_capabilities, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
@@ -72,14 +72,14 @@ class _LevelCheck:
         has_several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
         for opened in inputs:
             for fspa, places in _specs(opened):
-                diagnostics = check_supply(level, fspa, places)
+                diagnostics = check_capabilities(level, fspa, places)
                 if cli.status_of(diagnostics) == cli.CLEAN:
                     diagnostics += check_reach(level, reach, fspa, places)
                 self._add(diagnostics)
                 if not diagnostics:
                     receiver = f" to `{fspa.name}`" if has_several else ""
                     note = "" if warnings or opened.diagnostics else " (nothing to report)"
-                    self._say(f"{level.name}:{variant} {_supply_text(level, fspa)}{receiver}{note}")
+                    self._say(f"{level.name}:{variant} {_capability_text(level, fspa)}{receiver}{note}")
         self._say(f"{level.name}: the agent senses {_sensor_text(senses)}")
         return level, reach
 
@@ -120,7 +120,7 @@ def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, SpecPlaces]]:
         yield fspa, SpecPlaces(specs.get(fspa.name))
 
 
-def _supply_text(level: StealthLevel, fspa: Fspa) -> str:
+def _capability_text(level: StealthLevel, fspa: Fspa) -> str:
     """Say what a level supplies to a spec, for example ``supplies s1, exit``.
 
     These are the entities and params that the spec uses, and its signals that are about no entity.

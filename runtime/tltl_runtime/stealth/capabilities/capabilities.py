@@ -7,7 +7,7 @@ from math import inf, isclose
 from typing import Final
 
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.capabilities.vocabulary import OfferedSignal, offered_signals, params
+from tltl_runtime.stealth.capabilities.vocabulary import AvailableSignal, available_signals, params
 from tltl_runtime.stealth.level import StealthLevel, entity_names
 from tltl_runtime.stealth.levels.default_spec import is_packaged
 from tltl_runtime.stealth.signals import signal_list
@@ -21,7 +21,7 @@ _KIND_OF: Final = {"active": "switch", "open": "barrier"}
 _ARTICLE: Final = {"angle": "an angle"}
 
 
-def check_supply(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+def check_capabilities(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     """Return diagnostics for everything that a spec uses and a level does not supply.
 
     ``fspa`` is the automaton of the spec. ``places`` finds the places in the spec's source that
@@ -73,7 +73,7 @@ def used_entities(level: StealthLevel, fspa: Fspa) -> tuple[str, ...]:
 
 
 def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
-    offered, entities = offered_signals(level), entity_names(level)
+    available, entities = available_signals(level), entity_names(level)
     missing: set[str] = set()
     for signal in fspa.signals:
         unknown = [name for name in signal.arguments if name not in entities]
@@ -84,47 +84,47 @@ def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Itera
                 yield Diagnostic("TLT0810", title, places.entity(name), suggestion(name, entities))
         if unknown:
             continue
-        if signal.name in offered:
-            yield from _check_declaration(signal, offered[signal.name], level, places)
+        if signal.name in available:
+            yield from _check_declaration(signal, available[signal.name], level, places)
         else:
             title = f"the level `{level.name}` has no signal `{signal.name}`"
-            yield Diagnostic("TLT0811", title, places.signal(signal), _hint(signal, level, offered))
+            yield Diagnostic("TLT0811", title, places.signal(signal), _hint(signal, level, available))
 
 
 def _check_declaration(
-    signal: Signal, offer: OfferedSignal, level: StealthLevel, places: SpecPlaces
+    signal: Signal, available: AvailableSignal, level: StealthLevel, places: SpecPlaces
 ) -> Iterator[Diagnostic]:
     """Yield TLT0812 if the level's signal does not fit its declaration in the spec.
 
-    ``offer`` describes the level's signal, and ``signal`` is the declaration. Another type is an
+    ``available`` describes the level's signal, and ``signal`` is the declaration. Another type is an
     error; values outside the declared range are a warning.
     """
-    needs_bool = signal.type == "bool" and offer.type != "bool"
-    if needs_bool or specs.TYPES[signal.type] != specs.TYPES[offer.type]:
+    needs_bool = signal.type == "bool" and available.type != "bool"
+    if needs_bool or specs.TYPES[signal.type] != specs.TYPES[available.type]:
         title = (
             f"`{signal.name}` is {_with_article(signal.type)} in the spec, "
-            f"but the level `{level.name}` supplies {_with_article(offer.type)}"
+            f"but the level `{level.name}` supplies {_with_article(available.type)}"
         )
-        help_ = f"declare it as {_with_article(offer.type)}, or rename it if you mean another signal"
+        help_ = f"declare it as {_with_article(available.type)}, or rename it if you mean another signal"
         yield Diagnostic("TLT0812", title, places.declaration(signal), help_)
         return
     low, high = _ends(signal.low, signal.high)
-    least, most = _ends(offer.low, offer.high)
+    least, most = _ends(available.low, available.high)
     if least < low or most > high:
         title = (
             f"`{signal.name}` is in {monitors.range_text(signal.low, signal.high)} in the spec, "
-            f"but in {monitors.range_text(*_rounded_range(offer))} in the level `{level.name}`"
+            f"but in {monitors.range_text(*_rounded_range(available))} in the level `{level.name}`"
         )
         help_ = "widen its range: a value outside it counts as the nearest value inside"
         yield Diagnostic("TLT0812", title, places.declaration(signal), help_, "warning")
 
 
-def _hint(signal: Signal, level: StealthLevel, offered: dict[str, OfferedSignal]) -> str:
+def _hint(signal: Signal, level: StealthLevel, available: dict[str, AvailableSignal]) -> str:
     if signal.arguments and signal.base in _KIND_OF:
         kind = _KIND_OF[signal.base]
         known = [entity.name for entity in (level.switches if kind == "switch" else level.barriers)]
         return f"its argument must be a {kind}: {suggestion(', '.join(signal.arguments), known)}"
-    known_names = suggestion(signal.name, offered, signal_list(level))
+    known_names = suggestion(signal.name, available, signal_list(level))
     return f"{known_names}\na level can give its signals other names under `[signals]`"
 
 
@@ -132,8 +132,9 @@ def _ends(low: float | None, high: float | None) -> tuple[float, float]:
     return -inf if low is None else low - 1e-6, inf if high is None else high + 1e-6
 
 
-def _rounded_range(offer: OfferedSignal) -> tuple[float | None, float | None]:
-    return (None if offer.low is None else round(offer.low, 3)), (None if offer.high is None else round(offer.high, 3))
+def _rounded_range(available: AvailableSignal) -> tuple[float | None, float | None]:
+    low, high = available.low, available.high
+    return (None if low is None else round(low, 3)), (None if high is None else round(high, 3))
 
 
 def _with_article(type_: str) -> str:

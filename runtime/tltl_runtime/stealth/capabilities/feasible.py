@@ -10,7 +10,7 @@ from tltl_runtime.stealth.capabilities.capabilities import params_from_level, us
 from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach, highest_jump, highest_lift
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceBudgetError
 from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
-from tltl_runtime.stealth.capabilities.vocabulary import offered_signals
+from tltl_runtime.stealth.capabilities.vocabulary import available_signals
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
@@ -85,11 +85,11 @@ def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozense
 
     The result may miss some of these atoms, but contains no others.
     """
-    offered = offered_signals(level)
+    available = available_signals(level)
     box: dict[ranges.Variable, ranges.Interval] = {}
     for signal in fspa.signals:
-        offer = offered[signal.name]
-        low, high = _ends(offer.low, offer.high)
+        level_signal = available[signal.name]
+        low, high = _ends(level_signal.low, level_signal.high)
         if signal.base == "distance" and len(signal.arguments) == 1:
             low = max(low, reach.distances[signal.arguments[0]])
         # A sample outside the declared range is clamped to it.

@@ -1,4 +1,4 @@
-"""The vocabulary that a level offers to specs: signals with types and ranges, and params."""
+"""The vocabulary of specs for a level: signals with types and ranges, and params."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.api import record, specs
 
 
 @record
-class OfferedSignal:
+class AvailableSignal:
     """The type and the range of one of a level's signals, in SI units.
 
     ``low`` or ``high`` is None if that end of the range is open.
@@ -21,9 +21,9 @@ class OfferedSignal:
     high: float | None
 
 
-def offered_signals(level: StealthLevel) -> dict[str, OfferedSignal]:
+def available_signals(level: StealthLevel) -> dict[str, AvailableSignal]:
     """Return the type and range of each signal of a level, by name; aliases are included."""
-    return {name: _offered_signal(signal.base, level) for name, signal in level_signals(level).items()}
+    return {name: _available_signal(signal.base, level) for name, signal in level_signals(level).items()}
 
 
 def params(level: StealthLevel) -> dict[str, float]:
@@ -34,16 +34,16 @@ def params(level: StealthLevel) -> dict[str, float]:
     return {"level_size": dist(level.bounds.low, level.bounds.high)}
 
 
-def _offered_signal(base: str, level: StealthLevel) -> OfferedSignal:
+def _available_signal(base: str, level: StealthLevel) -> AvailableSignal:
     if base in ("health", "stamina"):
-        return OfferedSignal("ratio", 0.0, 1.0)
+        return AvailableSignal("ratio", 0.0, 1.0)
     if base == "time":
-        return OfferedSignal("time", 0.0, None)
+        return AvailableSignal("time", 0.0, None)
     if base == "bearing":
-        return OfferedSignal("angle", -pi, pi)
+        return AvailableSignal("angle", -pi, pi)
     if base == "distance":
-        return OfferedSignal("length", 0.0, params(level)["level_size"])
+        return AvailableSignal("length", 0.0, params(level)["level_size"])
     if base in AXES:
         axis = AXES[base]
-        return OfferedSignal("length", level.bounds.low[axis], level.bounds.high[axis])
-    return OfferedSignal("bool", 0.0, 1.0)
+        return AvailableSignal("length", level.bounds.low[axis], level.bounds.high[axis])
+    return AvailableSignal("bool", 0.0, 1.0)
