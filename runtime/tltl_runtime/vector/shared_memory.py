@@ -15,7 +15,7 @@ import numpy as np
 from gymnasium import Space, spaces
 from numpy.typing import DTypeLike, NDArray
 
-Columns = Any
+SharedColumns = Any
 """The values of all rows for a space.
 
 This is an array. For a Dict or Tuple space, it is a dict or tuple of columns.
@@ -86,7 +86,7 @@ class Rows:
         self.info: dict[str, NDArray[Any]] = {name: rows["info"][name] for name in rows.dtype["info"].names or ()}
 
 
-def write(columns: Columns, row: int, value: Any) -> None:
+def write(columns: SharedColumns, row: int, value: Any) -> None:
     """Write a value of a space into one row of the columns of this space."""
     if isinstance(columns, dict):
         for key, column in columns.items():
@@ -98,7 +98,7 @@ def write(columns: Columns, row: int, value: Any) -> None:
         columns[row] = value
 
 
-def write_batch(columns: Columns, batch: Any) -> None:
+def write_batch(columns: SharedColumns, batch: Any) -> None:
     """Write a batch of values of a space into its columns: one value into each row.
 
     ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`.
@@ -113,7 +113,7 @@ def write_batch(columns: Columns, batch: Any) -> None:
         columns[...] = batch
 
 
-def read(columns: Columns, rows: int | slice) -> Any:
+def read(columns: SharedColumns, rows: int | slice) -> Any:
     """Return a copy of the value in a row, or of the values in a slice of rows as a batch."""
     if isinstance(columns, dict):
         return {key: read(column, rows) for key, column in columns.items()}
@@ -122,7 +122,7 @@ def read(columns: Columns, rows: int | slice) -> Any:
     return columns[rows].copy()
 
 
-def _columns(space: Space[Any], rows: NDArray[Any]) -> Columns:
+def _columns(space: Space[Any], rows: NDArray[Any]) -> SharedColumns:
     if isinstance(space, spaces.Dict):
         return {key: _columns(part, rows[key]) for key, part in space.items()}
     if isinstance(space, spaces.Tuple):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.exploration.replayed_starts import Episodes, EpisodeStart, ReplayedStartEnv
+from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart, ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import (
     FailedEpisode,
@@ -87,7 +87,7 @@ def test_a_given_player_plays_first(env: WorkerVectorEnv) -> None:
         return np.zeros(5, np.int64)
 
     # Its first episodes have the same seeds as in the first search.
-    search = TrajectorySearch(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
+    search = TrajectorySearch(env, replace(exploration, ways=1), np.random.SeedSequence(7), policy=follow)
     (*_, last) = search.run()
     assert search.demonstrations[0] in demonstrations
     assert (last.steps, last.replayed) == (env.num_envs * len(search.demonstrations[0].actions), 0)
@@ -112,7 +112,7 @@ def test_if_a_player_fails_the_search_continues_from_its_cells(
     draw = TrajectorySearch._draw
     monkeypatch.setattr(TrajectorySearch, "_draw", recorded_draw)
     exploration = SearchSettings(ways=2, steps=20_000, parts=4, imitation=0)
-    search = TrajectorySearch(env, exploration, np.random.SeedSequence(7), player=walk)
+    search = TrajectorySearch(env, exploration, np.random.SeedSequence(7), policy=walk)
     list(search.run())
     assert len(search.demonstrations) >= 2
     # The episodes of the player end at the limit of 300 decisions.
@@ -164,7 +164,7 @@ def test_episodes_start_with_replayed_actions(env: WorkerVectorEnv) -> None:
     rng = np.random.default_rng(3)
     actions = [[int(choice) for choice in rng.integers(0, (3, 3, 1, 2, 2))] for _ in range(25)]
     starts = iter([EpisodeStart(5, actions[:20])] * 4 + [EpisodeStart(5, actions, max_decisions=2)] * 20)
-    episodes = Episodes(env, lambda: next(starts))
+    episodes = EpisodesInProgress(env, lambda: next(starts))
     single_env = make_env("navigation", "v0", NEAR)
     single_env.reset(seed=5)
     for action in actions[:20]:
@@ -221,7 +221,7 @@ def test_a_lost_worker_is_reported_with_the_seeds_of_its_episodes(
     env: WorkerVectorEnv, cut_rows: list[int], expected: list[tuple[int, ...]]
 ) -> None:
     starts = iter([EpisodeStart(seed, [[0] * 5] * 3) for seed in range(10, 20)])
-    episodes = Episodes(env, lambda: next(starts))
+    episodes = EpisodesInProgress(env, lambda: next(starts))
     episodes.step(np.zeros((4, 5), dtype=np.int64))
     (worker,) = env.worker_pids
     assert worker is not None

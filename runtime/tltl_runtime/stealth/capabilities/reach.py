@@ -30,7 +30,7 @@ import numpy as np
 
 from tltl_runtime.stealth.capabilities.space import (
     Budget,
-    Field,
+    CellMask,
     Space,
     SpaceBudgetError,
     SpaceGrid,
@@ -76,7 +76,7 @@ class Reach:
     switches: tuple[str, ...]
     barriers: tuple[str, ...]
     distances: Mapping[str, float]
-    ground: Field
+    ground: CellMask
     origin: tuple[float, float]
     cell: float
     highest: float
@@ -183,7 +183,7 @@ class _Search:
         heights = {z for top in tops for z in (top.lowest, top.height)} | {start[2]}
         cuts = [z for height in heights for z in (height - _EDGE_DEPTH, height + _TOUCH, height + lift)]
         self.grid = SpaceGrid(level.bounds, [*self._solids, *barriers], cuts, kind, budget)
-        self._tops: dict[tuple[float, float], Field] = {}
+        self._tops: dict[tuple[float, float], CellMask] = {}
         """The cells from which the feet can touch a top, by its ``lowest`` and its ``height``."""
         for top in tops:
             if top.lowest < level.bounds.high[2] - _TOUCH:
@@ -192,12 +192,12 @@ class _Search:
                 near |= self.grid.cells_near(top.box, _EDGE)
         x, y, z = start
         around = self.grid.cells_near(Box((x, y, z), (x, y, z)), level.start.spread)
-        self._ground: dict[float, Field] = {z: around}
+        self._ground: dict[float, CellMask] = {z: around}
         self._space: Space = np.zeros(self.grid.shape, dtype=np.bool_)
 
-    def ground(self) -> Field:
+    def ground(self) -> CellMask:
         """Return a mask of the cells in which the search has reached ground at any height."""
-        ground: Field = np.logical_or.reduce(list(self._ground.values()))
+        ground: CellMask = np.logical_or.reduce(list(self._ground.values()))
         return ground
 
     def highest(self) -> float:
@@ -229,7 +229,7 @@ class _Search:
                     pending.setdefault(top, np.zeros_like(near))[window] |= new
         return self._space
 
-    def _walk(self, free: Space, height: float, fresh: Field) -> None:
+    def _walk(self, free: Space, height: float, fresh: CellMask) -> None:
         """Add to the newly reached ground ``fresh`` all ground that can be walked to from there.
 
         ``fresh`` is a mask of cells, modified in place. All this ground is at ``height``.
@@ -239,7 +239,7 @@ class _Search:
         fresh |= flood((same | fresh)[None], fresh[None], self.grid.budget)[0] & ~self._ground[height]
         self._ground[height] |= fresh
 
-    def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
+    def _flight(self, free: Space, height: float, ground: CellMask) -> tuple[tuple[slice, slice], Space]:
         """Return the space that a jump or a fall from ``ground`` at ``height`` can reach.
 
         It is a part of ``free``. The result is a window of rows and columns, and a mask of the

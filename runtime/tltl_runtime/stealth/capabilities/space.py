@@ -38,7 +38,7 @@ distances approximate this well enough.
 
 _ROUNDING: Final = 1e-5
 
-Field = NDArray[np.bool_]
+CellMask = NDArray[np.bool_]
 """A mask of cells, [rows, columns]; rows go north."""
 
 Space = NDArray[np.bool_]
@@ -113,7 +113,7 @@ class SpaceGrid:
                 free[slabs, rows, columns] &= apart >= width * width
         return free
 
-    def cells_near(self, box: Box, reach: float) -> Field:
+    def cells_near(self, box: Box, reach: float) -> CellMask:
         """Return a mask of the cells that have a point within ``reach`` metres of a box.
 
         Only horizontal distances count.
@@ -121,7 +121,7 @@ class SpaceGrid:
         self.budget.spend(self.shape[1] * self.shape[2])
         dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
         dy = np.maximum(np.maximum(box.low[1] - self.south - self.cell, self.south - box.high[1]), 0.0)
-        cells: Field = dx[None, :] ** 2 + dy[:, None] ** 2 <= reach * reach
+        cells: CellMask = dx[None, :] ** 2 + dy[:, None] ** 2 <= reach * reach
         return cells
 
     def slabs(self, low: float, high: float) -> NDArray[np.bool_]:
@@ -203,16 +203,16 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
     return ids, int(ids.flat[-1]) + 1
 
 
-def distances(field: Field, most: int) -> NDArray[np.float64]:
-    """Return the distance, in cells, from each cell to the nearest true cell of the mask ``field``.
+def distances(mask: CellMask, most: int) -> NDArray[np.float64]:
+    """Return the distance, in cells, from each cell to the nearest true cell of ``mask``.
 
     It is the distance between the nearest points of the two cells. The result is infinite where the
     distance is ``most`` or more.
     """
-    rows, columns = field.shape
+    rows, columns = mask.shape
     places = np.arange(columns, dtype=np.float64)
-    left = np.maximum.accumulate(np.where(field, places, -np.inf), axis=1)
-    right = np.minimum.accumulate(np.where(field, places, np.inf)[:, ::-1], axis=1)[:, ::-1]
+    left = np.maximum.accumulate(np.where(mask, places, -np.inf), axis=1)
+    right = np.minimum.accumulate(np.where(mask, places, np.inf)[:, ::-1], axis=1)[:, ::-1]
     across = np.maximum(np.minimum(places - left, right - places) - 1.0, 0.0) ** 2
     squares = across.copy()
     for offset in range(1, min(most + 1, rows)):

@@ -16,10 +16,10 @@ SUCCESS: Final = 1
 RUNNING: Final = 2
 """The node has begun, and continues in the next tick."""
 
-Node = Callable[[Any], int]
+TreeNode = Callable[[Any], int]
 
 
-def selector(*children: Node) -> Node:
+def selector(*children: TreeNode) -> TreeNode:
     """Make a node that runs its children from the left, at each tick, until one does not fail.
 
     The node's status is that of this child; the node fails if all children fail.
@@ -35,7 +35,7 @@ def selector(*children: Node) -> Node:
     return tick
 
 
-def sequence(*children: Node) -> Node:
+def sequence(*children: TreeNode) -> TreeNode:
     """Make a node that runs its children from the left, at each tick, as long as they succeed.
 
     The node's status is that of the first child that does not succeed. The node succeeds if all
@@ -52,7 +52,7 @@ def sequence(*children: Node) -> Node:
     return tick
 
 
-def condition(test: Callable[[Any], bool]) -> Node:
+def condition(test: Callable[[Any], bool]) -> TreeNode:
     """Make a node that succeeds if ``test`` holds for the actor, else fails."""
 
     def tick(actor: Any) -> int:
@@ -61,7 +61,7 @@ def condition(test: Callable[[Any], bool]) -> Node:
     return tick
 
 
-def action(act: Callable[[Any], bool]) -> Node:
+def action(act: Callable[[Any], bool]) -> TreeNode:
     """Make a node that calls ``act`` at each tick and succeeds when ``act`` returns True.
 
     Until then, the node's status is RUNNING.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from math import cos, hypot, pi, sin, sqrt
 from typing import TYPE_CHECKING, Final
 
-from tltl_runtime.stealth.enemies.behaviour import Node, action, condition, selector, sequence
+from tltl_runtime.stealth.enemies.behaviour import TreeNode, action, condition, selector, sequence
 from tltlc.api import record
 
 if TYPE_CHECKING:
@@ -35,20 +35,20 @@ class Branch:
     rank: int
     added: bool
     """Whether the branch is optional: only enemy kinds that name an optional branch have it."""
-    node: Node
+    node: TreeNode
 
 
 _BRANCHES: Final[dict[str, Branch]] = {}
 
 
-def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], Node]], Callable[[], Node]]:
+def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], TreeNode]], Callable[[], TreeNode]]:
     """Return a decorator that registers a branch of the enemies' behaviour tree.
 
     The decorated function must make the node of the branch. ``rank`` and ``added`` are those of
     :class:`Branch`. The decorator raises ValueError if the name is taken.
     """
 
-    def register(make: Callable[[], Node]) -> Callable[[], Node]:
+    def register(make: Callable[[], TreeNode]) -> Callable[[], TreeNode]:
         if name in _BRANCHES:
             raise ValueError(f"the branch {name!r} already exists")
         _BRANCHES[name] = Branch(name, rank, added, make())
@@ -62,7 +62,7 @@ def added_branches() -> tuple[str, ...]:
     return tuple(sorted(branch.name for branch in _BRANCHES.values() if branch.added))
 
 
-def tree(branches: tuple[str, ...]) -> Node:
+def tree(branches: tuple[str, ...]) -> TreeNode:
     """Build a tree from the branches that all enemies have and the optional ``branches``.
 
     Raises ValueError if ``branches`` contains a name that is not an optional branch.
@@ -75,7 +75,7 @@ def tree(branches: tuple[str, ...]) -> Node:
 
 
 @branch("chase", rank=10)
-def chase() -> Node:
+def chase() -> TreeNode:
     """Make a node that runs to the player while the guard knows where the player is.
 
     The guard stops within its attack range.
@@ -99,7 +99,7 @@ def chase() -> Node:
 
 
 @branch("search", rank=20)
-def search() -> Node:
+def search() -> TreeNode:
     """Make a node that goes where the player was last seen, and looks around there for a while."""
 
     def lost(guard: EnemyGuard) -> bool:
@@ -131,7 +131,7 @@ def search() -> Node:
 
 
 @branch("return", rank=40)
-def return_to_route() -> Node:
+def return_to_route() -> TreeNode:
     """Make a node that walks back to the nearest point of the guard's route."""
 
     def is_off(guard: EnemyGuard) -> bool:
@@ -149,7 +149,7 @@ def return_to_route() -> Node:
 
 
 @branch("check_gaps", rank=50, added=True)
-def check_gaps() -> Node:
+def check_gaps() -> TreeNode:
     """Make a node that runs to a narrow place off the route, after each leg of the guard's patrol.
 
     :meth:`~tltl_runtime.stealth.enemies.enemy.EnemyGuard.next_gap` chooses the place. The speed is
@@ -172,7 +172,7 @@ def check_gaps() -> Node:
 
 
 @branch("patrol", rank=60)
-def patrol() -> Node:
+def patrol() -> TreeNode:
     """Make a node that walks the guard's route in a loop."""
 
     def walk(guard: EnemyGuard) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.expert.motion import Floats, Motion, Poses, concatenate, poses_of
-from tltl_runtime.stealth.expert.routes import Field
+from tltl_runtime.stealth.expert.routes import RouteField
 from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerState
 from tltlc.api import record
@@ -95,7 +95,7 @@ class Foresight:
     def __init__(
         self,
         motion: Motion,
-        field: Field,
+        field: RouteField,
         moves: Sequence[HeldAction],
         movers: Sequence[Sequence[Box]],
         ahead: int,

@@ -50,7 +50,7 @@ class Leg:
 
 
 @record
-class Field:
+class RouteField:
     """The routes to a goal from all places.
 
     ``seconds`` [layers, rows, columns] is the time from each place to the goal; it is infinite if
@@ -112,9 +112,9 @@ class Routes:
             columns = (column.tolist() for column in (sources, targets, seconds, kinds))
             for source, target, cost, kind in zip(*columns, strict=True):
                 self._into[target].append((source, cost, kind))
-        self._fields: dict[object, Field] = {}
+        self._fields: dict[object, RouteField] = {}
 
-    def field(self, goal: Point) -> Field:
+    def field(self, goal: Point) -> RouteField:
         """Return the routes from everywhere to ``goal``."""
         if goal not in self._fields:
             self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
@@ -124,7 +124,7 @@ class Routes:
         """Whether a route leads from the place nearest to ``start`` to ``goal``."""
         return bool(np.isfinite(self.field(goal).seconds.flat[self.surfaces.nearest(start)]))
 
-    def field_from(self, start: Point, goal: Point) -> Field:
+    def field_from(self, start: Point, goal: Point) -> RouteField:
         """Return the routes to ``goal`` if one leads there from ``start``.
 
         Otherwise return the routes to the place nearest to ``goal`` that can be reached from
@@ -142,7 +142,7 @@ class Routes:
             self._fields[key] = self._field(np.array([reached]))
         return self._fields[key]
 
-    def _field(self, goals: NDArray[np.intp]) -> Field:
+    def _field(self, goals: NDArray[np.intp]) -> RouteField:
         """Return the fastest routes to any of ``goals``, by Dijkstra's algorithm from the goals."""
         seconds: Any = [inf] * self.surfaces.places.size
         towards, kinds = [-1] * len(seconds), [0] * len(seconds)
@@ -159,7 +159,7 @@ class Routes:
                     heappush(queue, (time + cost, source))
         shape = self.surfaces.places.shape
         columns = np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
-        return Field(self.surfaces, *columns)
+        return RouteField(self.surfaces, *columns)
 
     def _reachable_places(self, start: int) -> set[int]:
         """Return the places to which routes lead from the place ``start``, all as flat indices."""

@@ -15,7 +15,7 @@ from typing import Final
 from tltl_runtime.stealth.expert.foresight import LONGEST_FALL, ActionPlan, Foresight, HeldAction
 from tltl_runtime.stealth.expert.motion import Motion
 from tltl_runtime.stealth.expert.movers import Clocks
-from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_barriers
+from tltl_runtime.stealth.expert.routes import RouteField, routes_of, shut_barriers
 from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import SIGN, Action, PlayerKind
@@ -87,7 +87,7 @@ class Walker:
         swept = [self._clocks.swept_boxes(step) for step in range(ahead + LONGEST_FALL)]
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
-    def _moves(self, field: Field, snapshot: Snapshot) -> list[HeldAction]:
+    def _moves(self, field: RouteField, snapshot: Snapshot) -> list[HeldAction]:
         """Return the moves that the search tries on the next part of the route."""
         player = snapshot.player
         legs = field.legs(player.position, _NEAR)

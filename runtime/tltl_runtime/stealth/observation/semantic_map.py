@@ -41,13 +41,13 @@ class SemanticMap:
         self._mover = self.voxels.ids.get("mover", 0)
         self._enemy = self.voxels.ids.get("enemy", 0)
         self._rows_of_types = np.eye(len(sensor.types) + 1, dtype=np.uint8)[1:]
-        frame, margin = self.voxels.frame, self.voxels.margin
-        self._origin = (frame.x, frame.y, frame.z)
-        self._per_metre = 1.0 / frame.cell
-        self._side = sensor.extent * frame.cell
-        self._most_column = frame.columns - 2 * margin - 1
-        self._most_row = frame.rows - 2 * margin - 1
-        self._most_layer = frame.layers - 1
+        grid, margin = self.voxels.grid, self.voxels.margin
+        self._origin = (grid.x, grid.y, grid.z)
+        self._per_metre = 1.0 / grid.cell
+        self._side = sensor.extent * grid.cell
+        self._most_column = grid.columns - 2 * margin - 1
+        self._most_row = grid.rows - 2 * margin - 1
+        self._most_layer = grid.layers - 1
         self.reset()
 
     def reset(self) -> None:

@@ -41,7 +41,7 @@ Both are tuples of layers, the lowest first; each layer is uint8 [rows, columns]
 
 
 @record
-class Frame:
+class VoxelGrid:
     """The position and size of a grid of cells, in metres.
 
     The cell in row 0 and column 0 has its south-west corner at ``x``, ``y``. Layer 0 is for a body
@@ -74,7 +74,7 @@ class Voxels:
         self.margin = sensor.extent // 2
         (x0, y0, z0), (x1, y1, z1) = level.bounds.low, level.bounds.high
         bottom = floor(z0 / LAYER)
-        self.frame = Frame(
+        self.grid = VoxelGrid(
             x=x0 - self.margin * sensor.cell,
             y=y0 - self.margin * sensor.cell,
             z=bottom * LAYER,
@@ -112,13 +112,13 @@ class Voxels:
         return Box((x, y, z), (x + 10 * _TOUCH, y + 10 * _TOUCH, z + _POINT_HEIGHT))
 
     def _draw(self, things: list[tuple[int, Box]], height: float) -> tuple[NDArray[np.uint8], ...]:
-        frame = self.frame
-        layers = np.zeros((frame.layers, frame.rows, frame.columns), dtype=np.uint8)
+        grid = self.grid
+        layers = np.zeros((grid.layers, grid.rows, grid.columns), dtype=np.uint8)
         for number, box in things:
-            columns = _cell_range(box.low[0], box.high[0], frame.x, frame.cell)
-            rows = _cell_range(box.low[1], box.high[1], frame.y, frame.cell)
-            for layer in range(frame.layers):
-                feet = frame.z + layer * LAYER
+            columns = _cell_range(box.low[0], box.high[0], grid.x, grid.cell)
+            rows = _cell_range(box.low[1], box.high[1], grid.y, grid.cell)
+            for layer in range(grid.layers):
+                feet = grid.z + layer * LAYER
                 if box.high[2] > feet - BELOW + _TOUCH and box.low[2] < feet + height - _TOUCH:
                     layers[layer, rows, columns] = number
         layers.flags.writeable = False

@@ -15,7 +15,7 @@ from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
 from tltlc.api import Fspa, record
 
-Size = Literal["n", "n + 1", "signals", "atoms", "enemies", "movers", "switches", "barriers"]
+AxisSize = Literal["n", "n + 1", "signals", "atoms", "enemies", "movers", "switches", "barriers"]
 Arrays = Mapping[str, NDArray[Any]]
 
 
@@ -30,7 +30,7 @@ class Array:
 
     name: str
     dtype: str
-    shape: tuple[Size | int, ...]
+    shape: tuple[AxisSize | int, ...]
     unit: str
     doc: str
     low: float = -inf
@@ -121,7 +121,7 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
     return tuple(Snapshot(time, PlayerState(*state), *remainder) for time, state, remainder in rows)
 
 
-def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
+def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[AxisSize, int]:
     """Return the lengths of the arrays' axes, by name, for an episode of ``count`` time steps."""
     return {
         "n": count,
@@ -135,7 +135,7 @@ def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[Size, int]:
     }
 
 
-def shape_of(array: Array, known: Mapping[Size, int]) -> tuple[int, ...]:
+def shape_of(array: Array, known: Mapping[AxisSize, int]) -> tuple[int, ...]:
     """Return the shape of an array, with the lengths in ``known`` in place of the axes' names."""
     return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
 

@@ -17,7 +17,7 @@ from tltl_runtime.stealth.rendering.cone import SightField
 
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
-Window = tuple[slice, slice]
+PixelRegion = tuple[slice, slice]
 """Rows and columns of a picture."""
 
 _BEHIND = np.array((0.118, 0.141, 0.196), np.float32)
@@ -69,11 +69,11 @@ class Canvas:
     def shadow(self, feet: Point, radius: float) -> None:
         """Paint a soft round shadow on the surface below a body's feet."""
         x, y, z = feet
-        window = self._window([(x + a, y + b, z) for a in (-radius, radius) for b in (-radius, radius)])
-        places = self.places[window]
+        region = self._region([(x + a, y + b, z) for a in (-radius, radius) for b in (-radius, radius)])
+        places = self.places[region]
         off = np.hypot(places[..., 0] - x, places[..., 1] - y) / radius
         below = np.abs(places[..., 2] - z) < 0.35
-        self.picture[window] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
+        self.picture[region] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
     def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
         """Paint the floor that an enemy sees, in this ``colour`` and ``strength``.
@@ -82,33 +82,33 @@ class Canvas:
         """
         x, y, _ = field.eyes
         reach = field.reach
-        window = self._window([(x + a, y + b, 0.0) for a in (-reach, reach) for b in (-reach, reach)])
-        places = self.places[window]
+        region = self._region([(x + a, y + b, 0.0) for a in (-reach, reach) for b in (-reach, reach)])
+        places = self.places[region]
         on_floor = np.abs(places[..., 2]) < 0.06
         seen = np.zeros(on_floor.shape, np.float32)
         seen[on_floor] = field.visibility(places[on_floor][:, :2])
-        self._blend(window, np.array(colour, np.float32), strength * seen)
+        self._blend(region, np.array(colour, np.float32), strength * seen)
 
     def glass(self, low: Point, high: Point, colour: Sequence[float], strength: float) -> None:
         """Paint a translucent box; bodies in front of the box hide it."""
         corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
-        window = self._window(corners)
-        lines = self.lines[window]
+        region = self._region(corners)
+        lines = self.lines[region]
         eye = np.array(self.camera.eye, np.float32)
         with np.errstate(divide="ignore", invalid="ignore"):
             low_time, high_time = (np.array(low, np.float32) - eye) / lines, (np.array(high, np.float32) - eye) / lines
         enters = np.minimum(low_time, high_time)
         enter, leave = enters.max(axis=-1), np.maximum(low_time, high_time).min(axis=-1)
-        met = (enter < leave) & (leave > 0) & (enter < self.depth[window] + 0.02)
+        met = (enter < leave) & (leave > 0) & (enter < self.depth[region] + 0.02)
         face = _FACES[enters.argmax(axis=-1)]
-        self._blend(window, np.array(colour, np.float32) * face[..., None], strength * met)
+        self._blend(region, np.array(colour, np.float32) * face[..., None], strength * met)
 
-    def _blend(self, window: Window, colour: Floats, share: Floats) -> None:
+    def _blend(self, region: PixelRegion, colour: Floats, share: Floats) -> None:
         share = share[..., None].astype(np.float32)
-        self.picture[window] = self.picture[window] * (1 - share) + colour * share
+        self.picture[region] = self.picture[region] * (1 - share) + colour * share
 
-    def _window(self, points: Sequence[Point]) -> Window:
-        """Return the smallest window of the picture that shows all these points."""
+    def _region(self, points: Sequence[Point]) -> PixelRegion:
+        """Return the smallest region of the picture that shows all these points."""
         positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
         left, top = np.floor(positions.min(axis=0)).astype(int)
         right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1

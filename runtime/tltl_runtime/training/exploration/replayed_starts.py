@@ -105,7 +105,7 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._replayed = observation, info
 
 
-class Episodes:
+class EpisodesInProgress:
     """The current episode of each environment of ``env``: its start and all actions so far.
 
     The environments are :class:`ReplayedStartEnv`, and ``draw`` draws the start of each next

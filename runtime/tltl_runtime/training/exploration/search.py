@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.training.exploration.replayed_starts import Actions, Episodes, EpisodeStart
+from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodesInProgress, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import record
 
@@ -46,7 +46,7 @@ No episode then begins at the level's start.
 _REPORT_INTERVAL_S = 0.5
 """The least time, in seconds, between two reports of progress."""
 
-Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
+PolicyFunction = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
 """A function that returns the action [branches] for the observation of one environment."""
 
 
@@ -144,7 +144,7 @@ class TrajectorySearch:
     are those found so far. Equal seeds give equal searches, whatever the number of workers.
 
     With ``failures``, the search starts in these episodes and explores only the states in which
-    they failed. Without ``failures``, it starts at the level's start. A ``player`` plays the first
+    they failed. Without ``failures``, it starts at the level's start. ``policy`` plays the first
     episode of each environment; random actions then continue from the cells that it reached.
     """
 
@@ -154,10 +154,10 @@ class TrajectorySearch:
         exploration: SearchSettings,
         seed: np.random.SeedSequence,
         failures: Sequence[FailedEpisode] = (),
-        player: Player | None = None,
+        policy: PolicyFunction | None = None,
     ) -> None:
         self._env = env
-        self._player = player
+        self._policy = policy
         self._exploration = exploration
         self._failures = list(failures)
         self._states = {failure.state for failure in failures}
@@ -169,23 +169,23 @@ class TrajectorySearch:
     def run(self) -> Iterator[SearchProgress]:
         """Search; yield the progress from time to time, and once at the end."""
         began = reported = time.perf_counter()
-        episodes = Episodes(self._env, self._draw)
+        episodes = EpisodesInProgress(self._env, self._draw)
         choices = np.array(self._env.single_action_space.nvec)  # type: ignore[attr-defined]
         shape = self._env.num_envs, len(choices)
         action = self._random.integers(0, choices, size=shape)
         decisions_left = np.full(self._env.num_envs, _RANDOM_DECISIONS)
-        by_player = np.full(self._env.num_envs, self._player is not None)
+        by_policy = np.full(self._env.num_envs, self._policy is not None)
         observation, steps = episodes.observation, 0
         while steps < self._exploration.steps and len(self.demonstrations) < self._exploration.ways:
             repeated = self._random.random(shape) < _REPEAT_PROBABILITY
             action = np.where(repeated, action, self._random.integers(0, choices, size=shape))
-            if self._player:
-                for row in np.flatnonzero(by_player).tolist():
-                    action[row] = self._player({name: values[row] for name, values in observation.items()})
+            if self._policy:
+                for row in np.flatnonzero(by_policy).tolist():
+                    action[row] = self._policy({name: values[row] for name, values in observation.items()})
             observation, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
             over = terminated | truncated
-            by_player &= ~over
+            by_policy &= ~over
             decisions_left -= 1
             for row in range(self._env.num_envs):
                 if not over[row]:
@@ -197,7 +197,7 @@ class TrajectorySearch:
                             episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)
                         )
                     )
-            used_up = ~over & ~by_player & (decisions_left <= 0)
+            used_up = ~over & ~by_policy & (decisions_left <= 0)
             episodes.start_next(over)
             if used_up.any():
                 episodes.cut_off(used_up)
@@ -207,7 +207,7 @@ class TrajectorySearch:
                 yield self._progress(steps, episodes.replayed, reported - began, complete=False)
         yield self._progress(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
-    def _record_cell(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
+    def _record_cell(self, episodes: EpisodesInProgress, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Record the current cell of an environment; return whether it is new.
 
         The cell is not recorded, and counts as not new, in three cases: the player is in the air, so

@@ -14,7 +14,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
-from tltl_runtime.training.exploration.replayed_starts import Episodes
+from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
@@ -76,7 +76,7 @@ class TrainingEnv(VecEnv):
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self._replayed_before = 0
-        self._episodes = Episodes(env, curriculum.draw) if curriculum else None
+        self._episodes = EpisodesInProgress(env, curriculum.draw) if curriculum else None
         observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
         self._observation = self._tensors(observation)
         self._finished: list[EpisodeSummary] = []
@@ -137,7 +137,7 @@ class TrainingEnv(VecEnv):
         assert self._episodes is not None
         assert self.curriculum is not None
         self._replayed_before += self._episodes.replayed
-        self._episodes = Episodes(self.env, self.curriculum.draw)
+        self._episodes = EpisodesInProgress(self.env, self.curriculum.draw)
         self._observation = self._tensors(self._episodes.observation)
 
     def pop_finished(self) -> tuple[EpisodeSummary, ...]:
@@ -162,7 +162,7 @@ class TrainingEnv(VecEnv):
 
 def _update_curriculum(
     curriculum: ReverseCurriculum,
-    episodes: Episodes,
+    episodes: EpisodesInProgress,
     is_over: NDArray[np.bool_],
     ends: Mapping[int, int],
     states: Mapping[int, int],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
-from tltl_runtime.training.exploration.search import Player, SearchProgress, TrajectorySearch
+from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress, TrajectorySearch
 from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.ppo.distributed import ProcessGroup
@@ -24,11 +24,11 @@ def search_before_training(
     curriculum: ReverseCurriculum,
     checkpoint: Checkpoint | None,
     on_search: SearchCallback,
-    player: Player | None,
+    policy: PolicyFunction | None,
 ) -> SearchProgress | None:
     """Search for demonstrations before the training, and add them to ``curriculum``.
 
-    ``env`` are the environments of this process. A ``player`` plays their first episodes. Return
+    ``env`` are the environments of this process. ``policy`` plays their first episodes. Return
     the progress of the search, or None if no search is needed. With a ``checkpoint``, a search is
     needed only if the earlier search ended at a limit before it found a demonstration, and if time
     is left.
@@ -39,7 +39,7 @@ def search_before_training(
         if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(seconds):
             return None
     search = TrajectorySearch(
-        env, run.settings.exploration, stream(run, group, Purpose.SEARCH, iteration), player=player
+        env, run.settings.exploration, stream(run, group, Purpose.SEARCH, iteration), policy=policy
     )
     return _run_search(run, search, curriculum, seconds, on_search)
 

@@ -18,7 +18,7 @@ from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
-from tltl_runtime.training.exploration.search import Player, SearchProgress
+from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.files.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
 from tltl_runtime.training.files.run_file import (
@@ -149,7 +149,7 @@ def prepare_environment(
     if run.settings.searches:
         curriculum = _curriculum(run, group, checkpoint)
         progress = search_before_training(
-            run, group, vector_env, curriculum, checkpoint, on_search, _player(run, group, initial)
+            run, group, vector_env, curriculum, checkpoint, on_search, _policy_function(run, group, initial)
         )
         if run.settings.exploration.imitation:
             self_imitation = SelfImitation(_env_of(run), curriculum)
@@ -162,10 +162,10 @@ def prepare_environment(
     return env, progress
 
 
-def _player(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> Player | None:
-    """Return a player that samples the actions of a policy; None without a policy.
+def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> PolicyFunction | None:
+    """Return a function that samples the actions of a policy; None without a policy.
 
-    The player raises TltlError, TLT0854, if the observation or the policy's output is not finite.
+    The function raises TltlError, TLT0854, if the observation or the policy's output is not finite.
     """
     if policy is None:
         return None

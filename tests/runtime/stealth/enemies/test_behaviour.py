@@ -7,7 +7,7 @@ from tltl_runtime.stealth.enemies.behaviour import (
     FAILURE,
     RUNNING,
     SUCCESS,
-    Node,
+    TreeNode,
     action,
     condition,
     selector,
@@ -15,7 +15,7 @@ from tltl_runtime.stealth.enemies.behaviour import (
 )
 
 
-def leaf(status: int, ticks: list[int]) -> Node:
+def leaf(status: int, ticks: list[int]) -> TreeNode:
     def tick(_: object) -> int:
         ticks.append(status)
         return status
@@ -78,7 +78,7 @@ def test_a_decorated_function_adds_a_branch(monkeypatch: pytest.MonkeyPatch) -> 
         danced = 0
 
     @branches.branch("dance", rank=45, added=True)
-    def dance() -> Node:
+    def dance() -> TreeNode:
         def step(dancer: Dancer) -> bool:
             dancer.danced += 1
             return False
