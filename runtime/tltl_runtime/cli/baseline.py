@@ -97,7 +97,7 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     ``path`` is the output file, and ``existed`` says whether it existed before. ``partial`` is the
     file from which the same command continues, with the finished references; None if there is none.
     """
-    from tltl_runtime.support.shown_path import path_text
+    from tltl_runtime.support.path_text import path_text
 
     if partial and not existed:
         return (

@@ -13,8 +13,8 @@ from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import registered_game
+from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
@@ -67,7 +67,7 @@ def set_up(
 
     Raises:
         TltlError: the level, variant or spec does not exist; the level lacks something that the
-            spec needs; the errors of :func:`~tltl_runtime.policies.fit.check_policy`; TLT0851, the
+            spec needs; the errors of :func:`~tltl_runtime.policies.compatibility.check_policy`; TLT0851, the
             spec has no limit.
     """
     game, card = registered_game(), policy.card

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tltl_runtime.game.level import default_spec
+from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import read_policy, to_bytes
-from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants

@@ -20,7 +20,7 @@ from tltl_runtime.regression.verdict.baseline import (
     reference_of,
     write_baseline,
 )
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltlc import compile_text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError

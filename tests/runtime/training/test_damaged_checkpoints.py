@@ -15,7 +15,7 @@ from tests.runtime.training.runs import run_in
 from tltl_runtime.training.files.checkpoint import read_checkpoint
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.run import train as training
-from tltl_runtime.training.run.setup import make_environments
+from tltl_runtime.training.run.preparation import make_environments
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 

@@ -22,7 +22,7 @@ from tltl_runtime.training.files.run_file import DEMONSTRATIONS, POLICY, Trainin
 from tltl_runtime.training.files.settings import rsl_config
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.distributed import process_group
-from tltl_runtime.training.run.setup import load_imitation_data, make_environments, prepare_environment
+from tltl_runtime.training.run.preparation import load_imitation_data, make_environments, prepare_environment
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace

@@ -20,8 +20,8 @@ from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
 from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
+from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import to_json
-from tltl_runtime.support.shown_path import path_text
 from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"

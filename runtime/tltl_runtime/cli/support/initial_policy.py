@@ -11,8 +11,8 @@ import click
 from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_file, policy_place
 from tltl_runtime.cli.support.sensor_options import option_of
 from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.level import Sensors, StealthLevel
 from tltl_runtime.stealth.observation.sensors import choose_sensors

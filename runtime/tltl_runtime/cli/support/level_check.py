@@ -18,7 +18,7 @@ from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.observation.observation import Observer
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
 

@@ -28,7 +28,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, baseline_of
 from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.support.number_text import short_list
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltlc.api import Diagnostic, TltlError, cli, fileio, record, traces, workflow_command
 
 _MOST_NAMED: Final = 8

@@ -14,6 +14,6 @@ def check_suite_exists(suite: Path | None) -> None:
         TltlError: TLT0001, the same error as reading the suite would raise.
     """
     if suite is not None and not fileio.exists(suite):
-        from tltl_runtime.support.shown_path import path_text
+        from tltl_runtime.support.path_text import path_text
 
         fileio.read_source(suite, path_text(suite))

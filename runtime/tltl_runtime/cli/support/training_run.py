@@ -24,7 +24,7 @@ from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import parse_variant, split_level
-from tltl_runtime.policies.fit import differences
+from tltl_runtime.policies.compatibility import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
 from tltl_runtime.stealth.capabilities.vocabulary import params

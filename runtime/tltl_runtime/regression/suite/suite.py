@@ -24,7 +24,7 @@ from tltl_runtime.regression.suite.named_files import (
 from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
 from tltl_runtime.regression.suite.trace_case import TraceCase, read_trace_case
 from tltl_runtime.support.checked_table import CheckedTable
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record

@@ -13,8 +13,8 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.regression.verdict.verdict import FIGURES
 from tltl_runtime.support.load_errors import LoadErrors
+from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.support.shown_path import path_text
 from tltlc.api import EMPTY, Diagnostic, Fspa, TltlError, fileio, record
 
 FORMAT: Final = "tltl-baseline"

@@ -15,8 +15,8 @@ from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.registry import registered_game
+from tltl_runtime.policies.compatibility import differences
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
-from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.suite.named_files import policy_file

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Box, Point, StealthLevel
-from tltl_runtime.stealth.levels.parts import NamedParts
+from tltl_runtime.stealth.levels.level_tables import NamedParts
 from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import PlayerKind

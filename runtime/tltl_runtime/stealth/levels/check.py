@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from tltl_runtime.stealth.level import StealthLevel, entity_names
-from tltl_runtime.stealth.levels.parts import CELL_TYPES, NamedParts
+from tltl_runtime.stealth.levels.level_tables import CELL_TYPES, NamedParts
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltlc.api import Diagnostic, SourceFile, replace

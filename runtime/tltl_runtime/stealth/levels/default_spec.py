@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, fileio
 

@@ -17,13 +17,13 @@ from typing import Final
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Mover, Region, Solid, StealthLevel, entity_names
-from tltl_runtime.stealth.levels import check, overlay, parts
+from tltl_runtime.stealth.levels import check, level_tables, overlay
 from tltl_runtime.stealth.levels.bounds_check import check_room
 from tltl_runtime.stealth.levels.default_spec import LEVELS, read_default_spec
 from tltl_runtime.stealth.levels.path_check import check_paths
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
-from tltl_runtime.support.shown_path import path_text
+from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, replace
@@ -140,7 +140,7 @@ class _Loading:
         self.log: list[Diagnostic] = []
         self.files: list[tuple[str, str]] = []
         self.changes: list[str] = []
-        self.places = parts.NamedParts({}, {}, [])
+        self.places = level_tables.NamedParts({}, {}, [])
         self.root = self._read(path, path.name)
         self.table = CheckedTable(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
@@ -159,17 +159,17 @@ class _Loading:
         start = table.table("start")
         uses, assets = self._assets(variant)
         kinds = {
-            name: parts.enemy_kind(part, name)
+            name: level_tables.enemy_kind(part, name)
             for name, part in assets.items()
             if part.text("type", one_of=("enemy", "part")) == "enemy"
         }
         used_solids, used_movers, used_regions = self._read_parts(uses, assets, kinds)
-        switches = parts.switches(table, places)
-        barriers = parts.barriers(table, places)
-        exits = parts.exits(table, places)
-        enemies = parts.enemies(table, kinds, places)
-        movers = [*used_movers, *parts.movers(table, places)]
-        solids = [*used_solids, *parts.solids(table, places)]
+        switches = level_tables.switches(table, places)
+        barriers = level_tables.barriers(table, places)
+        exits = level_tables.exits(table, places)
+        enemies = level_tables.enemies(table, kinds, places)
+        movers = [*used_movers, *level_tables.movers(table, places)]
+        solids = [*used_solids, *level_tables.solids(table, places)]
         self._check_count(solids, movers, switches, barriers, exits, enemies)
         if enemies and is_too_large(bounds):
             title = f"the bounds of the level `{self.path.stem}` are too large for enemies"
@@ -180,22 +180,22 @@ class _Loading:
             variant=variant.title,
             doc=doc,
             bounds=bounds,
-            start=parts.start(start if start is not None else CheckedTable(self.root, "the start", [])),
-            solids=(*parts.enclosure(bounds), *solids),
+            start=level_tables.start(start if start is not None else CheckedTable(self.root, "the start", [])),
+            solids=(*level_tables.enclosure(bounds), *solids),
             switches=tuple(switches),
             barriers=tuple(barriers),
-            unlocks=tuple(parts.unlocks(table, places)),
+            unlocks=tuple(level_tables.unlocks(table, places)),
             movers=tuple(movers),
             enemies=tuple(enemies),
             exits=tuple(exits),
-            sensors=parts.sensors(None, (), places),
+            sensors=level_tables.sensors(None, (), places),
             spec=spec,
             files=tuple(self.files),
             signals=self._signals(),
             regions=(*named_regions(table), *used_regions),
         )
         names = entity_names(level)
-        level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
+        level = replace(level, sensors=level_tables.sensors(table.table("sensors", needed=False), names, places))
         table.report_unknown_keys()
         self.check()
         self.log += check.check_names(names, places)
@@ -249,7 +249,7 @@ class _Loading:
         if table is None:
             return Box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
         before = len(self.log)
-        box = parts.box(table)
+        box = level_tables.box(table)
         table.report_unknown_keys()
         if len(self.log) == before and not box.low[2] < 0.0 < box.high[2]:
             help_ = "the floor is at height 0: `at` must be below it, and `at` and `size` together above it"
@@ -347,8 +347,8 @@ class _Loading:
             if asset in kinds:
                 self.log.append(wrong_value(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
                 continue
-            still = parts.solids(assets[asset], self.places, shift, prefix)
-            moving = parts.movers(assets[asset], self.places, shift, prefix)
+            still = level_tables.solids(assets[asset], self.places, shift, prefix)
+            moving = level_tables.movers(assets[asset], self.places, shift, prefix)
             assets[asset].report_unknown_keys()
             solids += still
             movers += moving

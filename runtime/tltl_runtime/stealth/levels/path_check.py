@@ -11,7 +11,7 @@ from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, is_blocked
 from tltl_runtime.stealth.level import Enemy, Mover, Point, StealthLevel
 from tltl_runtime.stealth.levels.bounds_check import point_text
-from tltl_runtime.stealth.levels.parts import NamedParts
+from tltl_runtime.stealth.levels.level_tables import NamedParts
 from tltlc.api import Diagnostic
 
 _EPSILON: Final = 1e-6

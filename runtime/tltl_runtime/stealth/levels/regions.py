@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from tltl_runtime.stealth.level import Box, Mover, Point, Region, Solid
-from tltl_runtime.stealth.levels.parts import box
+from tltl_runtime.stealth.levels.level_tables import box
 from tltl_runtime.support.checked_table import CheckedTable
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.sensors import MapSensor, SensorChoice, Sensors
 from tltl_runtime.stealth.level import StealthLevel, entity_names
-from tltl_runtime.stealth.levels.parts import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
+from tltl_runtime.stealth.levels.level_tables import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
 from tltl_runtime.stealth.signals import readers, signal_list
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError

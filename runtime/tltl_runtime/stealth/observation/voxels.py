@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.game.sensors import MapSensor
 from tltl_runtime.stealth.level import Box, Point, StealthLevel
-from tltl_runtime.stealth.levels.parts import CELL_TYPES
+from tltl_runtime.stealth.levels.level_tables import CELL_TYPES
 from tltlc.api import record
 
 LAYER: Final = 0.25

@@ -28,15 +28,15 @@ from tltl_runtime.training.ppo.torch_threads import threads
 from tltl_runtime.training.run.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.named_classes import class_of, device_of
-from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
-from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
-from tltl_runtime.training.run.setup import (
+from tltl_runtime.training.run.preparation import (
     initial_policy,
     load_imitation_data,
     make_environments,
     prepare_environment,
     start_or_resume,
 )
+from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
+from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace

@@ -29,7 +29,7 @@ from tltl_runtime.stealth.level import (
     Unlock,
 )
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
-from tltl_runtime.stealth.levels.parts import enclosure
+from tltl_runtime.stealth.levels.level_tables import enclosure
 from tltl_runtime.stealth.world.physics import World
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.core.record import replace

@@ -237,7 +237,7 @@ def test_the_level_in_the_reference_loads_and_every_key_is_documented(folder: Pa
     write("overlays/changes.toml", overlay)
     assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
     assert default_spec(load_level("vault.toml", "v1")).endswith("vault.tltl:unseen")
-    modules = ("parts", "file", "default_spec", "regions")
+    modules = ("level_tables", "file", "default_spec", "regions")
     sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in modules]
     keys = {
         key

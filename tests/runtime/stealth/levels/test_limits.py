@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.calls import calls
-from tltl_runtime.stealth.levels import parts
+from tltl_runtime.stealth.levels import level_tables
 from tltl_runtime.stealth.levels.file import load_level, read_level
 from tltl_runtime.stealth.levels.level_object_check import fault
 from tltl_runtime.support.checked_table import CheckedTable
@@ -79,7 +79,7 @@ def test_steps_of_stairs_and_points_of_paths_count_as_things(tmp_path: Path) -> 
 def stairs(count: int) -> Callable[[], object]:
     source = SourceFile("room.toml", "".join(STAIRS.format(number) for number in range(count)))
     table = CheckedTable(Entry(read_tree(source), Label(source, Span(0, 0))), "the level", [])
-    return lambda: parts.solids(table, parts.NamedParts({}, {}, []))
+    return lambda: level_tables.solids(table, level_tables.NamedParts({}, {}, []))
 
 
 def test_the_work_for_stairs_grows_with_their_number() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.runtime.stealth.enemy_levels import bounds, box, level, low, solids, wall
 from tltl_runtime.stealth.level import Barrier, MapSensor, Point, Solid, Switch
-from tltl_runtime.stealth.levels.parts import CELL_TYPES
+from tltl_runtime.stealth.levels.level_tables import CELL_TYPES
 from tltl_runtime.stealth.observation.semantic_map import SemanticMap
 from tltl_runtime.stealth.observation.voxels import Voxels
 

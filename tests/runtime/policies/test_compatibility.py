@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from tests.runtime.policies.examples import card_of
+from tltl_runtime.game.level import LevelSpec
 from tltl_runtime.policies.card import OBSERVATION, Card
-from tltl_runtime.policies.fit import check_policy
+from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
@@ -100,7 +101,7 @@ def test_a_level_hash_depends_only_on_the_content_of_the_level() -> None:
     hashes = {level_hash(load_level(name, variant)) for name in ("navigation", "branching") for variant in ("v0", "v1")}
     assert len(hashes) == 4
     level = load_level("navigation")
-    same = replace(level, name="x", variant="y", doc="z", spec="/somewhere/else.tltl", files=())
+    same = replace(level, name="x", variant="y", doc="z", spec=LevelSpec(Path("/somewhere/else.tltl"), "x"), files=())
     assert level_hash(same) == level_hash(level)
     assert level_hash(replace(level, start=replace(level.start, yaw=0.25))) != level_hash(level)
 
