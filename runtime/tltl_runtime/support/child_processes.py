@@ -1,4 +1,4 @@
-"""How worker processes start."""
+"""The context of `multiprocessing` that starts worker processes."""
 
 from __future__ import annotations
 

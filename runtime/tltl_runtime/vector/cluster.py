@@ -16,9 +16,9 @@ from tltl_runtime.vector.cores import torchrun_variable
 from tltlc.api import Diagnostic, TltlError
 
 _TO_ANSWER_S: Final = 10.0
-"""How many seconds a cluster may take to answer."""
+"""The seconds that a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""How many seconds further actors may take to start after the first one."""
+"""The seconds that further actors may take to start after the first one."""
 _REPORT_INTERVAL_S: Final = 10.0
 """Seconds between two reports that no actor has started."""
 

@@ -19,7 +19,7 @@ The likely cause is that the worker could not import the main module.
 
 @record
 class Playing:
-    """What an environment was playing when its worker was lost.
+    """The episode that an environment was playing when its worker was lost.
 
     To get the same episode, reset the environment with ``seed``, then ``episode`` - 1 times without
     a seed. ``env`` is the number of the environment, ``name`` its name. A ``seed`` of None means
@@ -41,7 +41,7 @@ class Playing:
 
 @record
 class Loss:
-    """How a worker was lost.
+    """The loss of a worker: how it ended.
 
     ``status`` is its exit status; None for an actor of Ray, and for a process that had to be
     killed. If it is negative, the signal ``-status`` ended the worker. ``silent`` is the number of

@@ -24,7 +24,7 @@ TO_START_S: Final = 120.0
 If ``timeout`` is longer, it has that time.
 """
 _TO_END_S: Final = 5.0
-"""How many seconds a worker may take to end after a command to close, or after it was killed."""
+"""The seconds that a worker may take to end after a command to close, or after it was killed."""
 
 
 class Workers:

@@ -46,13 +46,13 @@ NEAR: Final = 1.0
 """An entity counts as reached within this distance of its position, in metres."""
 
 _EDGE: Final = 0.28
-"""How far the ground extends beside the top of a box, in metres.
+"""The distance to which the ground extends beside the top of a box, in metres.
 
 It follows from the physics: contact with an edge counts as ground if its normal points upwards by
 more than 30 degrees.
 """
 _EDGE_DEPTH: Final = 0.16
-"""How far the feet are below a top when the body touches the top's edge, in metres."""
+"""The height of a top above the feet when the body touches the top's edge, in metres."""
 _TOUCH: Final = 0.02
 _THROW: Final = 3.0
 _PHYSICS_STEP: Final = 1 / 60

@@ -107,7 +107,7 @@ class Enemies:
 
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """What each enemy is doing: its mode, such as ``patrol`` or ``chase``."""
+        """The enemies' modes, such as ``patrol`` or ``chase``."""
         return tuple(guard.mode for guard in self.guards)
 
     @property

@@ -34,7 +34,7 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
 _HORIZON: Final = 80
-"""How many decisions ahead the enemies are predicted."""
+"""The number of decisions for which the enemies are predicted."""
 _REPLAN: Final = 5
 """The plan is computed again after this many decisions."""
 _PRICE: Final = 12.0

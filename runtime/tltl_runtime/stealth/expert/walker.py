@@ -34,7 +34,7 @@ _BOXES: Final = 5.0
 """The search considers boxes up to this distance from the player, in metres."""
 _SHORT: Final = (8, 16)
 _LONG: Final = (14, 32)
-"""How many decisions to search ahead, and how many bodies to keep after each.
+"""The number of decisions to search ahead, and the number of bodies to keep after each.
 
 ``_LONG`` is for places where more moves than walks are possible, ``_SHORT`` for all others.
 """

@@ -21,8 +21,7 @@ SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 def read_default_spec(table: CheckedTable, level: Path) -> LevelSpec | None:
     """Return the spec that the key ``spec`` of a level names.
 
-    ``level`` is the path of the level's file. The spec's file is beside the level or
-    in the package.
+    ``level`` is the path of the level's file. The spec's file is beside the level or in the package.
 
     - If there is no key, return None.
     - If the value of the key is wrong, log TLT0803 and return None.

@@ -1,4 +1,4 @@
-"""What stands still in a level, as layers of cells from which semantic maps are cut.
+"""The immovable boxes of a level, as layers of cells from which semantic maps are cut.
 
 A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is
 for a body whose feet are at its height. For each cell it says what the body would meet there, from
@@ -28,7 +28,7 @@ STANDING: Final = 1.8
 CROUCHED: Final = 0.9
 """The heights of the player's body, standing and crouched, in metres."""
 BELOW: Final = 0.1
-"""How far a layer looks below the feet, in metres, so that it shows the ground under the body."""
+"""The depth below the feet, in metres, that a layer covers, so that it shows the ground under the body."""
 
 _POINT_HEIGHT: Final = 1.0
 _TOUCH: Final = 1e-6

@@ -20,7 +20,7 @@ _ONLY_STANDING = 0.5
 
 
 class SightField:
-    """How well an enemy would see a player at each position on the floor.
+    """The visibility of a player to an enemy, at each position on the floor.
 
     The value is 1 where the enemy would see even a crouched player, 0.5 where it would see only a
     standing one, and 0 elsewhere. ``feet`` and ``yaw`` are the enemy's pose. ``boxes`` block its

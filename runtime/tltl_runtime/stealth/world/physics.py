@@ -36,7 +36,7 @@ from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, Pl
 from tltl_runtime.stealth.world.stairs import lift
 
 _SINK_TOLERANCE = 0.2
-"""How far below the bounds the feet may be, in metres.
+"""The greatest depth of the feet below the bounds, in metres.
 
 A landing sinks into the floor by up to one physics step of a fall.
 """
@@ -323,7 +323,7 @@ class World:
                 fixedTimeStep=DECISION * substeps / SUBSTEPS, numSubSteps=substeps, physicsClientId=self._client
             )
 
-    # What stops bodies
+    # The boxes that stop bodies
 
     def _solids_near(self, feet: Point) -> list[Bounds]:
         """Return the boxes of solids that the player may touch within one decision from ``feet``."""

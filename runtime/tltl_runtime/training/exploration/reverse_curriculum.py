@@ -56,7 +56,7 @@ start and for mean lengths.
 _MAX_FAILURES = 32
 """At most this many failed episodes from the level's start are kept: the last ones."""
 _DECISION_LIMIT = 1.5, 20
-"""How many decisions the agent may make from a start in a demonstration, in two numbers.
+"""The most decisions that the agent may make from a start in a demonstration, in two numbers.
 
 The limit is the first number times the demonstration's remaining decisions, plus the second number.
 """

@@ -1,4 +1,4 @@
-"""What PPO needs: environments, policies, scheduled weights, random streams and processes.
+"""The components of PPO: environments, policies, scheduled weights, random streams and processes.
 
 The learning loop is in :mod:`~tltl_runtime.training.runner`.
 """

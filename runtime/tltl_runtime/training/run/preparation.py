@@ -1,7 +1,7 @@
 """Prepare a training.
 
 This makes its folder, environments and demonstrations, reads its initial policy, and runs the first
-search for ways to meet the spec.
+search for demonstrations.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def train(
 
     The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
     ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics_writer.Metrics`.
-    What is written for an iteration is written before its report is yielded. Any end of the
+    All files of an iteration are written before its report is yielded. Any end of the
     training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
     iteration. If the process is killed, however, the iterations after the last checkpoint are lost.
     With ``resume``, the training continues from the checkpoint; a training that is over yields its
