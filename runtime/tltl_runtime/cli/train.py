@@ -208,7 +208,7 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
-    place = f"{Path(run.level).stem} {run.variant}"
+    place = f"{Path(run.level).stem} {run.variant.text}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import gymnasium
 
 from tltl_runtime.game.level import default_spec
+from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
@@ -20,7 +21,7 @@ from tltlc.api import Fspa, RewardOptions
 
 def make_vec(
     level: str,
-    variant: str = "v0",
+    variant: str | Variant = "v0",
     num_envs: int = 1,
     workers: int | Literal["ray"] | None = None,
     *,
@@ -46,6 +47,8 @@ def make_vec(
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, use 'rgb_array' and call render()")
     game = registered_game()
+    if isinstance(variant, str):
+        variant = parse_variant(variant)
     loaded_level = game.load_level(level, variant)
     chosen_spec = default_spec(loaded_level) if spec is None else spec
     # Compile once here, not in each worker for each of its environments.
@@ -55,4 +58,4 @@ def make_vec(
         game.make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )
     function = make if wrapper is None else partial(wrapper, make)
-    return WorkerVectorEnv([function] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
+    return WorkerVectorEnv([function] * num_envs, workers, names=[f"{level} {variant.text}"] * num_envs, **options)

@@ -23,6 +23,7 @@ from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
@@ -238,7 +239,7 @@ def test_the_folder_of_a_training_names_the_file_of_its_level(
     level = str(tmp_path / "mine" / "vault.toml")
     folder, trained = tmp_path / "trained", untrained(None, level)
     card = trained.card
-    write_run(TrainingRun(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
+    write_run(TrainingRun(folder, card.fspa, card.params, level, Variant("v0"), card.sensors, read_settings(None), 0))
     # The training was written by an older version, which lacked a setting.
     run = json.loads((folder / "run.json").read_text())
     del run["settings"]["ppo"]["entropy_schedule"]

@@ -14,6 +14,7 @@ from typing import Any
 import torch
 
 from tltl_runtime.game.level import default_spec
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
@@ -53,7 +54,7 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> TrainingRun
             settings = replace(settings, **{table: replace(getattr(settings, table), **{key: value})})
         else:
             settings = replace(settings, **{key: value})
-    return TrainingRun(folder, task.fspa, task.params, "cover_and_hide", "v0", level.sensors, settings, 3)
+    return TrainingRun(folder, task.fspa, task.params, "cover_and_hide", Variant("v0"), level.sensors, settings, 3)
 
 
 def checkpoint_of(run: TrainingRun) -> Checkpoint:

@@ -79,7 +79,7 @@ class TrainingDisplay:
         """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
-        title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}"
+        title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant.text}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
             # Two lines are for the border, and one line below the border stays free.

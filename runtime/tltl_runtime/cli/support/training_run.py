@@ -118,7 +118,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
         fspa=task.fspa,
         params=task.params,
         level=path,
-        variant=variant,
+        variant=parse_variant(variant),
         sensors=sensors,
         settings=settings,
         seed=seed,
@@ -208,12 +208,12 @@ def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
     that the file of the training's level exists.
     """
     if options.level is None:
-        check_level_exists(run.level, run.variant, resume_command(run.folder))
+        check_level_exists(run.level, run.variant.text, resume_command(run.folder))
         return run
     path, variant = split_level(options.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
-    return replace(run, level=path, variant=variant or "v0")
+    return replace(run, level=path, variant=parse_variant(variant or "v0"))
 
 
 def _check_folder(folder: Path) -> None:
@@ -289,9 +289,9 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
     where = f"the training in `{run.folder}`"
     if options.level is not None:
         path, variant = split_level(options.level)
-        ours = level_path(run.level).resolve(), parse_variant(run.variant).absolute()
+        ours = level_path(run.level).resolve(), run.variant.absolute()
         if (level_path(path).resolve(), parse_variant(variant or "v0").absolute()) != ours:
-            yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
+            yield f"{where} is on the level `{run.level}:{run.variant.text}`, not on `{path}:{variant or 'v0'}`"
     if options.spec is not None:
         fspa, _ = read_spec(options.spec)
         if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:

@@ -75,7 +75,7 @@ def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, min
         fspa=setup.fspa,
         params=setup.params,
         level=setup.level,
-        variant=setup.variant.text,
+        variant=setup.variant,
         sensors=card.sensors,
         settings=replace(settings, network=card.network, rollout=rollout, stop=replace(settings.stop, minutes=minutes)),
         seed=suite.seed,

@@ -43,7 +43,7 @@ def write_record(run: TrainingRun, last: TrainingReport) -> dict[str, Any]:
     document = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=document), policy.weights()), WRITABLE)
     text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
-    title = f"{run.fspa.name} on {document['level']} {run.variant}, seed {run.seed}"
+    title = f"{run.fspa.name} on {document['level']} {run.variant.text}, seed {run.seed}"
     fileio.write_files(
         run.folder,
         {CURVE: draw_curve(title, document["curve"]), RECORD: text},

@@ -12,7 +12,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
-from tltl_runtime.game.level_name import parse_variant
+from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
@@ -77,7 +77,7 @@ class TrainingRun:
     fspa: Fspa
     params: Mapping[str, float]
     level: str
-    variant: str
+    variant: Variant
     sensors: Sensors
     settings: TrainingSettings
     seed: int
@@ -95,7 +95,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "demonstrations": str | None,
     "initial": InitialPolicy | None,
 }
-"""The fields that the file stores as plain JSON values, and their types."""
+"""The fields that the file stores as plain JSON values, and the types of these values."""
 
 
 def write_run(run: TrainingRun) -> None:
@@ -110,7 +110,7 @@ def write_run(run: TrainingRun) -> None:
         "version": _VERSION,
         **{name: to_json(getattr(run, name)) for name in _PLAIN},
         "level": level,
-        "variant": parse_variant(run.variant).absolute().text,
+        "variant": run.variant.absolute().text,
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "initial": run.initial and to_json(replace(run.initial, path=str(Path(run.initial.path).absolute()))),
         "level_hash": current_level_hash(run),
@@ -135,7 +135,7 @@ def read_run(folder: Path) -> TrainingRun:
     if "artefact" not in document:
         raise _invalid_run_error(source, "it has no 'artefact'")
     fspa = compiler.decode_artefact(document["artefact"], f"{source.name}/artefact")
-    return TrainingRun(folder=folder, fspa=fspa, **values)
+    return TrainingRun(folder=folder, fspa=fspa, **{**values, "variant": parse_variant(values["variant"])})
 
 
 def read_level_and_variant(folder: Path) -> tuple[str, str]:
