@@ -17,7 +17,7 @@ from tltlc.api import cli
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.rendering.film import View
+    from tltl_runtime.stealth.rendering.film import FilmView
     from tltlc.api import Notation
 
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
@@ -96,7 +96,7 @@ def command(
     context: click.Context,
     files: tuple[str, ...],
     path: Path | None,
-    view: View | None,
+    view: FilmView | None,
     speed: float | None,
     rate: float | None,
     size: tuple[int, int] | None,

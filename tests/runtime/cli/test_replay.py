@@ -120,7 +120,7 @@ def test_a_broken_file_does_not_hide_other_files(tltlc, recorded: Path) -> None:
 
 
 def test_the_option_offers_all_views() -> None:
-    assert get_args(film.View) == (*VIEWS, "plan") == _VIEWS
+    assert get_args(film.FilmView) == (*VIEWS, "plan") == _VIEWS
 
 
 def test_the_option_offers_all_notations() -> None:
@@ -166,7 +166,7 @@ def test_a_gif_is_written(tltlc, recorded: Path) -> None:  # type: ignore[no-unt
 
 
 @pytest.mark.parametrize("view", _VIEWS)
-def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.View) -> None:
+def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.FilmView) -> None:
     """Rare colours of late frames count, too: the switch turns green, and the strip shows the second state."""
     pictures = list(frames(episode, [0.0, 1.5, 3.0], view, (320, 240)))
     write_gif(tmp_path / "run.gif", pictures, 0.15)

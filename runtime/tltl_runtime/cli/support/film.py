@@ -12,7 +12,7 @@ from tltlc.api import cli, record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.rendering.film import View
+    from tltl_runtime.stealth.rendering.film import FilmView
     from tltlc.api import Notation
 
 T = TypeVar("T")
@@ -32,7 +32,7 @@ class Film:
     most 30 frames per second. ``size`` is in pixels.
     """
 
-    view: View = "third_person"
+    view: FilmView = "third_person"
     speed: float = 1.0
     rate: float | None = None
     size: tuple[int, int] = (640, 480)

@@ -21,7 +21,7 @@ from tltl_runtime.stealth.level import Enemy, Point, StealthLevel
 from tltl_runtime.stealth.world.geometry import Bounds
 from tltlc.api import record
 
-Mode = Literal["patrol", "chase", "search", "return"]
+EnemyMode = Literal["patrol", "chase", "search", "return"]
 
 EYES: Final = 1.6
 """The height of an enemy's eyes above its feet, in metres."""
@@ -106,7 +106,7 @@ class Enemies:
         return tuple(guard.yaw for guard in self.guards)
 
     @property
-    def modes(self) -> tuple[Mode, ...]:
+    def modes(self) -> tuple[EnemyMode, ...]:
         """The enemies' modes, such as ``patrol`` or ``chase``."""
         return tuple(guard.mode for guard in self.guards)
 
@@ -139,7 +139,7 @@ class EnemyGuard:
         self.leg = min(1, len(self.route) - 1)
         dx, dy = self.route[self.leg][0] - self.x, self.route[self.leg][1] - self.y
         self.yaw = atan2(dy, dx)
-        self.mode: Mode = "patrol"
+        self.mode: EnemyMode = "patrol"
         self.dt = 0.0
         self.sees = False
         self.knows = False

@@ -15,7 +15,7 @@ from typing import Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.enemies.enemy import EnemyGuard, Mode, PlayerView
+from tltl_runtime.stealth.enemies.enemy import EnemyGuard, EnemyMode, PlayerView
 from tltl_runtime.stealth.enemies.grid import Floor, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, corners
 from tltl_runtime.stealth.level import StealthLevel
@@ -85,7 +85,7 @@ class Watch:
                 model.forget_path()
         for index, models in enumerate(self.models):
             x, y, _ = snapshot.enemies[index]
-            pose, mode = (x, y, snapshot.yaws[index]), cast("Mode", snapshot.modes[index])
+            pose, mode = (x, y, snapshot.yaws[index]), cast("EnemyMode", snapshot.modes[index])
             matching = [model for model in models if _is_at(model, pose) and model.mode == mode]
             surprised |= not matching
             if not matching:
@@ -121,7 +121,7 @@ class Watch:
         shares = np.array([count for _, count in distinct.values()], dtype=np.float64)
         return Outlook(poses, shares / shares.sum())
 
-    def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: Mode) -> EnemyGuard:
+    def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: EnemyMode) -> EnemyGuard:
         """Move a model to its enemy's ``pose``; give it a task that fits the enemy's ``mode``."""
         before = model.mode
         model.x, model.y, model.yaw = pose

@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.rendering.camera import View as CameraView
+from tltl_runtime.stealth.rendering.camera import View
 from tltl_runtime.stealth.rendering.film_file import Picture
 from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
@@ -22,7 +22,7 @@ from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import Notation, label_text
 
-View = Literal["third_person", "top_down", "overview", "plan"]
+FilmView = Literal["third_person", "top_down", "overview", "plan"]
 
 Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]
@@ -51,7 +51,7 @@ _FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"
 
 
 def frames(
-    episode: Episode, times: Sequence[float], view: View, size: tuple[int, int], notation: Notation = "english"
+    episode: Episode, times: Sequence[float], view: FilmView, size: tuple[int, int], notation: Notation = "english"
 ) -> Iterator[Picture]:
     """Yield one RGB picture of ``size`` (width, height) for each of ``times``.
 
@@ -77,9 +77,7 @@ def _moment(episode: Episode, time: float) -> Moment:
     return row, interpolate(shots[row], shots[row + 1], since / (shots[row + 1].time - shots[row].time))
 
 
-def _draw_view(
-    episode: Episode, moments: Sequence[Moment], view: CameraView, size: tuple[int, int]
-) -> Iterator[Picture]:
+def _draw_view(episode: Episode, moments: Sequence[Moment], view: View, size: tuple[int, int]) -> Iterator[Picture]:
     renderer = Renderer(episode.level, *size)
     try:
         for _, shot in moments:
