@@ -4,13 +4,28 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Generic, TypeVar
+from pathlib import Path, PurePosixPath
+from typing import Final, Generic, Literal, TypeVar
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant
 
 LevelT = TypeVar("LevelT", bound=Level)
+FileKind = Literal["level", "asset", "overlay"]
+"""What a file of a level is: its own file, an asset or an overlay."""
+
+_FOLDERS: Final[dict[FileKind, str]] = {"level": "", "asset": "assets", "overlay": "overlays"}
+
+
+def listed_name(kind: FileKind, file_name: str) -> str:
+    """Return the name of a level's file as ``Level.files`` lists it, for example ``assets/guard.toml``."""
+    return str(PurePosixPath(_FOLDERS[kind], file_name))
+
+
+def file_kind(name: str) -> FileKind:
+    """Return what a level's file is, by the folder in its name; :func:`listed_name` made the name."""
+    folders = PurePosixPath(name).parts[:-1]
+    return next((kind for kind, folder in _FOLDERS.items() if folders == (folder,)), "level")
 
 
 class LevelFiles(ABC, Generic[LevelT]):

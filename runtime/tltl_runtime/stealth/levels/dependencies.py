@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.game.level import parse_level_spec
+from tltl_runtime.game.level_files import listed_name
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.spec.spec_files import source_of, spec_files, up_to_first_file
 from tltl_runtime.stealth.levels.default_spec import LEVELS, SPECS
@@ -58,7 +59,7 @@ def file_candidates(level: Path, variant: Variant, name: str) -> Iterator[Path]:
         yield level
     yield from (level.parent / name, LEVELS / name)
     for overlay in variant.overlays:
-        if overlay.endswith(".toml") and f"overlays/{Path(overlay).name}" == name:
+        if overlay.endswith(".toml") and listed_name("overlay", Path(overlay).name) == name:
             yield Path(overlay)
 
 

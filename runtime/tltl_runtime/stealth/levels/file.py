@@ -14,6 +14,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.game.level_files import listed_name
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Mover, Region, Solid, StealthLevel, entity_names
@@ -271,7 +272,7 @@ class _Loading:
         for table, key in references:
             name = table.text(key)
             if name and name not in entries and (path := self._find_shared("assets", name, table.label_of(key))):
-                entries[name] = self._read(path, f"assets/{name}.toml")
+                entries[name] = self._read(path, listed_name("asset", f"{name}.toml"))
         trees: dict[str, Tree] = {name: entry.value for name, entry in entries.items()}
         names = self.variants[variant.name]
         named = self.table.entries["variants"].value[variant.name].label if names else self.table.label
@@ -282,7 +283,7 @@ class _Loading:
             raise TltlError([Diagnostic("TLT0006", title, (named,), "combine their changes in one overlay")])
         for name, path in overlays:
             if path is not None:
-                change = self._read(path, f"overlays/{path.name}")
+                change = self._read(path, listed_name("overlay", path.name))
                 self.changes.append(str(change.value["doc"].value) if "doc" in change.value else Path(name).stem)
                 trees = overlay.apply(change.value, trees, self.log)
         self.check()
