@@ -12,13 +12,14 @@ import gymnasium
 
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.level import UnreachableEntity
 from tltl_runtime.game.level_files import LevelFiles, LevelT
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
+from tltlc.api import Fspa, RewardOptions, TltlError
 
 
 class Game(ABC, Generic[LevelT, EpisodeT]):
@@ -97,11 +98,8 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Return the boxes that can open, by name."""
 
     @abstractmethod
-    def reach_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
-        """Return a warning for each entity of a spec that no player can reach.
-
-        If the level is too large to search, return a single warning with the code TLT0006 instead.
-        """
+    def unreachable_entities(self, level: LevelT, fspa: Fspa) -> list[UnreachableEntity]:
+        """Return each entity of a spec that no player can reach; none if the level is too large to search."""
 
     @abstractmethod
     def is_infeasible(self, level: LevelT, fspa: Fspa) -> bool:

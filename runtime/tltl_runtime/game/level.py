@@ -66,6 +66,18 @@ class Level(Protocol):
         """The named parts of the level. Where regions overlap, a place has the name of the first one."""
 
 
+@record
+class UnreachableEntity:
+    """An entity of a spec that no player can reach.
+
+    ``diagnostic`` says so and explains why. ``obstacles`` are the things that the explanation names.
+    """
+
+    name: str
+    obstacles: tuple[str, ...]
+    diagnostic: Diagnostic
+
+
 def default_spec(level: Level) -> str:
     """Return the spec that a level is made for, as the argument ``FILE.tltl:NAME``.
 

@@ -16,13 +16,14 @@ import gymnasium
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.level import UnreachableEntity
 from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings
+from tltl_runtime.stealth.capabilities.feasible import is_infeasible, unreachable_entities
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.level import StealthLevel, fixed_places
 from tltl_runtime.stealth.levels import file
@@ -36,7 +37,7 @@ from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_by
 from tltl_runtime.stealth.snapshot import CHOICES
 from tltl_runtime.stealth.world.physics_errors import player_fault
 from tltl_runtime.stealth.world.player import DECISION
-from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
+from tltlc.api import Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episode_recorder import RecordEpisode
@@ -122,9 +123,9 @@ class StealthGame(Game[StealthLevel, Episode]):
         """Return the boxes of the barriers, by name."""
         return {barrier.name: barrier.box for barrier in level.barriers}
 
-    def reach_warnings(self, level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
-        """Return a warning for each entity of a spec that no player can reach."""
-        return reach_warnings(level, fspa)
+    def unreachable_entities(self, level: StealthLevel, fspa: Fspa) -> list[UnreachableEntity]:
+        """Return each entity of a spec that no player can reach; none if the level is too large to search."""
+        return unreachable_entities(level, fspa)
 
     def is_infeasible(self, level: StealthLevel, fspa: Fspa) -> bool:
         """Return whether no player can meet the spec; False if that is unknown."""

@@ -9,6 +9,7 @@ import pytest
 from tests.runtime.regression.handmade import ROOM, an_episode, changed
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
+from tltl_runtime.regression.explain.mentions import Mentions
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
@@ -60,6 +61,7 @@ def test_equal_episodes_are_as_before(level: StealthLevel, fspa: Fspa) -> None:
     (only,) = findings(level, fspa, successes(fspa), successes(fspa))
     assert only.text == "reaches `s1`, `s2`, `exit` as before"
     assert only.episodes == ()
+    assert only.mentions == Mentions(("s1", "s2", "exit"))
 
 
 @pytest.mark.parametrize(("fewer", "said"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
@@ -88,6 +90,8 @@ def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Stealth
         "closest approach to `exit`: 3.2 m (`near(exit)` is the limit, below 1.0 m is enough); "
         "in state 3, where this remained: Reach near(exit), and keep alive throughout."
     )
+    assert stage.mentions == Mentions(("s1", "s2", "exit"))
+    assert end.mentions == Mentions(("guard", "exit"), ("north_hall",))
 
 
 def test_a_share_is_added_for_many_episodes(level: StealthLevel, fspa: Fspa) -> None:
@@ -364,7 +368,9 @@ def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) ->
 
 def test_an_obstacle_is_named(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, False, states=states_after(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
-    assert "runs out of time in the east, at `outer_east`, in 25 of 25" in sentences(level, fspa, now)[1]
+    end = findings(level, fspa, now, successes(fspa))[1]
+    assert "runs out of time in the east, at `outer_east`, in 25 of 25" in end.text
+    assert end.mentions == Mentions(("outer_east",))
 
 
 @pytest.mark.parametrize(
@@ -388,7 +394,8 @@ def test_a_new_route_of_successes_is_described(level: StealthLevel, fspa: Fspa) 
         replace(explained, way=through) if explained.summary.index < 20 else explained for explained in successes(fspa)
     ]
     text = "80% of the successful episodes pass through the north hall; before: 0%"
-    assert sentences(level, fspa, now)[1:] == [text]
+    (_, route) = findings(level, fspa, now, successes(fspa))
+    assert (route.text, route.mentions) == (text, Mentions(regions=("north_hall",)))
     assert sentences(level, fspa, successes(fspa), now)[1:] == [
         text.replace("80%", "0%").replace("before: 0%", "before: 80%")
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.handmade import ROOM
-from tltl_runtime.regression.explain.places import blocking_solids, nearest_entity, place_name
+from tltl_runtime.regression.explain.places import blocking_solids, nearest_entity, place_phrase
 from tltl_runtime.stealth.level import Box, Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc.core.record import replace
@@ -54,7 +54,7 @@ def _level(tmp_path_factory: pytest.TempPathFactory) -> StealthLevel:
     ],
 )
 def test_a_place_is_named_by_region_then_entity_then_direction(level: StealthLevel, point: Point, name: str) -> None:
-    assert place_name(level, point) == name
+    assert place_phrase(level, point).text == name
 
 
 def test_the_nearest_entity_is_within_two_and_a_half_metres(level: StealthLevel) -> None:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
 from tests.runtime.regression.handmade import PLAYED, summaries
 from tltl_runtime.game.level import default_spec
+from tltl_runtime.regression.explain.mentions import Mentions
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
+from tltl_runtime.regression.verdict.baseline import Identity
+from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.levels.file import load_level
@@ -23,6 +28,12 @@ def reasons_of(passed: int, failed: int, reward: float = 0.0) -> list[str]:
     judgement = judge(now, before, passed + failed, DEFAULT, 0.05)
     assert judgement is not None
     return list(reasons(judgement, DEFAULT, now, before))
+
+
+def edit_texts(
+    now: Identity, before: Identity, descriptions: Sequence[str], texts: Texts = (), texts_before: Texts = ()
+) -> list[str]:
+    return [edit.text for edit in edits(now, before, descriptions, texts, texts_before)]
 
 
 @pytest.mark.parametrize(
@@ -91,52 +102,61 @@ def test_an_unreachable_entity_is_reported() -> None:
     task = load_task(default_spec(level))
     # The exit cannot be reached either, since the path to it ends at the same obstacle.
     (sentence,) = obstacles(level, task.fspa)
-    assert sentence == (
+    assert sentence.text == (
         "nobody can reach `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
         "the way ends at `corridor_block_2`, which is 2.2 m high"
     )
+    assert sentence.mentions == Mentions(("s2", "corridor_block_2"))
     open_level = load_level("navigation", "v1")
     assert list(obstacles(open_level, task.fspa)) == []
 
 
 def test_changed_files_are_listed() -> None:
     now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
-    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
+    assert edit_texts(now, PLAYED, []) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
     without_asset = replace(PLAYED, files=PLAYED.files[:1])
-    assert list(edits(without_asset, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
-    assert list(edits(PLAYED, PLAYED, [])) == []
+    assert edit_texts(without_asset, PLAYED, []) == ["changed since the baseline: assets/guard.toml"]
+    assert edit_texts(PLAYED, PLAYED, []) == []
 
 
 def test_changed_keys_are_listed() -> None:
     now = replace(PLAYED, files=(("room.toml", "1"), ("assets/guard.toml", "2"), ("overlays/x.toml", "3")))
     new = (("room.toml", "size = 3"), ("assets/guard.toml", "walk_speed = 2.6"), ("overlays/x.toml", "a = 1"))
     old = (("room.toml", "size = "), ("assets/guard.toml", "walk_speed = 1.6"))
-    assert list(edits(now, PLAYED, [], new, old)) == [
+    assert edit_texts(now, PLAYED, [], new, old) == [
         "changed since the baseline: room.toml, assets/guard.toml (`walk_speed` 1.6 → 2.6), overlays/x.toml"
     ]
 
 
+def test_the_things_whose_keys_have_changed_are_mentioned() -> None:
+    now = replace(PLAYED, files=(("room.toml", "1"), *PLAYED.files[1:]))
+    old, new = ((("room.toml", f'[[wall]]\nname = "far_wall"\nheight = {height}'),) for height in (2, 3))
+    (edit,) = edits(now, PLAYED, [], new, old)
+    assert edit.text == "changed since the baseline: room.toml (`wall.far_wall.height` 2 → 3)"
+    assert "far_wall" in edit.mentions.things
+
+
 def test_another_variant_differs_by_its_overlays() -> None:
     now = replace(PLAYED, variant="v1", files=(*PLAYED.files, ("overlays/x.toml", "1")))
-    assert list(edits(now, PLAYED, ["The way is shut."])) == [
+    assert edit_texts(now, PLAYED, ["The way is shut."]) == [
         "differs from `v0` by overlays/x.toml",
         "The way is shut.",
     ]
-    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlays/x.toml"]
+    assert edit_texts(PLAYED, now, []) == ["differs from `v1` by overlays/x.toml"]
     both_changed = replace(now, files=(("room.toml", "2"), *now.files[1:]))
-    assert list(edits(both_changed, PLAYED, [])) == [
+    assert edit_texts(both_changed, PLAYED, []) == [
         "changed since the baseline: room.toml",
         "differs from `v0` by overlays/x.toml",
     ]
     # An overlay of both variants was read twice, and its contents differ.
     other = replace(now, variant="v2", files=(*PLAYED.files, ("overlays/x.toml", "2")))
-    assert list(edits(other, now, [])) == ["changed since the baseline: overlays/x.toml"]
+    assert edit_texts(other, now, []) == ["changed since the baseline: overlays/x.toml"]
 
 
 def test_other_versions_are_reported() -> None:
     before = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "1.26.4", "pybullet": "3.2"})
     now = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "2.0.1"})
-    assert list(edits(now, before, [])) == [
+    assert edit_texts(now, before, []) == [
         "the baseline was recorded with numpy 1.26.4, this run with 2.0.1",
         "the baseline was recorded with pybullet 3.2, this run without it",
     ]

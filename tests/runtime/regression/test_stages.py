@@ -9,7 +9,7 @@ from tltl_runtime.regression.explain.stages import (
     near_enough,
     subgoal,
     subgoal_of_all,
-    subgoals_text,
+    subgoals_phrase,
     target_of,
 )
 from tltlc import compile_text
@@ -56,9 +56,13 @@ def test_alternative_goals_are_all_named() -> None:
 
 def test_joined_stages_share_the_verb() -> None:
     assert (
-        subgoals_text([Subgoal("`s1`"), Subgoal("`s2` or `s3`", is_choice=True)]) == "reaches `s1`, then `s2` or `s3`"
+        subgoals_phrase([Subgoal((("s1",),)), Subgoal((("s2",), ("s3",)), is_choice=True)]).text
+        == "reaches `s1`, then `s2` or `s3`"
     )
-    assert subgoals_text([Subgoal("`s1`"), Subgoal(other="makes `open` true")]) == "reaches `s1`, makes `open` true"
+    assert (
+        subgoals_phrase([Subgoal((("s1",),)), Subgoal(other="makes `open` true")]).text
+        == "reaches `s1`, makes `open` true"
+    )
 
 
 def test_an_atom_without_a_target_is_made_true() -> None:

@@ -14,8 +14,9 @@ from tltl_runtime.game.geometry import Region
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
+from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions, phrase, region_text
 from tltl_runtime.regression.explain.path_points import positions_along
-from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_text
+from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_phrase
 from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, record
 
@@ -40,12 +41,14 @@ class Finding:
     """A sentence about the episodes played now, and the indices of examples among them.
 
     ``episodes`` are the indices of the episodes that do what the sentence says. If ``others`` is
-    true, they are instead those of the episodes that do not.
+    true, they are instead those of the episodes that do not. ``mentions`` are the things and
+    regions that the sentence mentions.
     """
 
     text: str
     episodes: tuple[int, ...]
     others: bool = False
+    mentions: Mentions = NO_MENTIONS
 
 
 def findings(
@@ -87,17 +90,18 @@ def _stages(
             if len(passed_now) / len(now) > _COMMON_SHARE:
                 unchanged_stages.append(stage)
             continue
-        prefix = f"{subgoals_text(unchanged_stages)} as before, then " if unchanged_stages else ""
+        prefix = phrase(subgoals_phrase(unchanged_stages), " as before, then ") if unchanged_stages else ""
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
             count_text(len(passed), len(episodes), noun)
             for passed, episodes in ((passed_now, now), (passed_before, before))
         ]
-        text = f"{prefix}{stage.text} in {counts[0]}; before: in {counts[1]}"
-        yield Finding(text, failed, others=True)
+        sentence = phrase(prefix, subgoals_phrase([stage]), f" in {counts[0]}; before: in {counts[1]}")
+        yield Finding(sentence.text, failed, others=True, mentions=sentence.mentions)
         return
     if unchanged_stages:
-        yield Finding(f"{subgoals_text(unchanged_stages)} as before", ())
+        sentence = phrase(subgoals_phrase(unchanged_stages), " as before")
+        yield Finding(sentence.text, (), mentions=sentence.mentions)
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
@@ -143,9 +147,10 @@ def _ends(
     for group in failures(level, fspa, now, ends_before):
         matches = [group.matches(end) for end in ends_before]
         ends_before = [end for end, is_match in zip(ends_before, matches, strict=True) if not is_match]
-        headline = f"{group.text} in {_count_text(len(group.episodes), now, noun)}"
-        text = f"{headline}; before: in {_count_text(sum(matches), before, noun)}{group.more}"
-        yield headline, Finding(text, tuple(sorted(episode.summary.index for episode in group.episodes)))
+        headline = phrase(group.text, f" in {_count_text(len(group.episodes), now, noun)}")
+        sentence = phrase(headline, f"; before: in {_count_text(sum(matches), before, noun)}", group.more)
+        indices = tuple(sorted(episode.summary.index for episode in group.episodes))
+        yield headline.text, Finding(sentence.text, indices, mentions=sentence.mentions)
 
 
 def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
@@ -171,11 +176,12 @@ def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[Exp
         )
         share, share_before = len(visits_now) / len(new), len(visits_before) / len(old)
         if abs(share - share_before) >= _REGION_DIFFERENCE:
-            name = region.name.replace("_", " ")
-            text = (
-                f"{percent(share)} of the successful episodes pass through the {name}; before: {percent(share_before)}"
+            pass_through = f"{percent(share)} of the successful episodes pass through the {region_text(region.name)}"
+            yield Finding(
+                f"{pass_through}; before: {percent(share_before)}",
+                tuple(episode.summary.index for episode in visits_now),
+                mentions=Mentions(regions=(region.name,)),
             )
-            yield Finding(text, tuple(episode.summary.index for episode in visits_now))
 
 
 def _visits(episode: ExplainedEpisode, region: Region) -> bool:

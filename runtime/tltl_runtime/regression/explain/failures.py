@@ -9,8 +9,9 @@ from typing import Final, TypeVar
 from tltl_runtime.game.episode import Kind
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
-from tltl_runtime.regression.explain.nearest_miss import approach_text, remaining_text
-from tltl_runtime.regression.explain.places import blocking_solids, place_name
+from tltl_runtime.regression.explain.mentions import Phrase, phrase, quoted_names, things_phrase
+from tltl_runtime.regression.explain.nearest_miss import approach_phrase, remaining_text
+from tltl_runtime.regression.explain.places import blocking_solids, place_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
 from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltlc.api import Fspa, record, replace
@@ -25,6 +26,10 @@ Each of them must also contain at least this many failed episodes, or at least a
 episodes.
 """
 
+_NOTHING: Final = Phrase("")
+_ELSEWHERE: Final = Phrase("elsewhere")
+_IN_DIFFERENT_PLACES: Final = Phrase("in different places")
+
 
 @record
 class FailureEnd:
@@ -37,7 +42,7 @@ class FailureEnd:
 
     cause: Kind
     by: tuple[str, ...]
-    where: str
+    where: Phrase
     undone: Subgoal
 
     @property
@@ -54,16 +59,16 @@ class Failures:
     :class:`FailureEnd` belongs to the group. Call it only for ends that belong to no earlier group.
     """
 
-    text: str
+    text: Phrase
     episodes: tuple[ExplainedEpisode, ...]
     matches: Callable[[FailureEnd], bool]
-    more: str = ""
+    more: Phrase = _NOTHING
 
 
 def end_of(level: Level | None, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
     """Return how a failed episode ended. ``level`` is None for a recorded trace."""
     by = tuple(sorted(episode.by))
-    where = "" if level is None or episode.place is None else place_name(level, episode.place)
+    where = _NOTHING if level is None or episode.place is None else place_phrase(level, episode.place)
     return FailureEnd(episode.cause, by, where, subgoal(fspa, episode.summary.unmet))
 
 
@@ -86,10 +91,10 @@ def failures(
     stages = Counter(replace(end, undone=Subgoal()) for end in {*groups, *ends_before})
     for end in frequent:
         # If ends differ only in their subgoals, name the subgoal, so that the texts differ.
-        stage = _stage_text(level, end) if stages[replace(end, undone=Subgoal())] > 1 else ""
+        stage = _stage_phrase(level, end) if stages[replace(end, undone=Subgoal())] > 1 else _NOTHING
         group = groups[end]
-        details = f"{approach_text(level, fspa, end.undone, group)}; {remaining_text(fspa, group)}"
-        yield Failures(_end_text(level, fspa, end, group) + stage, tuple(group), end.__eq__, details)
+        details = phrase(approach_phrase(level, fspa, end.undone, group), "; ", remaining_text(fspa, group))
+        yield Failures(phrase(_end_phrase(level, fspa, end, group), stage), tuple(group), end.__eq__, details)
     remaining = {end: group for end, group in groups.items() if end not in frequent}
     yield from _remaining_failures(level, fspa, remaining, frequent, len(episodes))
 
@@ -122,22 +127,21 @@ def _remaining_failures(
         rare_causes = []
     for cause in frequent_causes:
         same_cause = [end for end in groups if end.kind == cause]
-        text, matches = _text_for_cause(level, fspa, same_cause, causes[cause], frequent)
+        text, matches = _phrase_for_cause(level, fspa, same_cause, causes[cause], frequent)
         yield Failures(text, tuple(causes[cause]), matches)
     if rare_causes:
         otherwise = " otherwise" if frequent or frequent_causes else ""
-        yield Failures(
-            f"fails{otherwise}", tuple(episode for cause in rare_causes for episode in causes[cause]), lambda _: True
-        )
+        rest = tuple(episode for cause in rare_causes for episode in causes[cause])
+        yield Failures(Phrase(f"fails{otherwise}"), rest, lambda _: True)
 
 
-def _text_for_cause(
+def _phrase_for_cause(
     level: Level | None,
     fspa: Fspa,
     ends: Sequence[FailureEnd],
     episodes: Sequence[ExplainedEpisode],
     frequent: Collection[FailureEnd],
-) -> tuple[str, Callable[[FailureEnd], bool]]:
+) -> tuple[Phrase, Callable[[FailureEnd], bool]]:
     """Return a text for ``ends``, which have the same cause, and a predicate.
 
     The predicate says whether the text describes an end. ``episodes`` are the episodes with these
@@ -148,69 +152,64 @@ def _text_for_cause(
     if len(places) == 1:
         (where,) = places
     else:
-        where = "elsewhere" if frequent_places and frequent_places.isdisjoint(places) else "in different places"
-    stage = ""
+        where = _ELSEWHERE if frequent_places and frequent_places.isdisjoint(places) else _IN_DIFFERENT_PLACES
+    stage = _NOTHING
     is_one_stage = len(stages) == 1 and len({end.undone for end in (*frequent, *ends)}) > 1
     if is_one_stage:
-        stage = _stage_text(level, ends[0])
+        stage = _stage_phrase(level, ends[0])
     elif places <= frequent_places:
-        stage = " at other stages"
+        stage = Phrase(" at other stages")
 
     def matches(end: FailureEnd) -> bool:
         same_place = (
-            end.where in places if len(places) == 1 else where != "elsewhere" or end.where not in frequent_places
+            end.where in places if len(places) == 1 else where != _ELSEWHERE or end.where not in frequent_places
         )
         return end.kind == cause and same_place and (not is_one_stage or end.undone in stages)
 
-    return _end_text(level, fspa, replace(ends[0], where=where), episodes) + stage, matches
+    return phrase(_end_phrase(level, fspa, replace(ends[0], where=where), episodes), stage), matches
 
 
-def _stage_text(level: Level | None, end: FailureEnd) -> str:
+def _stage_phrase(level: Level | None, end: FailureEnd) -> Phrase:
     """Return a clause with the subgoal that was not reached."""
     # Here the text says already that a trace ends before something.
     also = " and" if level is None and end.cause in ("limit", "stopped") else ""
-    return f"{also} before it {end.undone.text}"
+    return Phrase(f"{also} before it {end.undone.text}", end.undone.mentions)
 
 
-def _end_text(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> str:
+def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> Phrase:
     """Describe how ``episodes`` failed, which all share ``end``, without the number of episodes.
 
     The caller appends the number. So if the text ends with a clause that is set off by a comma, a
     comma also follows the clause.
     """
     if level is None:
-        return trace_end_text(fspa, end.cause, end.by, episodes)
-    by = f" by {_names(end.by)}" if end.by else ""
-    broke = _majority_clause("breaking", [episode.broke for episode in episodes])
-    saw = _majority_clause(
-        "seen by", [[name for name in episode.seen_by if name not in end.by] for episode in episodes]
-    )
+        return Phrase(trace_end_text(fspa, end.cause, end.by, episodes))
+    observers, adverb = _majority([[name for name in episode.seen_by if name not in end.by] for episode in episodes])
+    saw = phrase(f", {adverb}seen by ", things_phrase(observers)) if observers else _NOTHING
     if end.cause == "killed":
-        return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
+        by = phrase(" by ", things_phrase(end.by)) if end.by else _NOTHING
+        atoms, adverb = _majority([episode.broke for episode in episodes])
+        broke = f", {adverb}breaking {quoted_names(atoms)}" if atoms else ""
+        return phrase("dies ", end.where, by, broke, saw, "," if atoms or observers else "")
     if end.cause == "violated":
-        return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
+        atom_names = f" ({quoted_names(end.by)})"
+        return phrase("breaks the spec ", end.where, atom_names, saw, "," if observers else "")
     positions = [(episode.place, episode.shut) for episode in episodes if episode.place is not None]
     obstacles = blocking_solids(level, positions)
     mostly = (
         "" if all(set(obstacles) <= set(blocking_solids(level, [position])) for position in positions) else "mostly "
     )
-    return f"runs out of time {end.where}" + (f", {mostly}at {_names(obstacles)}," if obstacles else "")
+    blocked = phrase(f", {mostly}at ", things_phrase(obstacles), ",") if obstacles else _NOTHING
+    return phrase("runs out of time ", end.where, blocked)
 
 
-def _majority_clause(verb: str, names_by_episode: Sequence[Sequence[str]]) -> str:
-    """Return a clause with the names that occur in more than half of the episodes.
+def _majority(names_by_episode: Sequence[Sequence[str]]) -> tuple[list[str], str]:
+    """Return the names that occur in more than half of the episodes, and an adverb.
 
-    ``names_by_episode`` has the names of each episode. The clause is a comma, ``verb`` and the
-    names, with *mostly* if an episode lacks one of them. It is empty if there are no such names.
+    ``names_by_episode`` has the names of each episode. The adverb is ``mostly`` and a space if an
+    episode lacks one of the names, else empty.
     """
     counts = Counter(name for names in names_by_episode for name in names)
     frequent = [name for name, count in counts.items() if 2 * count > len(names_by_episode)]
-    if not frequent:
-        return ""
     is_partial = any(counts[name] < len(names_by_episode) for name in frequent)
-    return f", {'mostly ' if is_partial else ''}{verb} {_names(frequent)}"
-
-
-def _names(names: Sequence[str]) -> str:
-    *before, last = (f"`{name}`" for name in names)
-    return f"{', '.join(before)} and {last}" if before else last
+    return frequent, "mostly " if is_partial else ""

@@ -8,12 +8,13 @@ from collections.abc import Sequence
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
+from tltl_runtime.regression.explain.mentions import Phrase, phrase, things_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
 from tltl_runtime.support.number_text import number
 from tltlc.api import Fspa, label_text
 
 
-def approach_text(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> str:
+def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> Phrase:
     """Describe how near the failed episodes came to the subgoal ``undone``.
 
     The first clause counts the episodes that had reached the subgoal when another atom broke the
@@ -21,15 +22,15 @@ def approach_text(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Se
     episodes have a nearest miss and had not reached the subgoal. Each clause begins with a
     semicolon. The text is empty if neither clause applies.
     """
-    text = ""
+    clauses = Phrase("")
     if arrived := sum(episode.arrived for episode in episodes):
         was = "was" if arrived == 1 else "were"
-        position = f"{was} at {undone.place}" if undone.place else "lacked nothing else"
-        text = f"; {arrived} of them {position} when it broke"
+        position = f"{was} at {undone.place}" if undone.targets else "lacked nothing else"
+        clauses = Phrase(f"; {arrived} of them {position} when it broke", undone.mentions)
     misses = [episode.nearest for episode in episodes if episode.nearest and not episode.arrived]
     if 2 * len(misses) <= len(episodes):
-        return text
-    return f"{text}; {_limit_text(level, fspa, misses, ' of the others' if arrived else '')}"
+        return clauses
+    return phrase(clauses, "; ", _limit_phrase(level, fspa, misses, " of the others" if arrived else ""))
 
 
 def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
@@ -39,7 +40,7 @@ def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
     return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
 
 
-def _limit_text(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> str:
+def _limit_phrase(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> Phrase:
     """Describe the atom that limits the nearest misses most often, and the best of these misses.
 
     A nearest miss says how near an episode came to its next subgoal. ``of`` says which episodes are
@@ -49,15 +50,18 @@ def _limit_text(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], 
     same_limit = [miss for miss in misses if (miss.atom, miss.wanted) == (atom, must_hold)]
     often = "" if 2 * count > len(misses) else "most often "
     if not must_hold:
-        return f"{often}the limit is that `{atom}` holds"
+        return Phrase(f"{often}the limit is that `{atom}` holds")
     if level is None:
-        return _trace_limit_text(often, atom, max(miss.robustness for miss in same_limit))
+        return Phrase(_trace_limit_text(often, atom, max(miss.robustness for miss in same_limit)))
     if distances := [miss.distance for miss in same_limit if miss.distance is not None]:
         nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
-        return f"closest approach{of} to `{same_limit[0].target}`: {nearest} ({often}`{atom}` is the limit{sufficient})"
+        target = same_limit[0].target
+        assert target is not None, "a distance is the distance to a target"
+        limit = f": {nearest} ({often}`{atom}` is the limit{sufficient})"
+        return phrase(f"closest approach{of} to ", things_phrase([target]), limit)
     best = max(miss.robustness for miss in same_limit)
     # A Boolean atom that does not hold has robustness -1, which says nothing.
-    return f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
+    return Phrase(f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else ""))
 
 
 def _trace_limit_text(often: str, atom: str, best: float) -> str:

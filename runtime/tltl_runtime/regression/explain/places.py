@@ -10,6 +10,7 @@ from typing import Final
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.registry import registered_game
+from tltl_runtime.regression.explain.mentions import Mentions, Phrase, phrase, region_text, things_phrase
 
 _NEAR_M: Final = 2.5
 """A place is near an entity if the distance between them is at most this, in metres."""
@@ -24,16 +25,16 @@ _TOUCHING_M: Final = 0.7
 """A solid blocks a player if it is within this many metres of the player's centre."""
 
 
-def place_name(level: Level, point: Point) -> str:
+def place_phrase(level: Level, point: Point) -> Phrase:
     """Describe where a point is: by its region, else by an entity near it, else by a direction.
 
     Examples: ``in the corridor``, ``near `s2```, ``in the north-east``.
     """
     for region in level.regions:
         if _distance(point, region.box) == 0.0:
-            return f"in the {region.name.replace('_', ' ')}"
+            return Phrase(f"in the {region_text(region.name)}", Mentions(regions=(region.name,)))
     entity = nearest_entity(level, point)
-    return f"near `{entity}`" if entity else f"in the {_quarter(level.bounds, point)}"
+    return phrase("near ", things_phrase([entity])) if entity else Phrase(f"in the {_quarter(level.bounds, point)}")
 
 
 def nearest_entity(level: Level, point: Point) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
+from tltl_runtime.regression.explain.mentions import Mentions, Phrase, union
 from tltl_runtime.spec.goals import distance_signals
 from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 
@@ -21,11 +22,12 @@ _PRECISION: Final = 1e-4
 class Subgoal:
     """What the player must do so that the automaton leaves a state for one nearer to acceptance.
 
-    Either ``place`` names the entities to reach, for example ```a` or `b```, or ``other`` says what
-    else to do, for example ``makes `open` true``. The field that does not apply is empty.
+    Either ``targets`` are the entities to reach: alternatives, each with the entities that must all
+    be reached. Or ``other`` says what else to do, for example ``makes `open` true``. The field that
+    does not apply is empty.
     """
 
-    place: str = ""
+    targets: tuple[tuple[str, ...], ...] = ()
     other: str = ""
     is_choice: bool = False
     """Whether one of several things is enough."""
@@ -33,7 +35,17 @@ class Subgoal:
     @property
     def text(self) -> str:
         """The subgoal in words, for example ``reaches `s1``` or ``makes `open` true``."""
-        return f"{_REACHES}{self.place}" if self.place else self.other
+        return f"{_REACHES}{self.place}" if self.targets else self.other
+
+    @property
+    def place(self) -> str:
+        """The entities to reach in words, for example ```a` or `b```; empty if there are none."""
+        return " or ".join(" and ".join(f"`{target}`" for target in together) for together in self.targets)
+
+    @property
+    def mentions(self) -> Mentions:
+        """The entities to reach, which the text mentions."""
+        return Mentions(tuple(target for together in self.targets for target in together))
 
 
 _MEETS: Final = Subgoal(other="meets the spec")
@@ -90,8 +102,8 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
     distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
     if len(distinct) < 2:
         return distinct[0] if distinct else _MEETS
-    if all(subgoal.place for subgoal in distinct):
-        return Subgoal(place=" or ".join(subgoal.place for subgoal in distinct), is_choice=True)
+    if all(subgoal.targets for subgoal in distinct):
+        return Subgoal(tuple(together for subgoal in distinct for together in subgoal.targets), is_choice=True)
     return Subgoal(other=" or ".join(subgoal.text for subgoal in distinct), is_choice=True)
 
 
@@ -106,8 +118,8 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
     3. the atoms that must not hold.
     """
     literals = [(atom, holds) for atom, holds in prime if not _is_invariant(fspa, atom, holds)]
-    if targets := [f"`{target}`" for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
-        return Subgoal(place=" and ".join(targets))
+    if targets := [target for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
+        return Subgoal((tuple(targets),))
     for truth in (True, False):
         if atoms := [f"`{fspa.atoms[atom].name}`" for atom, holds in literals if holds == truth]:
             return Subgoal(other=f"makes {' and '.join(atoms)} {str(truth).lower()}")
@@ -136,12 +148,14 @@ def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
     return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)
 
 
-def subgoals_text(subgoals: Sequence[Subgoal]) -> str:
+def subgoals_phrase(subgoals: Sequence[Subgoal]) -> Phrase:
     """Describe successive subgoals: ``reaches `s1`, `s2```.
 
     If one of them is a choice: ``reaches `s1`, then `a` or `b```.
     """
     between = ", then " if any(subgoal.is_choice for subgoal in subgoals) else ", "
-    if subgoals and all(subgoal.place for subgoal in subgoals):
-        return _REACHES + between.join(subgoal.place for subgoal in subgoals)
-    return between.join(subgoal.text for subgoal in subgoals)
+    if subgoals and all(subgoal.targets for subgoal in subgoals):
+        text = _REACHES + between.join(subgoal.place for subgoal in subgoals)
+    else:
+        text = between.join(subgoal.text for subgoal in subgoals)
+    return Phrase(text, union(subgoal.mentions for subgoal in subgoals))

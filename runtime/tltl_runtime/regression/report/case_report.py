@@ -8,6 +8,7 @@ from pathlib import Path
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
+from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions, Phrase, union
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import Case
@@ -49,6 +50,8 @@ class CaseReport:
     - ``figures`` and ``baseline`` are the statistics of the played episodes and of the baseline's.
     - ``explanation`` says what the policy does differently from the baseline.
     - ``edits`` are sentences about what has changed since the baseline: files, overlays, versions.
+    - ``mentions`` are the things and regions that the causes and edits mention, without those of
+      ``descriptions``: what the designer wrote about the variant's overlays, which are among the edits.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
     - ``accounts`` are the played episodes, or the judged traces.
     - ``traces`` are the names of the traces of a case of recorded traces, which has no level and no
@@ -69,6 +72,8 @@ class CaseReport:
     changes: tuple[FigureChange, ...] = ()
     explanation: tuple[Finding, ...] = ()
     edits: tuple[str, ...] = ()
+    mentions: Mentions = NO_MENTIONS
+    descriptions: tuple[str, ...] = ()
     played: Identity | None = None
     reference: Identity | None = None
     accounts: tuple[ExplainedEpisode, ...] = ()
@@ -102,6 +107,7 @@ def report_on(result: JudgedCase) -> CaseReport:
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
     blocked = tuple(obstacles(level, setup.fspa))
+    changes = tuple(_edits(result))
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
@@ -117,19 +123,26 @@ def report_on(result: JudgedCase) -> CaseReport:
         figures=figures,
         baseline=baseline,
         changes=result.judgement.changes,
-        causes=(*([outdated] if outdated else []), *statistics[:1], *blocked, *statistics[1:]),
+        causes=(
+            *([outdated] if outdated else []),
+            *statistics[:1],
+            *(obstacle.text for obstacle in blocked),
+            *statistics[1:],
+        ),
         told=outdated
-        or next(iter(blocked), None)
+        or next((obstacle.text for obstacle in blocked), None)
         or headline(result.judgement, case.thresholds, statistics, most_frequent),
         explanation=findings(level, setup.fspa, now, before),
-        edits=tuple(_edits(result)),
+        edits=tuple(edit.text for edit in changes),
+        mentions=union(sentence.mentions for sentence in (*blocked, *changes)),
+        descriptions=result.prepared.changes,
         played=result.prepared.played,
         reference=result.reference.played,
         accounts=tuple(now),
     )
 
 
-def _edits(result: JudgedCase) -> Iterator[str]:
+def _edits(result: JudgedCase) -> Iterator[Phrase]:
     """Describe how the case differs from its baseline: see ``edits`` of :class:`CaseReport`.
 
     If a file was edited after the case was set up, its changed keys are not named.

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from statistics import fmean
-from typing import Final
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_files import file_kind
 from tltl_runtime.game.registry import registered_game
-from tltl_runtime.regression.suite.changed_keys import changed_keys
+from tltl_runtime.regression.explain.mentions import Mentions, Phrase
+from tltl_runtime.regression.suite.changed_keys import ChangedKeys, changed_keys
 from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import Texts
@@ -16,9 +17,6 @@ from tltl_runtime.regression.verdict.verdict import Judgement, differing_figures
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.support.number_text import count_text, interval_text, percent_exactly
 from tltlc.api import Fspa
-
-_OVERLAYS: Final = "overlays/"
-"""Among the names of a level's files, those of overlays begin with this."""
 
 
 def reasons(
@@ -82,45 +80,48 @@ def _uncertain_change_text(
     return f"{figure} is {direction}, {new:.2f} on average; {compared}"
 
 
-def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
+def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
     """Yield a sentence for each entity of the spec that no player can reach in the level.
 
     If several entities cannot be reached for the same reason, describe only the first.
     """
-    warnings = [warning for warning in registered_game().reach_warnings(level, fspa) if warning.code == "TLT0814"]
-    yield from {warning.help: f"{warning.title}: {warning.help}" for warning in reversed(warnings)}.values()
+    entities = registered_game().unreachable_entities(level, fspa)
+    first_entities = {entity.diagnostic.help: entity for entity in reversed(entities)}
+    for entity in first_entities.values():
+        text = f"{entity.diagnostic.title}: {entity.diagnostic.help}"
+        yield Phrase(text, Mentions((entity.name, *entity.obstacles)))
 
 
 def edits(
-    now: Identity, before: Identity, changes: Sequence[str], texts: Texts = (), texts_before: Texts = ()
-) -> Iterator[str]:
+    now: Identity, before: Identity, descriptions: Sequence[str], texts: Texts = (), texts_before: Texts = ()
+) -> Iterator[Phrase]:
     """Describe how a case differs from its baseline: in files, in overlays, and in versions.
 
-    ``now`` and ``before`` identify what was played now and for the baseline. ``changes`` describe
-    the overlays of the variant. ``texts`` and ``texts_before`` are the texts of the level's files.
-    If both texts of a changed file are known, the sentence names its changed keys.
+    ``now`` and ``before`` identify what was played now and for the baseline. ``descriptions`` are
+    those of the variant's overlays. ``texts`` and ``texts_before`` are the texts of the level's
+    files. If both texts of a changed file are known, the sentence names its changed keys.
     """
     old, new = dict(before.files), dict(now.files)
     changed_names = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
     # If the variants differ, an overlay that only one of them uses has not changed since the baseline.
-    variant_overlays = {name for name in changed_names if now.variant != before.variant and name.startswith(_OVERLAYS)}
-    variant_overlays -= old.keys() & new.keys()
+    variant_overlays: set[str] = set()
+    if now.variant != before.variant:
+        variant_overlays = {name for name in changed_names if file_kind(name) == "overlay"} - (old.keys() & new.keys())
     if own_changes := [name for name in changed_names if name not in variant_overlays]:
-        files = (
-            f"{name}{_changed_keys_text(dict(texts_before).get(name), dict(texts).get(name))}" for name in own_changes
-        )
-        yield f"changed since the baseline: {', '.join(files)}"
+        keys = [_changed_keys(dict(texts_before).get(name), dict(texts).get(name)) for name in own_changes]
+        files = (f"{name} ({its.text})" if its.text else name for name, its in zip(own_changes, keys, strict=True))
+        mentions = Mentions(tuple(part for its in keys for part in its.parts))
+        yield Phrase(f"changed since the baseline: {', '.join(files)}", mentions)
     if variant_overlays:
         overlays = ", ".join(name for name in changed_names if name in variant_overlays)
-        yield f"differs from `{before.variant}` by {overlays}"
-    yield from changes
+        yield Phrase(f"differs from `{before.variant}` by {overlays}")
+    yield from map(Phrase, descriptions)
     for name, version in before.versions.items():
         if (version_now := now.versions.get(name)) != version:
             this_run = f"with {version_now}" if version_now else "without it"
-            yield f"the baseline was recorded with {name} {version}, this run {this_run}"
+            yield Phrase(f"the baseline was recorded with {name} {version}, this run {this_run}")
 
 
-def _changed_keys_text(before: str | None, now: str | None) -> str:
-    """Return the changed keys of a file, in parentheses; empty if they are unknown."""
-    keys = "" if before is None or now is None else changed_keys(before, now)
-    return f" ({keys})" if keys else ""
+def _changed_keys(before: str | None, now: str | None) -> ChangedKeys:
+    """Return the changed keys of a file; the description is empty if they are unknown."""
+    return ChangedKeys("") if before is None or now is None else changed_keys(before, now)

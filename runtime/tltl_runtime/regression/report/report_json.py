@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Figures
+from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.suite import Suite
@@ -67,12 +68,16 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "changes": to_json(report.changes),
         "headline": report.headline,
         "reasons": list(report.reasons),
-        "explanation": to_json(report.explanation),
+        "explanation": [_finding(finding) for finding in report.explanation],
         "played": to_json(played),
         "retrained": to_json(report.retrained),
         "traces": to_json(report.traces),
         "accounts": [_episode(episode) for episode in report.accounts],
     }
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    return {"text": finding.text, "episodes": list(finding.episodes), "others": finding.others}
 
 
 def _episode(episode: ExplainedEpisode) -> dict[str, Any]:

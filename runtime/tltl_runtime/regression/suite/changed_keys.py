@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final, TypeGuard
 
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import SourceFile, TltlError, fileio
+from tltlc.api import SourceFile, TltlError, fileio, record
 
 _MOST_KEYS: Final = 3
 """At most this many keys of a file are named. Further keys are counted."""
@@ -16,7 +16,18 @@ _MOST_CHARACTERS: Final = 24
 """A value is shown if its JSON has at most this many characters. Else only its key is shown."""
 
 
-def changed_keys(before: str, now: str) -> str:
+@record
+class ChangedKeys:
+    """A description of changed keys, and the parts of the keys that it names.
+
+    If it names ``wall.far_wall.at``, the parts are ``wall``, ``far_wall`` and ``at``.
+    """
+
+    text: str
+    parts: tuple[str, ...] = ()
+
+
+def changed_keys(before: str, now: str) -> ChangedKeys:
     """Describe the keys whose values differ between two TOML texts, with their values if short.
 
     The description is ``its layout`` if no value differs, and empty if a text is not TOML. Tables
@@ -26,34 +37,39 @@ def changed_keys(before: str, now: str) -> str:
     try:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
-        return ""
-    return short_list(list(_changes((), old, new)), _MOST_KEYS) or "its layout"
+        return ChangedKeys("")
+    changes = list(_changes((), old, new))
+    # Further keys are counted, not named.
+    parts = tuple(dict.fromkeys(part for path, _ in changes[:_MOST_KEYS] for part in path))
+    return ChangedKeys(short_list([text for _, text in changes], _MOST_KEYS) or "its layout", parts)
 
 
-def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
-    """Describe each difference between an old and a new table of a TOML file.
+def _changes(
+    path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield the path of each key that differs between two tables of a TOML file, with a description.
 
-    ``path`` are the keys that lead to the table. The order is that of the new table, and removed
-    keys come last.
+    ``path`` are the keys that lead to the tables ``old`` and ``new``. The order is that of the new
+    table, and removed keys come last.
     """
     for key in dict.fromkeys((*new, *old)):
         key_path = (*path, key)
         name, before, now = f"`{'.'.join(key_path)}`", old.get(key), new.get(key)
         if key not in old:
-            yield f"{name} new{_value_text(': ', now)}"
+            yield key_path, f"{name} new{_value_text(': ', now)}"
         elif key not in new:
-            yield f"{name} removed"
+            yield key_path, f"{name} removed"
         elif isinstance(before, dict) and isinstance(now, dict):
             yield from _changes(key_path, before, now)
         elif _are_tables(before) and _are_tables(now):
             have_names = _have_names(before) and _have_names(now)
             old_tables, new_tables = map(_names if have_names else _positions, (before, now))
             if have_names and before != now and old_tables == new_tables:
-                yield f"the order of {name}"
+                yield key_path, f"the order of {name}"
             yield from _changes(key_path, old_tables, new_tables)
         elif (type(before), before) != (type(now), now):
             values = _value_text(" ", before), _value_text(" → ", now)
-            yield name + "".join(values) if all(values) else name
+            yield key_path, name + "".join(values) if all(values) else name
 
 
 def _are_tables(value: Any) -> TypeGuard[list[dict[str, Any]]]:

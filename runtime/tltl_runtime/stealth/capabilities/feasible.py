@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from math import inf
 from typing import Final
 
+from tltl_runtime.game.level import UnreachableEntity
 from tltl_runtime.stealth.capabilities.capabilities import params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach, highest_jump, highest_lift
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceBudgetError
@@ -25,18 +26,35 @@ def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlace
     The diagnostics are errors if nobody can meet the spec without these entities, else warnings.
     The level must supply everything that the spec uses.
     """
+    return [entity.diagnostic for entity in _unreachable_entities(level, reach, fspa, places)]
+
+
+def unreachable_entities(level: StealthLevel, fspa: Fspa) -> list[UnreachableEntity]:
+    """Return each entity of a spec that no player can reach; none if the level is too large to search.
+
+    The diagnostics are those of :func:`check_reach`.
+    """
+    try:
+        return _unreachable_entities(level, compute_reach(level), fspa, SpecPlaces(None))
+    except TltlError:
+        return []
+
+
+def _unreachable_entities(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[UnreachableEntity]:
     unreachable = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
     if not unreachable:
         return []
     feasible = _may_accept(fspa, _impossible_atoms(level, reach, fspa))
     obstacle_search = _ObstacleSearch(level, reach)
-    diagnostics = []
+    entities = []
     for name in unreachable:
         title = f"nobody can reach `{name}` in `{level.name}:{level.variant}`"
         title += "" if feasible else f", so nobody can do what `{fspa.name}` asks"
         severity: Severity = "warning" if feasible else "error"
-        diagnostics.append(Diagnostic("TLT0814", title, places.entity(name), obstacle_search.describe(name), severity))
-    return diagnostics
+        help_, obstacles = obstacle_search.describe(name)
+        diagnostic = Diagnostic("TLT0814", title, places.entity(name), help_, severity)
+        entities.append(UnreachableEntity(name, obstacles, diagnostic))
+    return entities
 
 
 def check_height(level: StealthLevel, reach: Reach) -> list[Diagnostic]:
@@ -73,11 +91,7 @@ def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
 
     Return False if the level is too large to search.
     """
-    try:
-        diagnostics = check_reach(level, compute_reach(level), fspa, SpecPlaces(None))
-    except TltlError:
-        return False
-    return any(diagnostic.severity == "error" for diagnostic in diagnostics)
+    return any(entity.diagnostic.severity == "error" for entity in unreachable_entities(level, fspa))
 
 
 def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozenset[int]:
@@ -155,21 +169,21 @@ class _ObstacleSearch:
         self._by_removed: dict[str, Reach] = {}
         self._budget = Budget(fileio.limits.WORK["cells of reachable space"])
 
-    def describe(self, entity: str) -> str:
-        """Describe what blocks the way to ``entity``, which is unreachable.
+    def describe(self, entity: str) -> tuple[str, tuple[str, ...]]:
+        """Describe what blocks the way to ``entity``, which is unreachable; also return what it names.
 
         If no single obstacle does, or if the search is too long, say how near the player gets.
         """
         nearest = f"the player gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
-            return self._describe_barrier(entity) or self._describe_high_solid(entity) or nearest
+            return self._describe_barrier(entity) or self._describe_high_solid(entity) or (nearest, ())
         except SpaceBudgetError:
-            return nearest
+            return nearest, ()
 
-    def _describe_barrier(self, entity: str) -> str:
+    def _describe_barrier(self, entity: str) -> tuple[str, tuple[str, ...]] | None:
         """Describe the barrier that blocks the way to ``entity``, and why it stays shut.
 
-        Return an empty text if no barrier blocks the way.
+        Also return the names in the description. None if no barrier blocks the way.
         """
         shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
         unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
@@ -178,13 +192,15 @@ class _ObstacleSearch:
             missing = next((name for name in switches if name not in self._reach.switches), None)
             if barrier.kind == "solid" and missing and self._is_behind(entity, barrier.name):
                 location = "which is behind it" if self._is_behind(missing, barrier.name) else "which nobody can reach"
-                return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {location}"
-        return ""
+                text = f"`{barrier.name}` stays shut: it is opened by `{missing}`, {location}"
+                return text, (barrier.name, missing)
+        return None
 
-    def _describe_high_solid(self, entity: str) -> str:
+    def _describe_high_solid(self, entity: str) -> tuple[str, tuple[str, ...]] | None:
         """Describe the solid that blocks the way to ``entity`` because it is too high to jump onto.
 
-        The search tries ever higher jumps. Return an empty text if there is no such solid.
+        Also return the names in the description. The search tries ever higher jumps. None if there
+        is no such solid.
         """
         lift = normal = highest_lift(PlayerKind())
         while lift < self._level.bounds.high[2] and not self._reach_with_lift(lift).reaches(entity):
@@ -193,8 +209,8 @@ class _ObstacleSearch:
             for solid in self._level.solids:
                 height = solid.box.high[2] - solid.box.low[2]
                 if normal < height <= lift and self._is_behind(entity, solid.name):
-                    return f"the way ends at `{solid.name}`, which is {height:g} m high"
-        return ""
+                    return f"the way ends at `{solid.name}`, which is {height:g} m high", (solid.name,)
+        return None
 
     def _reach_with_lift(self, lift: float) -> Reach:
         if lift not in self._by_lift:

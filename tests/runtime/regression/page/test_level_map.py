@@ -6,9 +6,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tltl_runtime.regression.explain.places import place_name
+from tltl_runtime.regression.explain.explain import Finding
+from tltl_runtime.regression.explain.mentions import Mentions
+from tltl_runtime.regression.explain.places import place_phrase
+from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_data, map_key
-from tltl_runtime.regression.report.page.stealth.mentions import mentions
+from tltl_runtime.regression.report.page.stealth.mentions import description_mentions, report_mentions
 from tltl_runtime.stealth.level import Box, Solid
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.core.record import replace
@@ -61,9 +64,9 @@ def test_names_of_regions_stand_inside_their_regions(name: str, variant: str) ->
     for row, region in enumerate(level.regions):
         x, y = shown[text := region.name.replace("_", " ")]
         place = (level.bounds.low[0] + x / 100, level.bounds.high[1] - (y - 10) / 100, 0.1)
-        assert place_name(replace(level, regions=(region,)), place) == f"in the {text}"
+        assert place_phrase(replace(level, regions=(region,)), place).text == f"in the {text}"
         if not any(within(region.box, other.box) for other in level.regions[:row]):
-            assert place_name(level, place) == f"in the {text}"
+            assert place_phrase(level, place).text == f"in the {text}"
 
 
 def within(box: Box, other: Box) -> bool:
@@ -76,8 +79,7 @@ def within(box: Box, other: Box) -> bool:
 
 def test_things_named_in_the_reasons_are_highlighted() -> None:
     level = load_level("navigation", "v2")
-    reasons = ("nobody can reach `s2`: the way ends at `corridor_block_2`", "runs out of time in the corridor")
-    mentioned = mentions(level, reasons)
+    mentioned = Mentions(("s2", "corridor_block_2", "another"), ("corridor",))
     root = ElementTree.fromstring(level_map(level, mentioned))
     outlined = [
         element.findtext("title") for element in root.iter("rect") if "spoken" in element.get("class", "").split()
@@ -89,19 +91,35 @@ def test_things_named_in_the_reasons_are_highlighted() -> None:
     assert "corridor_block_2" not in {name for name, *_ in quiet} and not any("spoken" in kind for _, kind, *_ in quiet)
 
 
-@pytest.mark.parametrize("sentence", ["`wall.far_wall` new", "`wall.far_wall.at` [1, 2] → [3, 4]", "at `far_wall`"])
-def test_keys_of_a_thing_mention_the_thing(sentence: str) -> None:
+@pytest.mark.parametrize("sentence", ["The `wall.far_wall` is new.", "Moves `wall.far_wall.at`.", "Opens `far_wall`."])
+def test_a_description_mentions_a_thing_by_its_name_or_a_key(sentence: str) -> None:
     level = load_level("navigation")
     walls = tuple(replace(level.solids[0], name=name) for name in ("far_wall", "wall_", "far"))
-    assert mentions(replace(level, solids=walls), [sentence]).things == {"far_wall"}
+    assert description_mentions(replace(level, solids=walls), sentence).things == ("far_wall",)
 
 
-def test_the_longest_name_of_a_region_is_mentioned() -> None:
+def test_only_descriptions_are_searched_for_names() -> None:
+    level = load_level("navigation", "v2")
+    report = CaseReport(
+        "a",
+        "navigation",
+        "v2",
+        "fail",
+        ("nobody can reach `s2`", "moves `corridor_block_2`"),
+        explanation=(Finding("dies at `exit`", (), mentions=Mentions(("corridor_block_1",), ("corridor",))),),
+        edits=("Moves `corridor_block_2`.",),
+        mentions=Mentions(("s1",)),
+        descriptions=("Moves `corridor_block_2`.",),
+    )
+    assert report_mentions(level, report) == Mentions(("s1", "corridor_block_1", "corridor_block_2"), ("corridor",))
+
+
+def test_a_description_mentions_the_longest_name_of_a_region() -> None:
     level = load_level("navigation")
     regions = tuple(replace(level.regions[0], name=name) for name in ("left", "left_part", "middle"))
     named = replace(level, regions=regions)
-    assert mentions(named, ["fails in the left part", "the middle-aged guard"]).regions == {"left_part"}
-    assert mentions(named, ["near the left", "the middle."]).regions == {"left", "middle"}
+    assert description_mentions(named, "Shuts the left part for the middle-aged guard").regions == ("left_part",)
+    assert description_mentions(named, "Near the left and the middle.").regions == ("left", "middle")
 
 
 def test_a_patrol_there_and_back_is_drawn_once() -> None:
@@ -125,7 +143,7 @@ def test_names_of_things_in_the_same_place_do_not_cover_each_other() -> None:
     box = next(solid.box for solid in level.solids if solid.name == "corridor_block_2")
     walls = tuple(Solid(f"corridor_block_{number}", "wall", box) for number in range(10, 22))
     level = replace(level, solids=(*level.solids, *walls))
-    mentioned = mentions(level, [f"`{wall.name}`" for wall in walls])
+    mentioned = Mentions(tuple(wall.name for wall in walls))
     shown = {name: (x, y) for name, kind, x, y in names_on(ElementTree.fromstring(level_map(level, mentioned)))}
     places = [shown[wall.name] for wall in walls]
     for row, (x, y) in enumerate(places):

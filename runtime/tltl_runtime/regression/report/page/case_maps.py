@@ -40,14 +40,14 @@ def case_maps(case: ReportedCase, level: Level) -> Markup:
 def _maps(case: ReportedCase, level: Level) -> Iterator[_DrawnMap]:
     # These need the packages of the game, which a page of recorded traces does not.
     from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
-    from tltl_runtime.regression.report.page.stealth.mentions import mentions
+    from tltl_runtime.regression.report.page.stealth.mentions import report_mentions
 
-    old_level, mentioned = case.baseline_level, mentions(level, case.report.reasons)
+    old_level, mentioned = case.baseline_level, report_mentions(level, case.report)
     map_now, key_now = level_map(level, mentioned), map_key(level, mentioned)
     if old_level is None or not case.before:
         yield _DrawnMap("both", map_now, key_now, is_of_unknown_baseline=bool(case.before))
         return
-    mentioned_before = mentions(old_level, case.report.reasons)
+    mentioned_before = report_mentions(old_level, case.report)
     if level_map(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
         yield _DrawnMap("both", map_now, key_now)
         return

@@ -16,10 +16,10 @@ from markupsafe import Markup
 
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import Level
+from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.regression.report.page.map_scale import MapScale
 from tltl_runtime.regression.report.page.markup import element
 from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, map_labels
-from tltl_runtime.regression.report.page.stealth.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Mover, StealthLevel
 from tltl_runtime.stealth.rendering.plan import patrol_path

@@ -7,8 +7,8 @@ from math import hypot
 from typing import Final
 
 from tltl_runtime.game.geometry import Region
+from tltl_runtime.regression.explain.mentions import Mentions, region_text
 from tltl_runtime.regression.report.page.map_scale import MapScale, Rect
-from tltl_runtime.regression.report.page.stealth.mentions import Mentions
 from tltl_runtime.stealth.level import StealthLevel
 from tltlc.api import record, replace
 
@@ -116,7 +116,7 @@ def _region_label(
 
     The name avoids the rectangles in ``earlier_regions`` and ``occupied`` if possible.
     """
-    name = region.name.replace("_", " ")
+    name = region_text(region.name)
     best, least = (
         MapLabel((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE_HEIGHT, is_mentioned),
         float("inf"),

@@ -1,58 +1,47 @@
-"""The things and regions of a level that the sentences of a report mention.
-
-They are found by a search for their names, because authors of levels write some of the sentences:
-the descriptions of overlays. All sentences put names of things between backquotes, and call regions
-by their names.
-"""
+"""The things and regions of a level that a report mentions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Final
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.regression.explain.mentions import Mentions, region_text, union
+from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.stealth.level import StealthLevel, entity_names
-from tltlc.api import record
 
 
-@record
-class Mentions:
-    """The names that a report mentions.
+def report_mentions(level: Level, report: CaseReport) -> Mentions:
+    """Return the names that the sentences of a report mention.
 
-    ``things`` are entities and solids.
+    The names may include some that the level does not have. Only the descriptions of overlays are
+    searched for names, because designers write them.
     """
-
-    things: frozenset[str] = frozenset()
-    regions: frozenset[str] = frozenset()
-
-
-NO_MENTIONS: Final = Mentions()
+    findings = (finding.mentions for finding in report.explanation)
+    return union((report.mentions, *findings, description_mentions(level, "\n".join(report.descriptions))))
 
 
-def mentions(level: Level, sentences: Sequence[str]) -> Mentions:
-    """Return the things and regions that sentences mention.
+def description_mentions(level: Level, text: str) -> Mentions:
+    """Return the things and regions of a level that a designer's text mentions.
 
     A thing is mentioned by its name (```far_wall```) or by a key of its table in the level's file
     (```wall.far_wall.at```). A region is mentioned by *the* and its name (*the left part*).
     """
     assert isinstance(level, StealthLevel)
-    text = "\n".join(sentences)
-    names = {*entity_names(level), *(solid.name for solid in level.solids)}
-    return Mentions(frozenset(name for name in names if _mentions_thing(name, text)), _regions(level, text))
+    names = (*entity_names(level), *(solid.name for solid in level.solids))
+    return Mentions(tuple(name for name in names if _mentions_thing(name, text)), _regions(level, text))
 
 
 def _mentions_thing(name: str, text: str) -> bool:
     return re.search(rf"[`.]{re.escape(name)}[`.]", text) is not None
 
 
-def _regions(level: StealthLevel, text: str) -> frozenset[str]:
+def _regions(level: StealthLevel, text: str) -> tuple[str, ...]:
     """Return the names of the mentioned regions.
 
     If the names of several regions fit at one place in the text, only the longest counts: *the left
     part* does not mention ``left``.
     """
-    names_by_text = {region.name.replace("_", " "): region.name for region in level.regions}
+    names_by_text = {region_text(region.name): region.name for region in level.regions}
     alternatives = "|".join(map(re.escape, sorted(names_by_text, key=len, reverse=True)))
     matches = re.findall(rf"\bthe ({alternatives})(?![-\w])", text) if names_by_text else ()
-    return frozenset(names_by_text[match] for match in matches)
+    return tuple(names_by_text[match] for match in matches)

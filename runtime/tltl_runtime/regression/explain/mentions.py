@@ -1,0 +1,62 @@
+"""Texts of a report, with the names of the things and regions that they mention."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+from tltlc.api import record
+
+
+@record
+class Mentions:
+    """The names of the things and regions of a level that a text mentions.
+
+    ``things`` are entities and solids, or keys of their tables in the files of a level.
+    """
+
+    things: tuple[str, ...] = ()
+    regions: tuple[str, ...] = ()
+
+
+NO_MENTIONS: Final = Mentions()
+
+
+@record
+class Phrase:
+    """A text of a report, and the names that it mentions."""
+
+    text: str
+    mentions: Mentions = NO_MENTIONS
+
+
+def phrase(*parts: Phrase | str) -> Phrase:
+    """Join phrases and plain texts without a separator. A plain text mentions nothing."""
+    phrases = [Phrase(part) if isinstance(part, str) else part for part in parts]
+    return Phrase("".join(part.text for part in phrases), union(part.mentions for part in phrases))
+
+
+def things_phrase(names: Sequence[str]) -> Phrase:
+    """Return a list of things: ```a`, `b` and `c```. There is at least one."""
+    return Phrase(quoted_names(names), Mentions(tuple(names)))
+
+
+def quoted_names(names: Sequence[str]) -> str:
+    """Return a list of names between backquotes: ```a`, `b` and `c```. There is at least one."""
+    *before, last = (f"`{name}`" for name in names)
+    return f"{', '.join(before)} and {last}" if before else last
+
+
+def region_text(name: str) -> str:
+    """Return the name of a region as sentences and maps write it."""
+    return name.replace("_", " ")
+
+
+def union(mentions: Iterable[Mentions]) -> Mentions:
+    """Return all names in ``mentions``, each once, in order."""
+    things: dict[str, None] = {}
+    regions: dict[str, None] = {}
+    for part in mentions:
+        things |= dict.fromkeys(part.things)
+        regions |= dict.fromkeys(part.regions)
+    return Mentions(tuple(things), tuple(regions))
