@@ -22,25 +22,11 @@ RecordMode = Literal["none", "failures", "all"]
 CHOICES: Final = {True: "sampled", False: "arg-max"}
 """The names of the two ways to choose actions."""
 
+_POLICY: Final = "policy"
+"""The first word of the names of all policies."""
 
-@record
-class Setup:
-    """The setup of an evaluation: ``policy`` plays a level with a spec and default reward options.
-
-    ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
-    ``seed`` is the seed of the evaluation. ``params`` are the values of the spec's params, in SI
-    units. ``recorded`` says which episodes to record. Unless it is None, the results also have the
-    trajectories of all episodes. ``player`` is the name of the policy in recordings.
-    """
-
-    policy: Policy
-    level: str
-    variant: Variant
-    fspa: Fspa
-    seed: int
-    params: Mapping[str, float] = EMPTY
-    recorded: RecordMode | None = None
-    player: str = "policy"
+_HASH_DIGITS: Final = 8
+"""A name has this many digits of the hash of the policy's file."""
 
 
 @record
@@ -52,6 +38,57 @@ class EpisodeRequest:
 
     index: int
     sampled: bool = True
+
+
+@record
+class PolicyPlayer:
+    """The policy of an evaluation, as recordings name it.
+
+    ``labels`` say what the policy was trained for, and ``sha256`` is the hash of its file. Both may be
+    empty.
+    """
+
+    labels: tuple[str, ...] = ()
+    sha256: str = ""
+
+    def name(self, request: EpisodeRequest) -> str:
+        """Return the name of the player in the recording of an episode."""
+        labels = "".join(f" {label}" for label in self.labels)
+        return f"{_POLICY}{labels}{self._hash_mark}, {CHOICES[request.sampled]}, episode {request.index}"
+
+    def is_named(self, name: str) -> bool:
+        """Whether :meth:`name` made ``name`` for a policy with this hash, whatever its labels."""
+        return name.startswith(_POLICY) and f"{self._hash_mark}, " in name
+
+    @property
+    def _hash_mark(self) -> str:
+        """The part of a name that shows the hash; empty without a hash."""
+        return f" {self.sha256[:_HASH_DIGITS]}" if self.sha256 else ""
+
+
+def is_labelled_policy(name: str) -> bool:
+    """Whether a player is a policy with labels or a hash, by the name that :class:`PolicyPlayer` made."""
+    return name.startswith(f"{_POLICY} ")
+
+
+@record
+class Setup:
+    """The setup of an evaluation: ``policy`` plays a level with a spec and default reward options.
+
+    ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
+    ``seed`` is the seed of the evaluation. ``params`` are the values of the spec's params, in SI
+    units. ``recorded`` says which episodes to record. Unless it is None, the results also have the
+    trajectories of all episodes. ``player`` names the policy in recordings.
+    """
+
+    policy: Policy
+    level: str
+    variant: Variant
+    fspa: Fspa
+    seed: int
+    params: Mapping[str, float] = EMPTY
+    recorded: RecordMode | None = None
+    player: PolicyPlayer = PolicyPlayer()
 
 
 @record
@@ -108,8 +145,7 @@ class Player:
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:
             return PlayedEpisode(task, played)
-        player = f"{setup.player}, {CHOICES[task.sampled]}, episode {task.index}"
-        episode = replace(self._recorder.episode, player=player)
+        episode = replace(self._recorder.episode, player=setup.player.name(task))
         is_recorded = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
         recording = self._game.episode_bytes(episode) if is_recorded else b""
         return PlayedEpisode(task, played, trajectory(episode), recording)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
-from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup
+from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup, is_labelled_policy
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
@@ -207,7 +207,7 @@ class EvaluationFiles:
             player = read_episode(path).player
         except TltlError:
             return False
-        return player.startswith("policy ") and player.rsplit(", ", 2)[0].split()[-1] != self._sha256[:8]
+        return is_labelled_policy(player) and not self._setup.player.is_named(player)
 
     @property
     def _name(self) -> str:
