@@ -137,12 +137,12 @@ def command(
         files = EvaluationFiles(setup, path, sha256, first, command_line, folder, json_file)
         # Check this only now: the report may go into the folder, which EvaluationFiles has created.
         check_writable({"--json": None if cli.is_stdout(json_file) else json_file})
-        tasks = [
+        requests = [
             EpisodeRequest(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)
         ]
         try:
-            with closing(results(setup, tasks, workers, _print_waiting)) as playing:
-                for result in _with_progress(playing, len(tasks)):
+            with closing(results(setup, requests, workers, _print_waiting)) as playing:
+                for result in _with_progress(playing, len(requests)):
                     files.add(result)
         finally:
             _print_results(files, json_file, folder, episodes)
@@ -170,9 +170,9 @@ def _with_progress(playing: Iterator[PlayedEpisode], count: int) -> Iterator[Pla
     with _bar(count) as bar:
         for number, result in enumerate(playing, 1):
             yield result
-            sampled = result.task.sampled
+            sampled = result.request.sampled
             played[sampled] += 1
-            passed[sampled] += result.played.success
+            passed[sampled] += result.summary.success
             so_far = [f"{passed[mode]} of {played[mode]} {name}" for mode, name in CHOICES.items() if played[mode]]
             text = f"passed: {', '.join(so_far)}"
             if bar is not None:

@@ -49,7 +49,7 @@ def evaluate(
     loaded = policy if isinstance(policy, Policy) else read_policy(Path(policy))
     setup = set_up(loaded, level, variant, spec, seed)
     for result in results(setup, [EpisodeRequest(index, sampled) for index in range(episodes)], workers):
-        yield result.played
+        yield result.summary
 
 
 def set_up(
@@ -94,7 +94,7 @@ def check_limit(fspa: Fspa) -> None:
 
 def results(
     setup: Setup,
-    tasks: Sequence[EpisodeRequest],
+    requests: Sequence[EpisodeRequest],
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
     replay_command: ReplayCommand | None = None,
@@ -112,17 +112,17 @@ def results(
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
-        yield from local_results(partial(Player, setup), tasks, workers, setup.seed, replay_command)
+        yield from local_results(partial(Player, setup), requests, workers, setup.seed, replay_command)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
-    with ray_workers(setup, len(tasks), waiting) as team:
-        yield from play_all(team, tasks, setup.seed, replay_command)
+    with ray_workers(setup, len(requests), waiting) as team:
+        yield from play_all(team, requests, setup.seed, replay_command)
 
 
 def local_results(
     make: Callable[[], EpisodePlayer],
-    tasks: Sequence[EpisodeRequest],
+    requests: Sequence[EpisodeRequest],
     workers: int,
     seed: int,
     replay_command: ReplayCommand | None = None,
@@ -139,13 +139,13 @@ def local_results(
     """
     if workers == 1:
         with closing(make()) as player:
-            for task in tasks:
-                yield player.play(task)
+            for request in requests:
+                yield player.play(request)
         return
     if workers < 0:
         raise ValueError(f"the number of workers must be at least 0, not {workers}")
     with ExitStack() as stack:
-        team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(tasks)))]
+        team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(requests)))]
         for worker in team:
             stack.callback(worker.close)
-        yield from play_all(team, tasks, seed, replay_command)
+        yield from play_all(team, requests, seed, replay_command)

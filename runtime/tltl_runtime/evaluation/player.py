@@ -93,14 +93,14 @@ class Setup:
 
 @record
 class PlayedEpisode:
-    """A played episode: its request, and its summary ``played``.
+    """A played episode: its request, and its summary.
 
     If the setup asks for them, there are also its ``trajectory`` and its ``recording``, which has
     the bytes of the file.
     """
 
-    task: EpisodeRequest
-    played: EpisodeSummary
+    request: EpisodeRequest
+    summary: EpisodeSummary
     trajectory: Trajectory | None = None
     recording: bytes = b""
 
@@ -108,7 +108,7 @@ class PlayedEpisode:
 class EpisodePlayer(Protocol):
     """What a worker needs to play episodes, one after the other."""
 
-    def play(self, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
         """Play the requested episode to its end, and return it."""
 
     def close(self) -> None:
@@ -137,18 +137,18 @@ class Player:
         if setup.recorded is not None:
             self._env = self._recorder = self._game.recorder(self._env)
 
-    def play(self, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
         """Play the requested episode to its end, and return it."""
         setup = self._setup
         # In one thread, equal observations give equal logits on any number of cores.
         with blas_threads(1):
-            played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
+            summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled)
         if self._recorder is None:
-            return PlayedEpisode(task, played)
-        episode = replace(self._recorder.episode, player=setup.player.name(task))
-        is_recorded = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
+            return PlayedEpisode(request, summary)
+        episode = replace(self._recorder.episode, player=setup.player.name(request))
+        is_recorded = setup.recorded == "all" or (setup.recorded == "failures" and not summary.success)
         recording = self._game.episode_bytes(episode) if is_recorded else b""
-        return PlayedEpisode(task, played, trajectory(episode), recording)
+        return PlayedEpisode(request, summary, trajectory(episode), recording)
 
     def close(self) -> None:
         """Free the environment and its resources."""

@@ -44,13 +44,13 @@ class RayWorker:
         # No restarts: Ray would silently play the episode again that killed the actor.
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_EvaluationActor).remote()
 
-    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
 
         The future raises :class:`WorkerLostError` if the worker's process ends.
         """
         future: Future[PlayedEpisode] = Future()
-        playing = self.actor.play.remote(self._setup, task).future()
+        playing = self.actor.play.remote(self._setup, request).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
         return future
 
@@ -80,6 +80,6 @@ class _EvaluationActor:
     def __init__(self) -> None:
         self._player: Player | None = None
 
-    def play(self, setup: Setup, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, setup: Setup, request: EpisodeRequest) -> PlayedEpisode:
         self._player = self._player or Player(setup)
-        return self._player.play(task)
+        return self._player.play(request)

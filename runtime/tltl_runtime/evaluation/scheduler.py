@@ -18,7 +18,7 @@ class WorkerLostError(Exception):
 class EpisodeWorker(Protocol):
     """Plays one episode at a time, for example in another process."""
 
-    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play the requested episode; return a future of its result.
 
         The future raises the exception that the episode raised, or :class:`WorkerLostError`.
@@ -34,7 +34,7 @@ ReplayCommand = Callable[[EpisodeRequest], str]
 
 def play_all(
     workers: Sequence[EpisodeWorker],
-    tasks: Sequence[EpisodeRequest],
+    requests: Sequence[EpisodeRequest],
     seed: int,
     replay_command: ReplayCommand | None = None,
 ) -> Iterator[PlayedEpisode]:
@@ -47,12 +47,12 @@ def play_all(
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
             ``seed``.
     """
-    remaining = iter(enumerate(tasks))
+    remaining = iter(enumerate(requests))
     running: dict[Future[PlayedEpisode], tuple[EpisodeWorker, int]] = {}
     results: dict[int, PlayedEpisode] = {}
-    for worker, (index, task) in zip(workers, remaining, strict=False):
-        running[worker.play(task)] = worker, index
-    for index_to_yield in range(len(tasks)):
+    for worker, (index, request) in zip(workers, remaining, strict=False):
+        running[worker.play(request)] = worker, index
+    for index_to_yield in range(len(requests)):
         while index_to_yield not in results:
             done, _ = wait(running, return_when=FIRST_COMPLETED)
             ended = [(future, *running.pop(future)) for future in done]
@@ -61,24 +61,24 @@ def play_all(
                 if (error := future.exception()) is not None:
                     yield from (results[played] for played in sorted(results))
                     if isinstance(error, WorkerLostError):
-                        raise _lost_worker_error(error, tasks[index], seed, replay_command) from error
+                        raise _lost_worker_error(error, requests[index], seed, replay_command) from error
                     raise error
-                for next_index, task in remaining:
-                    running[worker.play(task)] = worker, next_index
+                for next_index, request in remaining:
+                    running[worker.play(request)] = worker, next_index
                     break
         yield results.pop(index_to_yield)
 
 
 def _lost_worker_error(
-    error: WorkerLostError, task: EpisodeRequest, seed: int, replay_command: ReplayCommand | None
+    error: WorkerLostError, request: EpisodeRequest, seed: int, replay_command: ReplayCommand | None
 ) -> TltlError:
     title = (
-        f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
-        f"(seed {episode_seed(seed, task.index)} of the level): {error}"
+        f"a worker was lost while it played episode {request.index} of seed {seed}, {CHOICES[request.sampled]} "
+        f"(seed {episode_seed(seed, request.index)} of the level): {error}"
     )
     if replay_command:
-        help_ = f"to play only that episode: {replay_command(task)}"
+        help_ = f"to play only that episode: {replay_command(request)}"
     else:
-        options = f"--seed {seed} --first {task.index} --episodes 1 --workers 1"
+        options = f"--seed {seed} --first {request.index} --episodes 1 --workers 1"
         help_ = f"`tltlc evaluate` plays only that episode with `{options}`"
     return TltlError([Diagnostic("TLT0850", title, help=help_)])

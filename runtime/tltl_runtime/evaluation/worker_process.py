@@ -30,7 +30,7 @@ class WorkerProcess:
     def __init__(self, make: Callable[[], EpisodePlayer]) -> None:
         self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
-    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
 
         The future raises :class:`WorkerLostError` if the process ends.
@@ -38,7 +38,7 @@ class WorkerProcess:
         future: Future[PlayedEpisode] = Future()
         try:
             with fileio.block_interrupts():
-                playing = self._executor.submit(_play, task)
+                playing = self._executor.submit(_play, request)
             playing.add_done_callback(lambda done: _pass_on(done, future))
         except BrokenProcessPool:
             future.set_exception(WorkerLostError(_PROCESS_ENDED))
@@ -80,11 +80,11 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _play(task: EpisodeRequest) -> PlayedEpisode:
+def _play(request: EpisodeRequest) -> PlayedEpisode:
     # The player is made here because an exception in `_begin` would be lost.
     global _player
     _player = _player or _make()
-    return _player.play(task)
+    return _player.play(request)
 
 
 def _pass_on(done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:

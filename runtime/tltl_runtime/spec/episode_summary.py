@@ -26,7 +26,8 @@ class EpisodeSummary:
 
     ``verdict`` is the verdict of the last step. ``seconds`` is the game time. ``state`` is the
     automaton state at the end. ``label`` says in English what remained to be done in the state
-    ``unmet``. These four are None in training and regression, whose files do not contain them.
+    ``unmet``. These four are None in training and in the cases of regression tests, whose files do
+    not contain them.
     """
 
     index: int

@@ -26,8 +26,8 @@ if __name__ == "__mp_main__":
     until(Path("interrupted").exists, "the interrupt")
 
 class Plays:
-    def play(self, task):
-        return task
+    def play(self, request):
+        return request
 
 if __name__ == "__main__":
     worker = WorkerProcess(Plays)
@@ -62,7 +62,7 @@ def test_a_starting_worker_ignores_ctrl_c(tmp_path: Path) -> None:
 class Origin:
     """Returns the parent's process id, the number of its threads, and whether torch is loaded."""
 
-    def play(self, task: EpisodeRequest) -> Any:
+    def play(self, request: EpisodeRequest) -> Any:
         return os.getppid(), len([*Path(f"/proc/{os.getppid()}/task").iterdir()]), "torch" in sys.modules
 
     def close(self) -> None:

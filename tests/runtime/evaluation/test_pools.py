@@ -79,22 +79,22 @@ def test_every_pool_plays_the_same_episodes(policy: Policy, expected: list[Episo
 
 def test_an_episode_does_not_depend_on_the_number_of_episodes(policy: Policy, expected: list[EpisodeSummary]) -> None:
     single_results = results(set_up(policy, None, None, None, 3), [EpisodeRequest(7)])
-    assert [result.played for result in single_results] == [expected[7]]
+    assert [result.summary for result in single_results] == [expected[7]]
 
 
 def test_recordings_are_made_as_requested(policy: Policy, expected: list[EpisodeSummary]) -> None:
-    tasks = [EpisodeRequest(0), EpisodeRequest(1)]
+    requests = [EpisodeRequest(0), EpisodeRequest(1)]
     for recorded, expect_recording in (("all", True), ("failures", True), ("none", False)):
-        for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
-            assert result.played == expected[result.task.index]
+        for result in results(set_up(policy, None, None, None, 3, recorded), requests):  # type: ignore[arg-type]
+            assert result.summary == expected[result.request.index]
             assert result.trajectory is not None
             assert result.trajectory.points.shape == (21, 2)
             assert bool(result.recording) is expect_recording
             if expect_recording:
                 episode = from_bytes(result.recording, "it")
-                chosen = "sampled" if result.task.sampled else "arg-max"
-                assert episode.seed == result.played.seed
-                assert episode.player == f"policy, {chosen}, episode {result.task.index}"
+                chosen = "sampled" if result.request.sampled else "arg-max"
+                assert episode.seed == result.summary.seed
+                assert episode.player == f"policy, {chosen}, episode {result.request.index}"
 
 
 @pytest.mark.parametrize("recorded", get_args(RecordMode))
@@ -102,7 +102,7 @@ def test_only_failures_are_recorded_if_requested(recorded: RecordMode) -> None:
     played_results = list(
         results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [EpisodeRequest(index) for index in range(6)])
     )
-    failed = [not result.played.success for result in played_results]
+    failed = [not result.summary.success for result in played_results]
     assert set(failed) == {True, False}
     expected_recordings = {"none": [False] * 6, "failures": failed, "all": [True] * 6}
     assert [bool(result.recording) for result in played_results] == expected_recordings[recorded]
@@ -136,7 +136,7 @@ def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool)
 class Ends:
     """A player without a policy that kills its process."""
 
-    def play(self, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
         kill_this_process()
         raise AssertionError("it was killed")
 
@@ -159,21 +159,21 @@ def test_an_error_at_the_start_of_a_worker_is_raised_unchanged(policy: Policy, w
 def test_a_result_is_yielded_before_the_next_episode_starts(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
     began: list[EpisodeRequest] = []
     play = Player.play
-    monkeypatch.setattr(Player, "play", lambda self, task: began.append(task) or play(self, task))
+    monkeypatch.setattr(Player, "play", lambda self, request: began.append(request) or play(self, request))
     with closing(results(set_up(policy, None, None, None, 3), [EpisodeRequest(0), EpisodeRequest(1)])) as played:
-        assert next(played).task == EpisodeRequest(0)
+        assert next(played).request == EpisodeRequest(0)
         assert began == [EpisodeRequest(0)]
 
 
 class Prompt:
     """A worker that is done at once; it is lost in episode 1, and never finishes episode 0."""
 
-    def play(self, task: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         future: Future[PlayedEpisode] = Future()
-        if task.index == 1:
+        if request.index == 1:
             future.set_exception(WorkerLostError("gone"))
-        elif task.index != 0:
-            future.set_result(PlayedEpisode(task, None))  # type: ignore[arg-type]
+        elif request.index != 0:
+            future.set_result(PlayedEpisode(request, None))  # type: ignore[arg-type]
         return future
 
     def close(self) -> None:
@@ -181,17 +181,17 @@ class Prompt:
 
 
 def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> None:
-    tasks = [EpisodeRequest(index) for index in (2, 0, 3, 1)]
+    requests = [EpisodeRequest(index) for index in (2, 0, 3, 1)]
     played: list[int] = []
     with pytest.raises(TltlError, match="episode 1 of seed 5"):
-        played.extend(result.task.index for result in play_all([Prompt(), Prompt(), Prompt()], tasks, 5))
+        played.extend(result.request.index for result in play_all([Prompt(), Prompt(), Prompt()], requests, 5))
     assert played == [2, 3]
 
 
 def test_a_process_that_ended_between_episodes_is_reported_as_lost(policy: Policy) -> None:
     worker = WorkerProcess(partial(Player, set_up(policy, None, None, None, 3)))
     try:
-        assert worker.play(EpisodeRequest(0)).result().task == EpisodeRequest(0)
+        assert worker.play(EpisodeRequest(0)).result().request == EpisodeRequest(0)
         for child in active_children():
             child.kill()
             child.join()
@@ -245,7 +245,7 @@ def test_a_core_that_becomes_free_is_used(
     remaining: list[float] = []
     monkeypatch.setattr("tltl_runtime.vector.cluster._REPORT_INTERVAL_S", 0.5)
     played = results(set_up(policy, None, None, None, 3), [EpisodeRequest(0)], "ray", waiting)
-    assert [result.played for result in played] == [expected[0]]
+    assert [result.summary for result in played] == [expected[0]]
     assert 0 < remaining[0] <= ray_pool.PATIENCE_S == HANG_S
 
 

@@ -89,6 +89,11 @@ def summary(
     return an_episode(index, success, progress=progress, reward=reward).summary
 
 
+def a_summary(success: bool, progress: float, reward: float) -> EpisodeSummary:
+    """Return the summary of an episode of 100 steps."""
+    return EpisodeSummary(0, 7, success, "success" if success else "limit", progress, reward, steps=100, unmet=0)
+
+
 def summaries(passed: int, failed: int = 0) -> list[EpisodeSummary]:
     """Return summaries of episodes; the first ``failed`` episodes do not meet the spec."""
     return summaries_of(some_episodes(passed, failed))

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from tests import pipes
+from tests.runtime.regression.handmade import a_summary
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
-from tltl_runtime.regression.table1.table_cells import EpisodeResult
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 
-EPISODES = (EpisodeResult(True, 1.0, 0.5), EpisodeResult(False, 0.25, -0.75))
-KIND = tuple[EpisodeResult, ...]
+EPISODES = (a_summary(True, 1.0, 0.5), a_summary(False, 0.25, -0.75))
+KIND = tuple[EpisodeSummary, ...]
 
 
 def test_a_cached_result_is_used_while_its_inputs_are_unchanged(tmp_path: Path) -> None:

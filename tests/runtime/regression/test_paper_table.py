@@ -9,12 +9,14 @@ import pytest
 
 from tests.runtime.evaluation.deadly import kill_this_process
 from tests.runtime.policies.examples import card_of, policy_of
+from tests.runtime.regression.handmade import a_summary
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.table1 import table_cells
 from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, TableRow, markdown
-from tltl_runtime.regression.table1.table_cells import EpisodeResult, cell_episodes, figures
+from tltl_runtime.regression.table1.table_cells import cell_episodes, figures
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.diagnostics.diagnostic import TltlError
 
 
@@ -57,7 +59,7 @@ def test_the_duration_of_a_training_is_shown(hours: float | None, cloned: float 
 
 
 def test_figures_cover_the_first_runs() -> None:
-    cell = (EpisodeResult(True, 1.0, 0.5), EpisodeResult(False, 0.5, -0.5), EpisodeResult(True, 1.0, 0.7))
+    cell = (a_summary(True, 1.0, 0.5), a_summary(False, 0.5, -0.5), a_summary(True, 1.0, 0.7))
     cell_figures = figures(cell, 2)
     assert (cell_figures.runs, cell_figures.pass_rate, cell_figures.progress.mean, cell_figures.reward.mean) == (
         2,
@@ -94,9 +96,9 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
 class Mortal(table_cells._ExpertPlayer):
     """A player that kills its process in its first episode."""
 
-    def play(self, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
         kill_this_process()
-        return super().play(task)
+        return super().play(request)
 
 
 def test_a_lost_process_of_the_expert_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -114,15 +116,15 @@ def test_the_expert_plays_again_when_the_spec_or_the_code_changes(
 ) -> None:
     played: list[str] = []
 
-    def play(level: str, variant: str, pool: object) -> list[EpisodeResult]:
+    def play(level: str, variant: str, pool: object) -> list[EpisodeSummary]:
         played.append(f"{level}:{variant}")
-        return [EpisodeResult(True, 1.0, 0.5)]
+        return [a_summary(True, 1.0, 0.5)]
 
     monkeypatch.setattr(table_cells, "_expert_episodes", play)
 
     def count() -> int:
         """Measure the cell again; return how often the expert has played so far."""
-        assert cell_episodes(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (EpisodeResult(True, 1.0, 0.5),)
+        assert cell_episodes(tmp_path, "expert", "cover_and_hide", "v0", None, 1) == (a_summary(True, 1.0, 0.5),)
         return len(played)
 
     assert (count(), count()) == (1, 1)

@@ -293,7 +293,7 @@ def test_episodes_after_a_gap_are_not_judged(game: Path, monkeypatch: pytest.Mon
     lost = TltlError([Diagnostic("TLT0850", "a worker was lost", help="play it alone")])
 
     def with_gap(*given: Any, **named: Any) -> Iterator[Any]:
-        yield from (result for result in islice(results(*given, **named), 6) if result.task.index != 2)
+        yield from (result for result in islice(results(*given, **named), 6) if result.request.index != 2)
         raise lost
 
     monkeypatch.setattr("tltl_runtime.regression.verdict.play.results", with_gap)

@@ -95,14 +95,14 @@ class EvaluationFiles:
 
     def add(self, result: PlayedEpisode) -> None:
         """Add the next result, and write its recording if it has one."""
-        sampled = result.task.sampled
+        sampled = result.request.sampled
         if self._folder is not None and not any(self._summaries.values()):
             self._removed = self._remove_older(self._folder)
-        self._summaries[sampled].append(result.played)
+        self._summaries[sampled].append(result.summary)
         if result.trajectory is not None:
             self._trajectories[sampled].append(result.trajectory)
         if result.recording and self._folder is not None:
-            stem = f"{self._name}-{self._setup.seed}-{result.task.index}-{CHOICES[sampled]}"
+            stem = f"{self._name}-{self._setup.seed}-{result.request.index}-{CHOICES[sampled]}"
             path = new_path(self._folder, stem, result.recording, [".png"])
             plan = draw_episode(from_bytes(result.recording, path.name))
             files = {path.name: result.recording, f"{path.name.removesuffix(SUFFIX)}.png": plan}

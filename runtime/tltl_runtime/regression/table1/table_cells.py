@@ -21,9 +21,10 @@ from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
+from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.training.files.versions import versions
-from tltlc.api import fileio, record
+from tltlc.api import fileio
 
 EPISODES: Final = 100
 SEED: Final = 25_000
@@ -33,16 +34,7 @@ It is unlikely that a training played episodes with the same seeds.
 """
 
 
-@record
-class EpisodeResult:
-    """The result of an episode, as the cache stores it."""
-
-    success: bool
-    progress: float
-    reward: float
-
-
-def figures(episodes: Sequence[EpisodeResult], runs: int) -> CellFigures:
+def figures(episodes: Sequence[EpisodeSummary], runs: int) -> CellFigures:
     """Return the figures of a cell over its first ``runs`` episodes."""
     first = episodes[:runs]
     return CellFigures(
@@ -55,7 +47,7 @@ def figures(episodes: Sequence[EpisodeResult], runs: int) -> CellFigures:
 
 def cell_episodes(
     folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool
-) -> tuple[EpisodeResult, ...]:
+) -> tuple[EpisodeSummary, ...]:
     """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
 
     Without a ``policy``, the expert plays. The current spec of the level judges the episodes.
@@ -66,7 +58,7 @@ def cell_episodes(
     """
     path = folder / f"{level}-{variant}-{model}.json"
     inputs = _inputs(level, variant, policy)
-    if (cached := read_cache(tuple[EpisodeResult, ...], path, inputs)) is not None:
+    if (cached := read_cache(tuple[EpisodeSummary, ...], path, inputs)) is not None:
         return cached
     episodes = tuple(
         _policy_episodes(policy, level, variant, pool) if policy else _expert_episodes(level, variant, pool)
@@ -84,22 +76,21 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
     return inputs_hash([game.level_hash(loaded_level), spec_hash(spec), player_hash, EPISODES, SEED, versions()])
 
 
-def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeResult]:
+def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeSummary]:
     spec = default_spec(registered_game().load_level(level, variant))
-    for episode in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
-        yield EpisodeResult(episode.success, episode.progress, episode.reward)
+    yield from evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec)
 
 
-def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeResult]:
+def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeSummary]:
     """Play the scripted expert's episodes on this machine, with the same seeds as the policies."""
-    tasks = [EpisodeRequest(index) for index in range(EPISODES)]
+    requests = [EpisodeRequest(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
 
-    def replay_command(task: EpisodeRequest) -> str:
-        return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
+    def replay_command(request: EpisodeRequest) -> str:
+        return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, request.index)}"
 
-    for result in local_results(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, replay_command):
-        yield EpisodeResult(result.played.success, result.played.progress, result.played.reward)
+    for result in local_results(partial(_ExpertPlayer, level, variant), requests, workers, SEED, replay_command):
+        yield result.summary
 
 
 class _ExpertPlayer:
@@ -118,10 +109,10 @@ class _ExpertPlayer:
         """
         self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 
-    def play(self, task: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
         """Play one episode."""
-        self._seeds.append(episode_seed(SEED, task.index))
-        return PlayedEpisode(task, self._game.summary(next(self._episodes), task.index))
+        self._seeds.append(episode_seed(SEED, request.index))
+        return PlayedEpisode(request, self._game.summary(next(self._episodes), request.index))
 
     def close(self) -> None:
         """Close the environment in which the expert plays."""

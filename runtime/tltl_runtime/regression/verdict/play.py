@@ -103,25 +103,25 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
             errors from playing.
     """
-    tasks = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
-    with closing(results(prepared.setup, tasks, pool, replay_command=partial(_replay_command, prepared))) as playing:
+    requests = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
+    with closing(results(prepared.setup, requests, pool, replay_command=partial(_replay_command, prepared))) as playing:
         for count, result in enumerate(playing):
             # Before `results` raises an error, it yields all finished episodes. Skip those that come after
             # a missing one: counting them would favour fast episodes.
-            if result.played.index != count:
+            if result.summary.index != count:
                 continue
             episode = registered_game().episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
             _check_unedited(prepared, episode.level)
-            yield CaseEpisode(explain_episode(result.played, episode), result.recording)
+            yield CaseEpisode(explain_episode(result.summary, episode), result.recording)
     check_unedited(prepared)
 
 
-def _replay_command(prepared: PreparedCase, task: EpisodeRequest) -> str:
+def _replay_command(prepared: PreparedCase, request: EpisodeRequest) -> str:
     """Return the shell command that plays only the requested episode of the case."""
     place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant.text}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
-    episode = ["--seed", str(prepared.setup.seed), "--first", str(task.index), "--episodes", "1"]
+    episode = ["--seed", str(prepared.setup.seed), "--first", str(request.index), "--episodes", "1"]
     return join(["tltlc", "evaluate", str(prepared.case.policy), *place, *spec, *episode])
 
 
