@@ -10,7 +10,7 @@ from tltl_runtime.game.episode import Kind, RecordedEpisode
 from tltl_runtime.game.geometry import Point
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
-from tltl_runtime.regression.explain.stages import target_of
+from tltl_runtime.regression.explain.stages import distance_column, target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import monitors, record, replace
 
@@ -176,7 +176,7 @@ def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int
     target = target_of(episode.fspa, atom)
     if target is None:
         return None, None
-    column = [signal.name for signal in episode.fspa.signals].index(f"distance({target})")
+    column = distance_column(episode.fspa, target)
     distances = [float(episode.signals[row + 1, column]) for row in rows if episode.atoms[row, atom] <= 0.0]
     return target, round(min(distances), 2)
 

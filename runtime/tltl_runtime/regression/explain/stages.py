@@ -66,6 +66,13 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
     return distance_signals(fspa).get(name) if near and not far else None
 
 
+def distance_column(fspa: Fspa, target: str) -> int:
+    """Return the index, among the signals of the spec, of the distance to an atom's ``target``."""
+    return next(
+        index for index, signal in enumerate(fspa.signals) if (signal.base, signal.arguments) == ("distance", (target,))
+    )
+
+
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
     """Return the distance, in metres, to an atom's target below which the atom holds.
 
@@ -79,10 +86,11 @@ def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | N
         - params.keys()
     ):
         return None
+    distance = fspa.signals[distance_column(fspa, target)].name
     near, far = 0.0, _FAR
     while far - near > _PRECISION:
         middle = (near + far) / 2
-        near, far = (middle, far) if _holds(fspa, expression, f"distance({target})", middle, params) else (near, middle)
+        near, far = (middle, far) if _holds(fspa, expression, distance, middle, params) else (near, middle)
     return far
 
 
