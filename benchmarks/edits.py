@@ -173,7 +173,7 @@ def judge_edit(suite: Suite, case: Case) -> Record:
     now, before = result.report.figures, result.report.baseline
     if now is None or before is None:
         return {"failed": "; ".join(result.report.reasons)}
-    pairs = zip(result.report.accounts, reference.accounts, strict=False)
+    pairs = zip(result.report.episodes, reference.episodes, strict=False)
     return {
         "verdict": result.report.verdict,
         "certain": result.report.certain,

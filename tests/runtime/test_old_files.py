@@ -37,7 +37,7 @@ def test_an_old_policy_computes_the_same_logits() -> None:
 
 def test_an_old_baseline_is_read_whole(tmp_path: Path) -> None:
     references = read_baseline(OLD / "room.baseline.json")
-    assert [[account.summary.success for account in reference.accounts] for reference in references] == [
+    assert [[episode.summary.success for episode in reference.episodes] for reference in references] == [
         [False, True, True, True],
         [True],
     ]

@@ -409,7 +409,7 @@ def test_a_checkpoint_with_unusual_values_is_read_or_rejected(
 
 @cache
 def _baseline() -> dict[str, Any]:
-    """The shipped baseline, reduced to two references with two accounts each."""
+    """The shipped baseline, reduced to two references with two episodes each."""
     baseline: dict[str, Any] = json.loads(
         (FOLDER / "regression" / "suite" / "shipped" / "suite.baseline.json").read_text("utf-8")
     )

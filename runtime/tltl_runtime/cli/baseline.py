@@ -116,12 +116,12 @@ def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Ref
     from tltl_runtime.regression.verdict.baseline_run import verdict_if_unchanged
 
     reference = recorded.reference
-    played, passed, count = reference.played, _success_count(reference), len(reference.accounts)
+    played, passed, count = reference.played, _success_count(reference), len(reference.episodes)
     before = _older_reference(reference, older)
     if reference in older and not fresh:
         note = "  (as before)"
     else:
-        note = f"; before: {_success_count(before)} of {len(before.accounts)}" if before else ""
+        note = f"; before: {_success_count(before)} of {len(before.episodes)}" if before else ""
     click.echo(plain_text(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + note)
     if recorded.outdated:
         click.echo(plain_text(f"    {recorded.outdated}"), err=True)
@@ -133,7 +133,7 @@ def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Ref
 
 
 def _success_count(reference: Reference) -> int:
-    return sum(episode.summary.success for episode in reference.accounts)
+    return sum(episode.summary.success for episode in reference.episodes)
 
 
 def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:

@@ -11,7 +11,7 @@ import click
 
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
-from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.cli.support.sensor_options import sensor_options
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.support.number_text import duration, share
 from tltl_runtime.training.files.choices import Method
@@ -117,7 +117,7 @@ Watching, from another terminal:
     help="The number of processes that play (0: one per core), or `ray` for a Ray cluster.",
 )
 @click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="The device of the network.")
-@senses_options
+@sensor_options
 @click.option("--print-config", is_flag=True, help="Print all settings as a file for --config, and exit.")
 def command(
     spec: str | None,
@@ -226,8 +226,8 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     }
     fate = ", and ".join(fates[name] for name in files)
     kept = "these files as they are" if len(files) > 1 else "this file as it is"
-    ways = f"; Ctrl-C before the end of its search leaves {kept}" if run.settings.searches else ""
-    yield f"there is no {CHECKPOINT} in {run.folder}: the training starts again, {fate}{ways}"
+    warning = f"; Ctrl-C before the end of its search leaves {kept}" if run.settings.searches else ""
+    yield f"there is no {CHECKPOINT} in {run.folder}: the training starts again, {fate}{warning}"
 
 
 def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[str]:

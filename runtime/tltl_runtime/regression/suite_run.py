@@ -191,9 +191,9 @@ def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tup
     identity = replace(prepared.played, variant=case.reference)
     reference = reference_of(references, identity, suite)
     check_states(reference, prepared.setup.fspa, suite)
-    if len(reference.accounts) < case.episodes:
+    if len(reference.episodes) < case.episodes:
         title = (
-            f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, but {case.episodes} are required"
+            f"the baseline of `{case.name}` has {len(reference.episodes)} episodes, but {case.episodes} are required"
         )
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
     return prepared, reference
@@ -261,7 +261,7 @@ def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
     """
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
-    successes = [episode.summary.index for episode in report.accounts if episode.summary.success]
+    successes = [episode.summary.index for episode in report.episodes if episode.summary.success]
     mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
     file_names = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
     report = replace(report, recordings=tuple(file_names.items()))

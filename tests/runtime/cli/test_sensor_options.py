@@ -8,7 +8,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.cli.support.sensor_options import sensor_options
 
 
 def parsed(*arguments: str) -> tuple[Any, str]:
@@ -16,7 +16,7 @@ def parsed(*arguments: str) -> tuple[Any, str]:
     received: list[Any] = []
 
     @click.command()
-    @senses_options
+    @sensor_options
     def command(sensors: dict[str, Any]) -> None:
         received.append(sensors)
 

@@ -27,7 +27,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 def test_a_baseline_plays_all_episodes_of_each_reference_once(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
     references = [recorded.reference for recorded in record_baseline(suite, 1, played)]
-    assert [(reference.played.spec, reference.played.variant, len(reference.accounts)) for reference in references] == [
+    assert [(reference.played.spec, reference.played.variant, len(reference.episodes)) for reference in references] == [
         ("easy", "v0", 50),
         ("soon", "v0", 50),
     ]
@@ -39,7 +39,7 @@ def test_a_reference_has_the_most_episodes_that_a_case_asks_for(game: Path) -> N
     edit("game.toml", 'level = "room.toml"\nvariant = "v1"', 'level = "room.toml"\nepisodes = 30\nvariant = "v1"')
     edit("game.toml", "episodes = 50", "episodes = 25")
     references = [recorded.reference for recorded in record_baseline(read_suite(Path("game.toml")), 1, Played())]
-    assert [(reference.played.spec, len(reference.accounts)) for reference in references] == [
+    assert [(reference.played.spec, len(reference.episodes)) for reference in references] == [
         ("easy", 30),
         ("soon", 25),
     ]
@@ -75,7 +75,7 @@ def test_the_verdict_of_a_case_if_nothing_changes(game: Path) -> None:
     assert verdict_if_unchanged(suite, hopeless, bad) == "fail"
     sometimes_failing = replace(
         good,
-        accounts=tuple(changed(explained, success=explained.summary.index % 10 > 0) for explained in good.accounts),
+        episodes=tuple(changed(explained, success=explained.summary.index % 10 > 0) for explained in good.episodes),
     )
     assert verdict_if_unchanged(suite, easy, sometimes_failing) == "review", "nine of ten are too few to be certain"
     assert verdict_if_unchanged(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"
@@ -85,7 +85,7 @@ def test_a_stopped_baseline_resumes(game: Path) -> None:
     suite, path = read_suite(Path("game.toml")), Path("new.json")
     with closing(record_and_write_baseline(suite, path, 1, Played())) as stopped:
         first = next(stopped)
-    assert ([case.name for case in first.cases], len(first.reference.accounts)) == (["room:v0", "room:v1"], 50)
+    assert ([case.name for case in first.cases], len(first.reference.episodes)) == (["room:v0", "room:v1"], 50)
     assert not path.exists()
     played = Played()
     references = [recorded.reference for recorded in record_and_write_baseline(suite, path, 1, played)]

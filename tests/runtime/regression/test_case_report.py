@@ -31,8 +31,8 @@ def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) ->
     now = some_episodes(47, 3)
 
     def headline(before: int) -> str:
-        compared = replace(reference, accounts=tuple(some_episodes(before, 50 - before)))
-        judgement = judge(summaries_of(now), summaries_of(compared.accounts), 50, ready_case.case.thresholds, 0.05)
+        compared = replace(reference, episodes=tuple(some_episodes(before, 50 - before)))
+        judgement = judge(summaries_of(now), summaries_of(compared.episodes), 50, ready_case.case.thresholds, 0.05)
         assert judgement is not None and judgement.verdict == "review"
         return report_on(
             JudgedCase(ready_case, compared, judgement, tuple(CaseEpisode(explained, b"") for explained in now))

@@ -338,9 +338,9 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: StealthLevel
 
 def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: StealthLevel, fspa: Fspa) -> None:
     not_yet = NearestMiss("near(s1)", -0.4, MIDDLE, "s1", 2.5)
-    account_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
+    episode_fields = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
     now = [
-        an_episode(index, False, states=states_after(fspa, 0), arrived=index < 14, **account_fields)
+        an_episode(index, False, states=states_after(fspa, 0), arrived=index < 14, **episode_fields)
         for index in range(25)
     ]  # type: ignore[arg-type]
     end = sentences(level, fspa, now)[1]

@@ -88,7 +88,7 @@ def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
 
 
 def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
-    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(summaries(2)), accounts=tuple(some_episodes(1)))
+    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(summaries(2)), episodes=tuple(some_episodes(1)))
     report_document = document(suite(case("a")), [report], complete=True)
     assert set(rows("field")) - {"tltl"} == set(report_document)
     (case_document,) = report_document["cases"]

@@ -138,7 +138,7 @@ def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
     assert result.trained.shortest == 1 and result.best is None
     assert result.figures.pass_rate == 1.0 and result.rate_interval[0] >= 0.85
     episode = read_episode(run.folder / EPISODE)
-    assert episode.seed not in {explained.summary.seed for explained in easy.report.accounts}
+    assert episode.seed not in {explained.summary.seed for explained in easy.report.episodes}
     (run.folder / EPISODE).unlink()
     assert retraining_result(game, easy, run, 1, lambda *_: None) == result
     assert (run.folder / EPISODE).is_file(), "what was removed is played again"
@@ -146,8 +146,8 @@ def test_a_learned_level_is_reported_as_learned(game: Suite) -> None:
 
 def test_a_success_of_the_case_itself_shows_that_the_level_is_feasible(game: Suite) -> None:
     *_, hopeless = judged(game)
-    explained_episodes = (changed(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
-    lucky = replace(hopeless, report=replace(hopeless.report, accounts=explained_episodes))
+    explained_episodes = (changed(hopeless.report.episodes[0], success=True), *hopeless.report.episodes[1:])
+    lucky = replace(hopeless, report=replace(hopeless.report, episodes=explained_episodes))
     assert retraining_result(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
 
 

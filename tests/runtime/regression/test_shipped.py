@@ -31,8 +31,8 @@ def test_the_baseline_matches_the_policy_and_the_spec(case: Case) -> None:
     played = prepare_case(case, SUITE.seed, Variant(case.reference)).played
     reference = reference_of(read_baseline(SUITE.baseline), played, SUITE)
     assert reference.played.level_hash == played.level_hash, "record it again"
-    assert len(reference.accounts) == case.episodes
-    passed = sum(explained.summary.success for explained in reference.accounts)
+    assert len(reference.episodes) == case.episodes
+    passed = sum(explained.summary.success for explained in reference.episodes)
     assert passed / case.episodes >= 0.98
 
 
@@ -43,7 +43,7 @@ def test_an_episode_of_the_baseline_can_be_reproduced() -> None:
     reference = reference_of(read_baseline(SUITE.baseline), ready_case.played, SUITE)
     if reference.played.versions != ready_case.played.versions:
         pytest.skip("the baseline was recorded with other versions")
-    assert to_json(recorded.explained) == to_json(reference.accounts[0])
+    assert to_json(recorded.explained) == to_json(reference.episodes[0])
 
 
 @pytest.fixture(name="judged", scope="module")
@@ -71,7 +71,7 @@ def test_a_closed_corridor_is_named(judged: Mapping[str, CaseReport]) -> None:
     )
     stuck = "runs out of time in the corridor, mostly at `corridor_block_2`"
     ends = [finding for finding in report.explanation if finding.text.startswith(stuck)]
-    assert [len(finding.episodes) for finding in ends] == [len(report.accounts)]
+    assert [len(finding.episodes) for finding in ends] == [len(report.episodes)]
 
 
 @pytest.mark.slow

@@ -83,13 +83,13 @@ def test_cases_are_judged_in_order(
     for done in results:
         report = done.report
         assert not done.is_cached and done.prepared and done.reference
-        assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
-        assert [explained.summary.index for explained in report.accounts] == list(range(played[report.name]))
+        assert report.figures and report.figures.episodes == len(report.episodes) == played[report.name]
+        assert [explained.summary.index for explained in report.episodes] == list(range(played[report.name]))
         assert report.recordings
         folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new") / CASES)
         assert {path.name for path in folder.iterdir()} == {"case.json", *dict(report.recordings).values()}
         for index, name in report.recordings:
-            assert read_episode(folder / name).seed == report.accounts[index].summary.seed
+            assert read_episode(folder / name).seed == report.episodes[index].summary.seed
 
 
 def test_two_runs_give_equal_results(recorded: Path, again: tuple[Path, list[FinishedCase], dict[str, int]]) -> None:
@@ -353,8 +353,8 @@ def test_a_baseline_with_fewer_episodes_is_rejected(game: Path) -> None:
 def test_a_baseline_with_unknown_states_is_rejected_before_anything_is_played(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     easy, hopeless = baseline_of(suite)
-    *explained_episodes, last = hopeless.accounts
-    damaged = replace(hopeless, accounts=(*explained_episodes, changed(last, unmet=99)))
+    *explained_episodes, last = hopeless.episodes
+    damaged = replace(hopeless, episodes=(*explained_episodes, changed(last, unmet=99)))
     with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, but"):
         check_references(suite, suite.cases, (easy, damaged))
 

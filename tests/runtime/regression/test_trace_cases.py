@@ -319,7 +319,7 @@ def test_a_long_trace_has_a_small_picture(tltlc: Run, here: Path) -> None:  # no
 
 def test_a_trace_that_changes_after_the_judgement_is_not_drawn(here: Path) -> None:
     judged = judge_traces(TraceCase("it", "fetch.tltl", ("new",), ("old",)), 0.05, 1, lambda *_: None)
-    explanation = findings(None, judged.fspa, judged.now.accounts, judged.before.accounts)
+    explanation = findings(None, judged.fspa, judged.now.episodes, judged.before.episodes)
     drawn = example_curves(judged, explanation)
     assert {"new/000.csv", "new/030.csv"} <= {curves.name for curves in drawn.values()}
     (here / "new" / "030.csv").write_text((here / "new" / "000.csv").read_text(encoding="utf-8"))

@@ -9,7 +9,7 @@ from typing import Any
 import click
 from gymnasium import spaces
 
-from tltl_runtime.cli.support.sensor_options import senses_options
+from tltl_runtime.cli.support.sensor_options import sensor_options
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.stealth.capabilities.capabilities import check_capabilities, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
@@ -23,7 +23,7 @@ from tltlc.api import Diagnostic, Fspa, TltlError, cli, fileio
 
 
 @click.command()
-@senses_options
+@sensor_options
 @click.option(
     "--plan",
     metavar="FILE.png",
@@ -65,7 +65,7 @@ class _LevelCheck:
     def __call__(self, path: str, variant: str) -> tuple[StealthLevel, Reach]:
         """Check one variant of a level and report the messages; return the level and what can be reached in it."""
         level, level_warnings = read_level(path, variant)
-        senses, reach = Observer(level, self._sensors), compute_reach(level)
+        observer, reach = Observer(level, self._sensors), compute_reach(level)
         warnings = [*level_warnings, *check_height(level, reach)]
         self._add(warnings)
         inputs = self._inputs or self._compile_own_spec(level)
@@ -80,7 +80,7 @@ class _LevelCheck:
                     receiver = f" to `{fspa.name}`" if has_several else ""
                     note = "" if warnings or opened.diagnostics else " (nothing to report)"
                     self._say(f"{level.name}:{variant} {_capability_text(level, fspa)}{receiver}{note}")
-        self._say(f"{level.name}: the agent senses {_sensor_text(senses)}")
+        self._say(f"{level.name}: the agent senses {_sensor_text(observer)}")
         return level, reach
 
     def _compile_own_spec(self, level: StealthLevel) -> list[cli.Input]:
@@ -126,14 +126,14 @@ def _capability_text(level: StealthLevel, fspa: Fspa) -> str:
     These are the entities and params that the spec uses, and its signals that are about no entity.
     """
     names = list(used_entities(level, fspa))
-    names += [signal.name for signal in fspa.signals if "(" not in signal.name]
+    names += [signal.name for signal in fspa.signals if not signal.arguments]
     names += [f"{name} = {value:.4g} m" for name, value in params_from_level(level, fspa).items()]
     return f"supplies {', '.join(names)}" if names else "has nothing to supply"
 
 
-def _sensor_text(senses: Observer) -> str:
+def _sensor_text(observer: Observer) -> str:
     """Describe the parts of the observation that depend on the level, with their sizes."""
-    sensors = senses.sensors
+    sensors = observer.sensors
     names = {
         "entities": sensors.entities,
         "variables": sensors.variables,
@@ -141,7 +141,7 @@ def _sensor_text(senses: Observer) -> str:
     }
     parts = [
         f"{key} {' x '.join(map(str, space.shape))} ({', '.join(names[key])})"
-        for key, space in senses.space.spaces.items()
+        for key, space in observer.space.spaces.items()
         if isinstance(space, spaces.Box)
     ]
     return "; ".join(parts) or "nothing of the level"

@@ -158,7 +158,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         return ReportedCase(
             report=case.report,
             fspa=case.traces.fspa,
-            before=case.traces.before.accounts,
+            before=case.traces.before.episodes,
             traces=example_curves(case.traces, case.report.explanation),
         )
     if case.prepared is None or case.reference is None:
@@ -169,7 +169,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         level=case.prepared.level,
         fspa=case.prepared.setup.fspa,
         episodes=episodes,
-        before=case.reference.accounts,
+        before=case.reference.episodes,
         baseline_level=_baseline_level(case.prepared, case.reference),
         curve=_curve(case, folder),
     )

@@ -20,7 +20,7 @@ else:
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def senses_options(command: Function) -> Function:
+def sensor_options(command: Function) -> Function:
     """Add the options ``--entities``, ``--variables``, ``--map`` and their ``--no-`` forms to a command.
 
     The command gets ``sensors``, a mapping for

@@ -50,17 +50,19 @@ def demonstrations_line(summary: ImitationSummary) -> str:
 def search_line(progress: SearchProgress) -> str:
     """Describe in one line the progress of the search for ways to meet the spec."""
     if count := len(progress.lengths):
-        ways = f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(progress.lengths)} steps"
+        demonstrations = (
+            f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(progress.lengths)} steps"
+        )
     else:
-        ways = "no way to meet the spec yet"
+        demonstrations = "no way to meet the spec yet"
     spent = f"{progress.steps:,} steps in {duration(progress.seconds)}"
-    return f"searching: {spent}, {progress.places:,} places, {ways}"
+    return f"searching: {spent}, {progress.places:,} places, {demonstrations}"
 
 
 def search_end(exploration: SearchSettings) -> str:
     """Say in a sentence when the search for ways to meet the spec ends."""
-    ways = "1 way is" if exploration.ways == 1 else f"{exploration.ways} ways are"
-    return f"The search ends when {ways} found, at the latest after {exploration.steps:,} steps."
+    demonstrations = "1 way is" if exploration.ways == 1 else f"{exploration.ways} ways are"
+    return f"The search ends when {demonstrations} found, at the latest after {exploration.steps:,} steps."
 
 
 def search_result_line(progress: SearchProgress) -> str:

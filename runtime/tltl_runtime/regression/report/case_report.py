@@ -53,7 +53,7 @@ class CaseReport:
     - ``mentions`` are the things and regions that the causes and edits mention, without those of
       ``descriptions``: what the designer wrote about the variant's overlays, which are among the edits.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
-    - ``accounts`` are the played episodes, or the judged traces.
+    - ``episodes`` are the played episodes, or the judged traces.
     - ``traces`` are the names of the traces of a case of recorded traces, which has no level and no
       variant: both are empty. It is None for other cases.
 
@@ -76,13 +76,13 @@ class CaseReport:
     descriptions: tuple[str, ...] = ()
     played: Identity | None = None
     reference: Identity | None = None
-    accounts: tuple[ExplainedEpisode, ...] = ()
+    episodes: tuple[ExplainedEpisode, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
     """The index of each recorded episode, with the name of its file."""
     retrained: RetrainingResult | None = None
     """The result of retraining the policy; None if it was not requested or not needed."""
     traces: CaseTraces | None = None
-    told: str = ""
+    chosen_headline: str = ""
     """The headline; if it is empty, the first reason is the headline."""
     fault_at: tuple[str, int] | None = None
     """The file and the line, from 1, of the error because of which the case cannot be played."""
@@ -90,7 +90,7 @@ class CaseReport:
     @property
     def headline(self) -> str:
         """The most important sentence of the report; empty if there is none."""
-        return self.told or next(iter(self.reasons), "")
+        return self.chosen_headline or next(iter(self.reasons), "")
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -102,7 +102,7 @@ def report_on(result: JudgedCase) -> CaseReport:
     """Return the report on a case that was played."""
     case, setup = result.prepared.case, result.prepared.setup
     now = [episode.explained for episode in result.episodes]
-    before = result.reference.accounts
+    before = result.reference.episodes
     level, outdated = result.prepared.level, result.prepared.outdated
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
@@ -129,7 +129,7 @@ def report_on(result: JudgedCase) -> CaseReport:
             *(obstacle.text for obstacle in blocked),
             *statistics[1:],
         ),
-        told=outdated
+        chosen_headline=outdated
         or next((obstacle.text for obstacle in blocked), None)
         or headline(result.judgement, case.thresholds, statistics, most_frequent),
         explanation=findings(level, setup.fspa, now, before),
@@ -138,7 +138,7 @@ def report_on(result: JudgedCase) -> CaseReport:
         descriptions=result.prepared.changes,
         played=result.prepared.played,
         reference=result.reference.played,
-        accounts=tuple(now),
+        episodes=tuple(now),
     )
 
 
@@ -175,7 +175,13 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     # Name the variant as for a level that loads, without the paths of overlay files.
     name = Path(case.level).stem
     return CaseReport(
-        case.name, name, case.variant.title, "fail", causes, told=": ".join(causes[:2]), fault_at=error_location(error)
+        case.name,
+        name,
+        case.variant.title,
+        "fail",
+        causes,
+        chosen_headline=": ".join(causes[:2]),
+        fault_at=error_location(error),
     )
 
 

@@ -72,7 +72,7 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "played": to_json(played),
         "retrained": to_json(report.retrained),
         "traces": to_json(report.traces),
-        "accounts": [_episode(episode) for episode in report.accounts],
+        "accounts": [_episode(episode) for episode in report.episodes],
     }
 
 

@@ -41,23 +41,23 @@ def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[in
 
     A trace that was removed since it was judged, or that now takes other states, is left out.
     """
-    accepted = [account.summary.index for account in judged.now.accounts if account.summary.success]
+    accepted = [trace.summary.index for trace in judged.now.episodes if trace.summary.success]
     wanted = {*(index for finding in findings for index in finding.episodes[:_EXAMPLES]), *accepted[:1]}
     return {index: curves for index in sorted(wanted) for curves in _curves(judged, index)}
 
 
 def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
-    name, account, fspa = judged.now.names[index], judged.now.accounts[index], judged.fspa
+    name, trace, fspa = judged.now.names[index], judged.now.episodes[index], judged.fspa
     with suppress(TltlError):
         data = fileio.read_bytes(name, name, fileio.limits.JUDGED_TRACE.size)
         judge = traces.Judge(fspa, episodes=judged.case.as_episodes, details=True)
         verdict = judge.judge(name, data).verdict
-        arrivals = tuple((arrival.state, arrival.step) for arrival in account.arrivals)
+        arrivals = tuple((arrival.state, arrival.step) for arrival in trace.arrivals)
         if verdict is None or verdict.details is None or verdict.details.arrivals != arrivals:
             return
-        rows = tuple(_atom_values(fspa, name, data, account.summary.steps))
-        failed = trace_end_text(fspa, account.cause, account.by, [account])
-        yield TraceCurves(name, "accepted" if account.summary.success else failed, rows, account.arrivals)
+        rows = tuple(_atom_values(fspa, name, data, trace.summary.steps))
+        failed = trace_end_text(fspa, trace.cause, trace.by, [trace])
+        yield TraceCurves(name, "accepted" if trace.summary.success else failed, rows, trace.arrivals)
 
 
 def _atom_values(fspa: Fspa, name: str, data: bytes, steps: int) -> Iterator[tuple[float, ...]]:

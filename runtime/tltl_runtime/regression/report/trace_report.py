@@ -30,7 +30,7 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
     warnings = (*_warning_texts(judged.now, ""), *_warning_texts(judged.before, " of the baseline"))
     if judgement is None:
         return CaseReport(case.name, "", "", "review", unread, certain=False, traces=names)
-    now, before = judged.now.accounts, judged.before.accounts
+    now, before = judged.now.episodes, judged.before.episodes
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     few = tuple(_too_few_texts(judged))
     statistics = tuple(reasons(judgement, judged.thresholds, summaries, summaries_before, are_traces=True))
@@ -48,10 +48,10 @@ def report_on_traces(judged: JudgedTraces) -> CaseReport:
         baseline=baseline,
         changes=judgement.changes,
         causes=(*few, *unread, *statistics, *warnings),
-        told=next(iter((*few, *(unread if judgement.verdict == "review" else ()))), "")
+        chosen_headline=next(iter((*few, *(unread if judgement.verdict == "review" else ()))), "")
         or headline(judgement, judged.thresholds, statistics, most_frequent),
         explanation=findings(None, fspa, now, before),
-        accounts=now,
+        episodes=now,
         traces=names,
     )
 
@@ -66,7 +66,7 @@ def report_on_broken_traces(case: TraceCase, error: TltlError) -> CaseReport:
         "",
         "fail",
         causes,
-        told=": ".join(causes[:2]),
+        chosen_headline=": ".join(causes[:2]),
         fault_at=error_location(error),
         traces=_case_traces(case, name or file, (), ()),
     )
@@ -78,7 +78,7 @@ def _case_traces(case: TraceCase, spec: str, now: tuple[str, ...], before: tuple
 
 def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:
     for traces, where in ((judged.now, ""), (judged.before, " in the baseline")):
-        if (count := len(traces.accounts)) < LEAST_EPISODES:
+        if (count := len(traces.episodes)) < LEAST_EPISODES:
             yield f"only {count} trace{'s' * (count != 1)}{where}: a verdict needs {LEAST_EPISODES}"
 
 

@@ -191,12 +191,12 @@ def retraining_result(
     # Use another seed: the original policy has already played the episodes of the suite's seed.
     setup = replace(finished.prepared.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
     prepared = replace(finished.prepared, setup=setup, case=replace(finished.prepared.case, policy=run.folder))
-    inputs = _inputs(prepared, weights_hash(policy), training, error, finished.report.accounts)
+    inputs = _inputs(prepared, weights_hash(policy), training, error, finished.report.episodes)
     if cached := _cached_result(run.folder, inputs):
         return cached
     played, recording, interval = _play_until_certain(prepared, error, pool, on_episode)
     thresholds = prepared.case.thresholds
-    met = sum(episode.summary.success for episode in (*played, *finished.report.accounts))
+    met = sum(episode.summary.success for episode in (*played, *finished.report.episodes))
     outcome = outcome_of(training, interval[0], thresholds, met)
     overall, best = figures_of(summaries_of(played)), _best(played, setup.fspa)
     place = f"{FOLDER}/{run.folder.name}"

@@ -57,13 +57,13 @@ class Identity:
 class Reference:
     """The recorded episodes that cases are compared with.
 
-    ``played`` identifies what was played. ``accounts`` are all episodes, in order from episode 0.
+    ``played`` identifies what was played. ``episodes`` are all of them, in order from episode 0.
     ``texts`` are pairs of the name of a level's file, as in ``played.files``, and its text.
     ``sources`` is the hash of the code that played, or empty if unknown.
     """
 
     played: Identity
-    accounts: tuple[ExplainedEpisode, ...]
+    episodes: tuple[ExplainedEpisode, ...]
     texts: tuple[tuple[str, str], ...] = ()
     sources: str = ""
 
@@ -71,7 +71,7 @@ class Reference:
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite. Raises TltlError, TLT0005, if the file cannot be written."""
     references_without_texts = tuple(
-        _StoredReference(reference.played, reference.accounts, reference.sources) for reference in references
+        _StoredReference(reference.played, reference.episodes, reference.sources) for reference in references
     )
     document = _json({"format": FORMAT, "version": VERSION, "references": to_json(references_without_texts)})
     # Each episode and each line of a text gets its own line, so that diffs of the file are readable.
@@ -221,7 +221,7 @@ def reference_of(references: tuple[Reference, ...], identity: Identity, suite: S
 def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
     """Raise TltlError, TLT0902, if an episode of ``reference`` has a state that the automaton lacks."""
     count, played = len(fspa.states), reference.played
-    for episode in reference.accounts:
+    for episode in reference.episodes:
         if (state := max(_states(episode))) >= count:
             where = f"episode {episode.summary.index} of `{played.level}:{played.variant}`"
             why = f"{where} has the state {state}, but the states of `{played.spec}` are 0 to {count - 1}"
@@ -249,7 +249,8 @@ def baseline_command(suite: Suite) -> str:
 class _StoredReference:
     """A reference as the file of a baseline stores it: without the texts of the level's files.
 
-    The file stores all texts in one table, because levels and variants share files.
+    The file stores all texts in one table, because levels and variants share files. It stores the
+    episodes under the key ``accounts``.
     """
 
     played: Identity

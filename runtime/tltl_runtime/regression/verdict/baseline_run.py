@@ -102,7 +102,7 @@ def partial_path(path: Path) -> Path | None:
 
 def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verdict:
     """Return the verdict that a case gets if it plays exactly the episodes of its reference."""
-    summaries, error = summaries_of(reference.accounts), suite.error / len(suite.cases)
+    summaries, error = summaries_of(reference.episodes), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
         if judgement := judge(summaries[:played], summaries, case.episodes, case.thresholds, error):
             return judgement.verdict
@@ -150,7 +150,7 @@ def _record_references(
         matches = [
             reference
             for reference in finished
-            if reference.played == longest.played and len(reference.accounts) == longest.case.episodes
+            if reference.played == longest.played and len(reference.episodes) == longest.case.episodes
         ]
         reference = matches[0] if matches else _play_reference(longest, pool, on_episode)
         outdated = next((prepared.outdated for prepared in group if prepared.outdated), None)

@@ -41,7 +41,7 @@ class TraceSet:
     """
 
     names: tuple[str, ...]
-    accounts: tuple[ExplainedEpisode, ...]
+    episodes: tuple[ExplainedEpisode, ...]
     unread: tuple[tuple[str, Diagnostic], ...]
     warnings: tuple[tuple[str, Diagnostic], ...] = ()
     others: tuple[str, ...] = ()
@@ -108,9 +108,9 @@ def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: Trac
     A trace that cannot be judged may or may not meet the spec: the interval of the pass rate allows for
     both, and a verdict that depends on it is ``review``.
     """
-    if not now.accounts or not before.accounts:
+    if not now.episodes or not before.episodes:
         return None
-    summaries, summaries_before = summaries_of(now.accounts), summaries_of(before.accounts)
+    summaries, summaries_before = summaries_of(now.episodes), summaries_of(before.episodes)
     judgement = judge(summaries, summaries_before, len(summaries), thresholds, error, paired=False)
     passed, unread = sum(summary.success for summary in summaries), len(now.unread)
     failed = len(summaries) - passed
@@ -128,14 +128,16 @@ def _trace_set(
     read = [trace for trace in judged if trace.verdict is not None]
     return TraceSet(
         tuple(trace.name for trace in read),
-        tuple(_accounts(fspa, read, as_episodes=as_episodes)),
+        tuple(_explained_traces(fspa, read, as_episodes=as_episodes)),
         tuple((trace.name, trace.diagnostics[0]) for trace in judged if trace.verdict is None),
         tuple((trace.name, trace.diagnostics[0]) for trace in read if trace.diagnostics),
         others,
     )
 
 
-def _accounts(fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool) -> Iterator[ExplainedEpisode]:
+def _explained_traces(
+    fspa: Fspa, judged: Sequence[traces.JudgedTrace], *, as_episodes: bool
+) -> Iterator[ExplainedEpisode]:
     for index, trace in enumerate(judged):
         assert trace.verdict is not None
         yield _explained(fspa, index, trace.verdict, limit=fspa.limit_steps if as_episodes else None)

@@ -149,7 +149,7 @@ def judge_case(
     episode. ``error`` is the allowed probability of a wrong verdict on this case.
     """
     played: list[CaseEpisode] = []
-    before = summaries_of(reference.accounts)
+    before = summaries_of(reference.episodes)
     with closing(play_episodes(prepared, pool)) as playing:
         for episode in playing:
             played.append(episode)

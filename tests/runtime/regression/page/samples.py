@@ -89,7 +89,7 @@ def reported(
         figures=figures_of(summaries_of(explained_episodes)),
         baseline=figures_of(summaries_of(baseline_episodes)),
         explanation=explanation,
-        accounts=tuple(explained_episodes),
+        episodes=tuple(explained_episodes),
     )
     indices = range(len(now)) if recorded is None else recorded
     return ReportedCase(

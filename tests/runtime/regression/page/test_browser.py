@@ -207,7 +207,7 @@ def test_an_invalid_step_opens_the_nearest_valid_step(browser: Browser, file: Pa
 def test_an_episode_is_selected_and_closed(tab: Tab) -> None:
     which = tab.locator(f"#{CASE} .which")
     which.scroll_into_view_if_needed()
-    tab.locator(f"#{CASE} .map .ways polyline").first.wait_for(state="attached")
+    tab.locator(f"#{CASE} .map .trajectories polyline").first.wait_for(state="attached")
     which.select_option("1")
     tab.locator(f"#{CASE} .map .player-body").wait_for(state="attached")
     assert tab.locator(f"#{CASE} .map .ends path").count() == 0
@@ -226,8 +226,8 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     def ends(kind: str) -> int:
         return section.locator(f".map .ends path.{kind}").count()
 
-    failed = sum(not explained.summary.success for explained in case.report.accounts)
-    assert (ends("violation") + ends("limit"), ends("success")) == (failed, len(case.report.accounts) - failed)
+    failed = sum(not explained.summary.success for explained in case.report.episodes)
+    assert (ends("violation") + ends("limit"), ends("success")) == (failed, len(case.report.episodes) - failed)
     assert section.locator(".map .ends a").count() == len(case.episodes)
     assert (
         section.locator(".counts.now").first.is_visible() and not section.locator(".counts.before").first.is_visible()
@@ -238,7 +238,7 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
         section.locator(".counts.before").first.is_visible() and not section.locator(".counts.now").first.is_visible()
     )
     section.get_by_label("time spent").check()
-    assert section.locator(".map .cell.time").count() > 3 and section.locator(".map .way").count() == 0
+    assert section.locator(".map .cell.time").count() > 3 and section.locator(".map .trajectory").count() == 0
     section.get_by_label("failed ends").check()
     assert section.locator(".map .cell.failed").count() == 0  # no episode of the baseline failed
     section.get_by_label("now", exact=True).check()
@@ -251,14 +251,16 @@ def test_the_legend_lists_the_states_whose_colours_are_drawn(tab: Tab) -> None:
     case = samples.suite().cases[1]
     section = tab.locator(f"#{CASE}")
     section.scroll_into_view_if_needed()
-    section.locator(".map .way").first.wait_for(state="attached")
-    colours = section.locator(".map .way").evaluate_all("ways => ways.map((way) => way.getAttribute('stroke'))")
-    patches = section.locator(".legend.shown rect.way")
+    section.locator(".map .trajectory").first.wait_for(state="attached")
+    colours = section.locator(".map .trajectory").evaluate_all(
+        "lines => lines.map((line) => line.getAttribute('stroke'))"
+    )
+    patches = section.locator(".legend.shown rect.trajectory")
     shown = patches.evaluate_all("patches => patches.map((patch) => patch.getAttribute('fill'))")
     assert set(shown) == set(colours) and len(shown) == len(set(shown))
     words = section.locator(".legend.shown").inner_text()
     left_out = {
-        explained.arrivals[-1].state for explained in case.report.accounts if explained.summary.end == "violation"
+        explained.arrivals[-1].state for explained in case.report.episodes if explained.summary.end == "violation"
     }
     assert left_out and not any(f"state {state}:" in words for state in left_out)
 
@@ -287,7 +289,7 @@ def test_the_paths_of_the_baseline_are_drawn_on_its_level(browser: Browser, chan
         expect(now).to_be_hidden()
         expect(before).to_be_visible()
         expect(before).to_contain_text("The level as it was when the baseline was recorded: cover_and_hide v0.")
-        assert before.locator(".way").count() > 0
+        assert before.locator(".trajectory").count() > 0
         tab.locator(f"#{CASE}").get_by_label("time spent").check()
         assert before.locator(".cell.time").count() > 0
         # Opening a recorded episode switches to `now`: only current episodes have recordings.

@@ -172,7 +172,7 @@ def test_south_is_below() -> None:
 def test_layers_are_in_order() -> None:
     root = ElementTree.fromstring(level_map(load_level("branching")))
     layers = [element.get("class") for element in root if element.tag == "g"]
-    assert layers == ["heat", "ways", "ends", "names", "live"]
+    assert layers == ["heat", "trajectories", "ends", "names", "live"]
 
 
 def test_the_key_explains_only_what_is_drawn() -> None:

@@ -177,8 +177,8 @@ def test_names_are_escaped() -> None:
         states=(replace(state, label=label), *case.fspa.states[1:]),
         atoms=tuple(replace(atom, base=EVIL, arguments=()) for atom in case.fspa.atoms),
     )
-    explained_episodes = tuple(replace(explained, by=(EVIL,)) for explained in case.report.accounts)
-    report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), accounts=explained_episodes)
+    explained_episodes = tuple(replace(explained, by=(EVIL,)) for explained in case.report.episodes)
+    report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), episodes=explained_episodes)
     evil = ReportedCase(report, level, fspa, case.episodes, case.before)
     text = html_report(SuiteReport(EVIL, 0, 0.05, {EVIL: EVIL}, (evil,)))
     plain = html_report(SuiteReport("s", 0, 0.05, {"v": "1"}, (case,)))
@@ -256,9 +256,10 @@ def test_a_level_that_looks_different_from_the_baseline_has_a_second_map() -> No
     assert count == 2 and "The level as it was when the baseline was recorded: cover_and_hide v0." in text
     (data,) = Page(text).data["cases"]
     first = [
-        sum(unstepped(data[when]["ways"][0]["x"])[:1]) * data[when]["ways"][0]["unit"] for when in ("now", "before")
+        sum(unstepped(data[when]["trajectories"][0]["x"])[:1]) * data[when]["trajectories"][0]["unit"]
+        for when in ("now", "before")
     ]
-    assert first[1] - first[0] == pytest.approx(500, abs=100), "its ways are on its map"
+    assert first[1] - first[0] == pytest.approx(500, abs=100), "its trajectories are on its map"
     unknown = maps(replace(case, baseline_level=None))
     assert unknown[0] == 1 and "how it was then is no longer known" in unknown[1]
     assert "no longer known" not in maps(replace(case, baseline_level=None, before=()))[1]
@@ -284,7 +285,7 @@ def test_a_page_of_nine_cases_is_smaller_than_seven_megabytes(count: int) -> Non
     explained = samples.explained_of(0, long)
     explained_episodes = tuple(changed(explained, index=index) for index in range(200))
     reported = samples.reported("branching:v0", "pass", [long], [long])
-    report = replace(reported.report, accounts=explained_episodes)
+    report = replace(reported.report, episodes=explained_episodes)
     episodes = dict.fromkeys(range(13), long)
     cases = tuple(
         ReportedCase(

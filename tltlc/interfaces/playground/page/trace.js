@@ -54,7 +54,7 @@ function rowOf(mode, columns, letter, index) {
     element("th", { scope: "row" }, go),
     cells,
     element("td", { class: "at" }),
-    element("td", { class: "said" }),
+    element("td", { class: "step-verdict" }),
     element("td", { class: "progress" }, element("meter", { min: 0, max: 1, "aria-hidden": "true" }), element("span")),
     element("td", { class: "reward" }),
     element("td", {}, remove),
@@ -100,7 +100,7 @@ function fill(row, letter, step, mode, columns) {
   row.classList.toggle("wrong", Boolean(step?.error));
   row.querySelector(".at").textContent = known ? step.state : "";
   const verdict = known ? element("span", { class: `verdict ${step.verdict}` }, step.verdict) : "";
-  row.querySelector(".said").replaceChildren(step?.error ? element("span", { class: "refused" }, "refused") : verdict);
+  row.querySelector(".step-verdict").replaceChildren(step?.error ? element("span", { class: "refused" }, "refused") : verdict);
   row.querySelector("meter").hidden = !known;
   row.querySelector("meter").value = known ? step.progress : 0;
   row.querySelector(".progress span").textContent = known ? shown(step.progress) : "";

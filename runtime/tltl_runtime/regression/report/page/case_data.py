@@ -35,7 +35,7 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
         "slug": slug,
         "map": map_data(level),
         "states": [label_text(fspa, state.id) for state in fspa.states],
-        "now": _episodes_data(level.bounds, case.report.accounts),
+        "now": _episodes_data(level.bounds, case.report.episodes),
         "before": _episodes_data((case.baseline_level or level).bounds, case.before),
         "episodes": [recording_data(index, case.episodes[index]) for index in sorted(case.episodes)],
     }
@@ -43,7 +43,7 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
 def _episodes_data(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
     return {
-        "ways": [_trajectory(bounds, episode) for episode in episodes],
+        "trajectories": [_trajectory(bounds, episode) for episode in episodes],
         "time": _heat_data(time_spent(bounds, episodes)),
         "failed": _heat_data(failed_ends(bounds, episodes)),
     }

@@ -114,7 +114,7 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
     if fspa is None or automaton is None:
         return None
     noun = "traces" if case.report.traces else "episodes"
-    now, before = traffic(case.report.accounts, noun), traffic(case.before, noun)
+    now, before = traffic(case.report.episodes, noun), traffic(case.before, noun)
     return _Drawings(
         automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
         notes=automaton.notes,
@@ -122,6 +122,6 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
         player=None if level is None else player_panel(fspa, case.episodes),
         traces=trace_charts(fspa, case.traces, slug) if case.traces else None,
         curves=progress_curves(case.episodes) if case.episodes else None,
-        distribution=progress_distribution(case.report.accounts, case.before),
+        distribution=progress_distribution(case.report.episodes, case.before),
         table=counts_table(fspa, now, before),
     )

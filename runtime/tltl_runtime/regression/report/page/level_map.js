@@ -33,7 +33,7 @@ class LevelMap {
     this.facts = facts;
     this.colours = colours;
     this.layers = Object.fromEntries(
-      ["heat", "ways", "ends", "live"].map((name) => [name, svg.querySelector(`g.${name}`)]),
+      ["heat", "trajectories", "ends", "live"].map((name) => [name, svg.querySelector(`g.${name}`)]),
     );
     this.barriers = [...svg.querySelectorAll(".barrier")];
     this.switches = [...svg.querySelectorAll(".switch")];
@@ -50,25 +50,26 @@ class LevelMap {
    * Draws the trajectories of episodes, coloured by state, with marks where they ended.
    * `link` maps the index of an episode to its address, or to "".  Returns the set of the states whose colours are drawn.
    */
-  showTrajectories(ways, link) {
+  showTrajectories(trajectories, link) {
     this.clear();
     const drawn = new Set();
-    const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, ways.length)));
-    for (const way of ways) {
-      const [xs, ys] = [way.x, way.y].map((packed) => unstepped(packed).map((value) => value * way.unit));
+    const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, trajectories.length)));
+    for (const trajectory of trajectories) {
+      const { x, y, unit } = trajectory;
+      const [xs, ys] = [x, y].map((packed) => unstepped(packed).map((value) => value * unit));
       let from = 0;
-      for (const [state, count] of way.state) {
+      for (const [state, count] of trajectory.state) {
         const to = Math.min(from + count, xs.length - 1);
         if (to > from) drawn.add(state);
-        this.#line(this.layers.ways, xs.slice(from, to + 1), ys.slice(from, to + 1), state, opacity);
+        this.#line(this.layers.trajectories, xs.slice(from, to + 1), ys.slice(from, to + 1), state, opacity);
         from += count;
       }
     }
-    for (const way of ways) {
-      const by = way.by.length ? `, ${way.by.join(", ")}` : "";
-      const address = link(way.index);
-      const place = way.place.flatMap(unstepped);
-      const mark = this.#mark(way.end, place, `episode ${way.index}: ${way.cause}${by}`, address);
+    for (const trajectory of trajectories) {
+      const by = trajectory.by.length ? `, ${trajectory.by.join(", ")}` : "";
+      const address = link(trajectory.index);
+      const place = trajectory.place.flatMap(unstepped);
+      const mark = this.#mark(trajectory.end, place, `episode ${trajectory.index}: ${trajectory.cause}${by}`, address);
       if (!address) mark.classList.add("unrecorded");
     }
     return drawn;
@@ -151,7 +152,7 @@ class LevelMap {
   #line(layer, xs, ys, state, opacity) {
     if (xs.length < 2) return;
     const points = xs.map((x, place) => `${x},${ys[place]}`).join(" ");
-    draw(layer, "polyline", { class: "way", points, stroke: this.colours[state], "stroke-opacity": opacity });
+    draw(layer, "polyline", { class: "trajectory", points, stroke: this.colours[state], "stroke-opacity": opacity });
   }
 
   #mark(end, [x, y], title, address) {

@@ -36,16 +36,16 @@ class CaseView {
     this.player.close();
     this.isDrawn = true;
     const all = this.facts[when];
-    if (shown === "ways") {
+    if (shown === "trajectories") {
       const recorded = new Set(when === "now" ? this.facts.episodes.map((episode) => episode.index) : []);
       const link = (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : "");
-      this.#legendOfTrajectories(all, this.maps[when].showTrajectories(all.ways, link));
+      this.#legendOfTrajectories(all, this.maps[when].showTrajectories(all.trajectories, link));
     } else {
       // Now and before have the same scale, so that their maps can be compared.
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
       this.maps[when].showHeat(all[shown], most, shown);
       const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
-      const scope = this.facts.before.ways.length ? ", now or in the baseline" : "";
+      const scope = this.facts.before.trajectories.length ? ", now or in the baseline" : "";
       const text = all[shown].cells.length ? `strongest${scope}: ${unit}` : "no episode failed";
       this.#fillLegend([[`cell ${shown}`, "", text]]);
     }
@@ -66,7 +66,7 @@ class CaseView {
 
   /** Fills in the legend of trajectories; `states` are the states whose colours are drawn. */
   #legendOfTrajectories(all, states) {
-    const ends = Object.keys(MARKS).map((end) => [end, all.ways.filter((way) => way.end === end).length]);
+    const ends = Object.keys(MARKS).map((end) => [end, all.trajectories.filter((drawn) => drawn.end === end).length]);
     this.#fillLegend([
       ...this.#states([...states].sort((a, b) => a - b)),
       ...ends.filter(([, count]) => count).map(([end, count]) => [`end ${end}`, "", `${count} ${MARKS[end].name}`]),
@@ -86,7 +86,7 @@ class CaseView {
   }
 
   #states(states) {
-    return states.map((state) => ["way", this.maps.now.colours[state], `state ${state}: ${this.facts.states[state]}`]);
+    return states.map((state) => ["trajectory", this.maps.now.colours[state], `state ${state}: ${this.facts.states[state]}`]);
   }
 
   /** Each row has a class, a colour and a text.  Ends and bodies are drawn as marks, the rest as patches of colour. */

@@ -26,7 +26,7 @@ from tltl_runtime.stealth.rendering.plan import patrol_path
 from tltl_runtime.stealth.world.geometry import box_around
 
 _MARGIN: Final = 30
-_LAYERS: Final = ("heat", "ways", "ends", "live")
+_LAYERS: Final = ("heat", "trajectories", "ends", "live")
 """The layers that the page's script draws into, from bottom to top."""
 
 _SIGNS: Final = {
@@ -46,7 +46,7 @@ _SIGNS: Final = {
 
 
 def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """Draw the map of a level. The page's script fills its layers ``heat``, ``ways``, ``ends`` and ``live``.
+    """Draw the map of a level. The page's script fills its layers ``heat``, ``trajectories``, ``ends`` and ``live``.
 
     Things and regions that the report mentions are highlighted.
     """
