@@ -115,7 +115,7 @@ def command(
         from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
         from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up
-        from tltl_runtime.evaluation.player import EpisodeRequest, PolicyPlayer
+        from tltl_runtime.evaluation.player import EpisodeRequest, PlayerName
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
         from tltl_runtime.stealth.capabilities.feasible import reach_warnings
         from tltl_runtime.stealth.levels.file import load_level
@@ -131,7 +131,7 @@ def command(
         setup = set_up(loaded_policy, name, variant, spec, seed, recording)
         # The spec of a level often has the level's name: do not repeat it.
         labels = tuple(dict.fromkeys((loaded_policy.card.level, loaded_policy.card.fspa.name)))
-        setup = replace(setup, player=PolicyPlayer(labels, sha256))
+        setup = replace(setup, player=PlayerName(labels, sha256))
         report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
         command_line = _replay_command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, command_line, folder, json_file)

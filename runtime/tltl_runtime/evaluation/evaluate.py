@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
+from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, PolicyPlayer, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.level_name import Variant, parse_variant
@@ -112,7 +112,7 @@ def results(
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
-        yield from local_results(partial(Player, setup), requests, workers, setup.seed, replay_command)
+        yield from local_results(partial(PolicyPlayer, setup), requests, workers, setup.seed, replay_command)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 

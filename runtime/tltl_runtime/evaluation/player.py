@@ -41,8 +41,8 @@ class EpisodeRequest:
 
 
 @record
-class PolicyPlayer:
-    """The policy of an evaluation, as recordings name it.
+class PlayerName:
+    """The name that recordings give to the policy of an evaluation.
 
     ``labels`` say what the policy was trained for, and ``sha256`` is the hash of its file. Both may be
     empty.
@@ -51,14 +51,14 @@ class PolicyPlayer:
     labels: tuple[str, ...] = ()
     sha256: str = ""
 
-    def name(self, request: EpisodeRequest) -> str:
+    def text(self, request: EpisodeRequest) -> str:
         """Return the name of the player in the recording of an episode."""
         labels = "".join(f" {label}" for label in self.labels)
         return f"{_POLICY}{labels}{self._hash_mark}, {CHOICES[request.sampled]}, episode {request.index}"
 
-    def is_named(self, name: str) -> bool:
-        """Whether :meth:`name` made ``name`` for a policy with this hash, whatever its labels."""
-        return name.startswith(_POLICY) and f"{self._hash_mark}, " in name
+    def is_of(self, player: str) -> bool:
+        """Whether ``player`` is the name of a policy with this hash, whatever its labels."""
+        return player.startswith(_POLICY) and f"{self._hash_mark}, " in player
 
     @property
     def _hash_mark(self) -> str:
@@ -66,9 +66,9 @@ class PolicyPlayer:
         return f" {self.sha256[:_HASH_DIGITS]}" if self.sha256 else ""
 
 
-def is_labelled_policy(name: str) -> bool:
-    """Whether a player is a policy with labels or a hash, by the name that :class:`PolicyPlayer` made."""
-    return name.startswith(f"{_POLICY} ")
+def is_labelled_policy(player: str) -> bool:
+    """Whether ``player`` is the name of a policy with labels or a hash, as :class:`PlayerName` makes it."""
+    return player.startswith(f"{_POLICY} ")
 
 
 @record
@@ -88,7 +88,7 @@ class Setup:
     seed: int
     params: Mapping[str, float] = EMPTY
     recorded: RecordMode | None = None
-    player: PolicyPlayer = PolicyPlayer()
+    player: PlayerName = PlayerName()
 
 
 @record
@@ -115,7 +115,7 @@ class EpisodePlayer(Protocol):
         """Free the environment and its resources."""
 
 
-class Player:
+class PolicyPlayer:
     """Lets the policy of an evaluation play the requested episodes, one after the other.
 
     Each player has an environment of its own.
@@ -145,7 +145,7 @@ class Player:
             summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled)
         if self._recorder is None:
             return PlayedEpisode(request, summary)
-        episode = replace(self._recorder.episode, player=setup.player.name(request))
+        episode = replace(self._recorder.episode, player=setup.player.text(request))
         is_recorded = setup.recorded == "all" or (setup.recorded == "failures" and not summary.success)
         recording = self._game.episode_bytes(episode) if is_recorded else b""
         return PlayedEpisode(request, summary, trajectory(episode), recording)

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any, Final
 
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, Setup
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, PolicyPlayer, Setup
 from tltl_runtime.evaluation.scheduler import WorkerLostError
 from tltl_runtime.vector.cluster import cluster, free_cores, wait_for_actors
 
@@ -71,15 +71,15 @@ class RayWorker:
 
 
 class _EvaluationActor:
-    """A Ray actor that plays episodes. It makes its :class:`Player` in the first call of ``play``.
+    """A Ray actor that plays episodes. It makes its :class:`PolicyPlayer` in the first call of ``play``.
 
     If that call fails, Ray reports the error. If a constructor failed, Ray would report only that
     it failed.
     """
 
     def __init__(self) -> None:
-        self._player: Player | None = None
+        self._player: PolicyPlayer | None = None
 
     def play(self, setup: Setup, request: EpisodeRequest) -> PlayedEpisode:
-        self._player = self._player or Player(setup)
+        self._player = self._player or PolicyPlayer(setup)
         return self._player.play(request)

@@ -81,7 +81,7 @@ class RecordedEpisode(Protocol):
         """How the episode ended, for example ``success`` or ``violation``."""
 
 
-Kind = Literal["success", "killed", "violated", "blocked", "limit", "no way", "stopped"]
+EndKind = Literal["success", "killed", "violated", "blocked", "limit", "no way", "stopped"]
 """How an episode ended.
 
 ``killed``: the player died. ``violated``: the spec was broken, but the player lived. ``blocked``:
@@ -102,7 +102,7 @@ class Cause:
     that violated the spec, whatever the ``kind``. It is empty if the spec was not violated.
     """
 
-    kind: Kind
+    kind: EndKind
     by: tuple[str, ...]
     time: float
     place: Point

@@ -16,7 +16,7 @@ from tests.runtime.regression.game import SUITE, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.cli.baseline import _advice
-from tltl_runtime.evaluation.player import Player
+from tltl_runtime.evaluation.player import PolicyPlayer
 from tltl_runtime.regression.suite.suite import Case, Thresholds
 from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.support.source_hash import sources_hash
@@ -106,7 +106,7 @@ def test_a_stopped_baseline_leaves_the_old_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     before = _with_many_episodes()
-    signal_at_call(monkeypatch, Player, "play", signal.SIGINT)
+    signal_at_call(monkeypatch, PolicyPlayer, "play", signal.SIGINT)
     result = with_signals("baseline", "game.toml", *ONE)
     _check_old_baseline(before, result.status, result.err)
 

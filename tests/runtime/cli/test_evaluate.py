@@ -22,7 +22,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.evaluate import evaluate
-from tltl_runtime.evaluation.player import Player
+from tltl_runtime.evaluation.player import PolicyPlayer
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.policy import Policy
@@ -107,9 +107,11 @@ def test_a_policy_deleted_during_the_evaluation_is_still_identified(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    copied_policy, play = tmp_path / "mine.safetensors", Player.play
+    copied_policy, play = tmp_path / "mine.safetensors", PolicyPlayer.play
     shutil.copy(policy, copied_policy)
-    monkeypatch.setattr(Player, "play", lambda self, task: copied_policy.unlink(missing_ok=True) or play(self, task))
+    monkeypatch.setattr(
+        PolicyPlayer, "play", lambda self, request: copied_policy.unlink(missing_ok=True) or play(self, request)
+    )
     result = tltlc("evaluate", copied_policy, "--episodes", "1", "--json", "-")
     assert result.status == 0, result.err
     assert json.loads(result.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()

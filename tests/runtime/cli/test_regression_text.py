@@ -7,12 +7,12 @@ from tltl_runtime.cli.support.regression_text import summary_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.retraining_result import FinishedRetraining, Outcome, RetrainingResult
-from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict
 
 TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
 
 
-def report(verdict: Verdict, outcome: Outcome | None = None) -> CaseReport:
+def report(verdict: CaseVerdict, outcome: Outcome | None = None) -> CaseReport:
     figures, files = figures_of(summaries(25)), ("policy", None)
     retrained = outcome and RetrainingResult(outcome, "", TRAINED, figures, (0.0, 1.0), None, *files)
     return CaseReport("a", "room", "v0", verdict, (), retrained=retrained)

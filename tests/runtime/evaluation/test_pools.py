@@ -20,7 +20,7 @@ from tests.waiting import HANG_S, until
 from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, local_results, results, set_up
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Player, RecordMode, Setup
+from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, PolicyPlayer, RecordMode, Setup
 from tltl_runtime.evaluation.scheduler import WorkerLostError, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.level_name import Variant
@@ -158,8 +158,8 @@ def test_an_error_at_the_start_of_a_worker_is_raised_unchanged(policy: Policy, w
 
 def test_a_result_is_yielded_before_the_next_episode_starts(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
     began: list[EpisodeRequest] = []
-    play = Player.play
-    monkeypatch.setattr(Player, "play", lambda self, request: began.append(request) or play(self, request))
+    play = PolicyPlayer.play
+    monkeypatch.setattr(PolicyPlayer, "play", lambda self, request: began.append(request) or play(self, request))
     with closing(results(set_up(policy, None, None, None, 3), [EpisodeRequest(0), EpisodeRequest(1)])) as played:
         assert next(played).request == EpisodeRequest(0)
         assert began == [EpisodeRequest(0)]
@@ -189,7 +189,7 @@ def test_finished_episodes_are_yielded_before_a_lost_worker_is_reported() -> Non
 
 
 def test_a_process_that_ended_between_episodes_is_reported_as_lost(policy: Policy) -> None:
-    worker = WorkerProcess(partial(Player, set_up(policy, None, None, None, 3)))
+    worker = WorkerProcess(partial(PolicyPlayer, set_up(policy, None, None, None, 3)))
     try:
         assert worker.play(EpisodeRequest(0)).result().request == EpisodeRequest(0)
         for child in active_children():

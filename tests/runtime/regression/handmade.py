@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.episode import EndKind
 from tltl_runtime.regression.explain.explained_episode import Arrival, ExplainedEpisode, NearestMiss, summaries_of
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints
 from tltl_runtime.regression.suite.suite import Case, Suite, Thresholds, baseline_path
@@ -44,7 +44,7 @@ def an_episode(
     steps: int = 100,
     states: Sequence[int] = (0,),
     unmet: int | None = None,
-    cause: Kind | None = None,
+    cause: EndKind | None = None,
     by: tuple[str, ...] = (),
     seen_by: tuple[str, ...] = (),
     broke: tuple[str, ...] = (),

@@ -207,7 +207,7 @@ class EvaluationFiles:
             player = read_episode(path).player
         except TltlError:
             return False
-        return is_labelled_policy(player) and not self._setup.player.is_named(player)
+        return is_labelled_policy(player) and not self._setup.player.is_of(player)
 
     @property
     def _name(self) -> str:

@@ -23,7 +23,7 @@ from tltl_runtime.regression.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.baseline import Reference
 from tltl_runtime.regression.verdict.level_texts import baseline_level
 from tltl_runtime.regression.verdict.play import PreparedCase
-from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import TltlError, fileio, record
 
@@ -108,13 +108,13 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
             yield NotRun(case.name, reasons[case.name], _earlier_verdict(outcome, case.name))
 
 
-def _earlier_verdict(outcome: SuiteRun, name: str) -> Verdict | None:
+def _earlier_verdict(outcome: SuiteRun, name: str) -> CaseVerdict | None:
     """Return the verdict on a case that an earlier run stored in the folder of the run; None without one."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
-        if verdict in get_args(Verdict):
-            return cast(Verdict, verdict)
+        if verdict in get_args(CaseVerdict):
+            return cast(CaseVerdict, verdict)
     return None
 
 

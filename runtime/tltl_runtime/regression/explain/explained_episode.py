@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from tltl_runtime.game.episode import Kind, RecordedEpisode
+from tltl_runtime.game.episode import EndKind, RecordedEpisode
 from tltl_runtime.game.geometry import Point
 from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
@@ -78,7 +78,7 @@ class ExplainedEpisode:
     )
 
     summary: EpisodeSummary
-    cause: Kind
+    cause: EndKind
     by: tuple[str, ...]
     place: Point | None
     seen_by: tuple[str, ...]

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Final, TypeVar
 
-from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.episode import EndKind
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.mentions import Phrase, phrase, quoted_names, things_phrase
@@ -17,7 +17,7 @@ from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltlc.api import Fspa, record, replace
 
 _T = TypeVar("_T")
-_FailureKind = tuple[Kind, tuple[str, ...]]
+_FailureKind = tuple[EndKind, tuple[str, ...]]
 
 _FEW: Final = 3
 """The most groups of failures that get a text of their own. These are the largest groups.
@@ -40,7 +40,7 @@ class FailureEnd:
     for example ``in the corridor``; it is empty for a recorded trace.
     """
 
-    cause: Kind
+    cause: EndKind
     by: tuple[str, ...]
     where: Phrase
     undone: Subgoal

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.episode import EndKind
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltlc.api import Fspa
 
 
-def trace_end_text(fspa: Fspa, cause: Kind, clauses: Sequence[str], traces: Sequence[ExplainedEpisode]) -> str:
+def trace_end_text(fspa: Fspa, cause: EndKind, clauses: Sequence[str], traces: Sequence[ExplainedEpisode]) -> str:
     """Describe how ``traces`` failed, which all share ``cause`` and ``clauses``, without their number.
 
     The caller appends the number, so a comma follows a clause that is set off by a comma.

@@ -16,7 +16,7 @@ from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import JudgedCase
-from tltl_runtime.regression.verdict.verdict import FigureChange, Judgement, Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict, FigureChange, Judgement
 from tltlc.api import Diagnostic, TltlError, record
 
 
@@ -63,7 +63,7 @@ class CaseReport:
     name: str
     level: str
     variant: str
-    verdict: Verdict
+    verdict: CaseVerdict
     causes: tuple[str, ...]
     certain: bool = True
     rate_interval: tuple[float, float] = (0.0, 1.0)

@@ -96,7 +96,7 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeS
 class _ExpertPlayer:
     """Plays episodes with the scripted expert, as a worker of an evaluation.
 
-    For policies, there is :class:`~tltl_runtime.evaluation.player.Player`.
+    For policies, there is :class:`~tltl_runtime.evaluation.player.PolicyPlayer`.
     """
 
     def __init__(self, level: str, variant: str) -> None:

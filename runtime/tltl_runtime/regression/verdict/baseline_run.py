@@ -17,7 +17,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, write_baseline
 from tltl_runtime.regression.verdict.confidence import rate_interval
 from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import OnEpisode, PreparedCase, play_episodes, prepare_case
-from tltl_runtime.regression.verdict.verdict import Verdict, judge
+from tltl_runtime.regression.verdict.verdict import CaseVerdict, judge
 from tltl_runtime.support.source_hash import sources_hash
 from tltlc.api import TltlError, fileio, record, replace
 
@@ -100,7 +100,7 @@ def partial_path(path: Path) -> Path | None:
     return Path(f"{os.path.realpath(path)}.partial")
 
 
-def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Verdict:
+def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> CaseVerdict:
     """Return the verdict that a case gets if it plays exactly the episodes of its reference."""
     summaries, error = summaries_of(reference.episodes), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from tltl_runtime.game.episode import Kind
+from tltl_runtime.game.episode import EndKind
 from tltl_runtime.regression.explain.explained_episode import Arrival, ExplainedEpisode, NearestMiss, summaries_of
 from tltl_runtime.regression.suite.suite import LEAST_EPISODES
 from tltl_runtime.regression.suite.thresholds import Thresholds
@@ -19,7 +19,7 @@ from tltlc.api import Diagnostic, Fspa, TltlError, record, replace, traces
 OnTrace = Callable[[TraceCase, int, int], None]
 """A callback after each trace: the case, the number of traces judged so far, and the number of all."""
 
-_KINDS: Final[dict[traces.Kind, Kind]] = {
+_KINDS: Final[dict[traces.Kind, EndKind]] = {
     "broken": "violated",
     "blocked": "blocked",
     "late": "limit",

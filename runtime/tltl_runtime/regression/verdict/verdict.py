@@ -44,7 +44,7 @@ from tltl_runtime.regression.verdict.confidence import mean_p_value, rate_interv
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import record
 
-Verdict = Literal["pass", "review", "fail"]
+CaseVerdict = Literal["pass", "review", "fail"]
 
 FIGURES: Final[Mapping[str, tuple[float, float]]] = {"progress": (0.0, 1.0), "reward": (-1.0, 1.0)}
 """The figures that are compared with the baseline, each with its range.
@@ -80,7 +80,7 @@ class Judgement:
     changes of progress and reward.
     """
 
-    verdict: Verdict
+    verdict: CaseVerdict
     certain: bool
     rate_interval: tuple[float, float]
     changes: tuple[FigureChange, ...]

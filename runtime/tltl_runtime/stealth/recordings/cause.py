@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import hypot, isfinite
 from typing import Final
 
-from tltl_runtime.game.episode import Cause, Kind
+from tltl_runtime.game.episode import Cause, EndKind
 from tltl_runtime.spec.goals import next_goals
 from tltl_runtime.stealth.expert.routes import routes_of, shut_barriers
 from tltl_runtime.stealth.level import StealthLevel
@@ -31,7 +31,7 @@ def cause(episode: Episode) -> Cause:
         if episode.end == "limit":
             return _limit_cause(episode)
     last = episode.snapshots[-1]
-    kind: Kind = "success" if episode.success else "stopped"
+    kind: EndKind = "success" if episode.success else "stopped"
     rest = "" if episode.success else f", remaining: {_remaining_text(episode)}"
     return Cause(kind, (), last.time, last.player.position, f"{kind} after {last.time:.2f} s{rest}")
 
@@ -107,7 +107,7 @@ def _limit_cause(episode: Episode) -> Cause:
 
 
 def _cause_at(
-    kind: Kind, by: tuple[str, ...], shot: Snapshot, event: str, detail: str = "", broke: tuple[str, ...] = ()
+    kind: EndKind, by: tuple[str, ...], shot: Snapshot, event: str, detail: str = "", broke: tuple[str, ...] = ()
 ) -> Cause:
     place = shot.player.position
     text = f"{event} at {shot.time:.2f} s at ({place[0]:.1f}, {place[1]:.1f})"

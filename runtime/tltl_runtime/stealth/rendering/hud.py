@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any, Final, Literal
 
-from tltl_runtime.game.episode import Cause, Kind
+from tltl_runtime.game.episode import Cause, EndKind
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
@@ -17,7 +17,7 @@ Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
 
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
 
-_TITLES: Final[dict[Kind, str]] = {
+_TITLES: Final[dict[EndKind, str]] = {
     "success": "success",
     "killed": "you died",
     "violated": "the spec is violated",

@@ -11,7 +11,7 @@ from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport
-from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
@@ -65,7 +65,7 @@ def explained_of(index: int, episode: Episode) -> ExplainedEpisode:
 
 def reported(
     name: str,
-    verdict: Verdict,
+    verdict: CaseVerdict,
     now: Sequence[Episode],
     before: Sequence[Episode],
     recorded: Iterable[int] | None = None,

@@ -9,7 +9,7 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.trace_curves import TraceCurves
-from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltlc.api import EMPTY, Fspa, record
 
 
@@ -46,7 +46,7 @@ class NotRun:
 
     name: str
     reason: str
-    earlier_verdict: Verdict | None = None
+    earlier_verdict: CaseVerdict | None = None
 
 
 @record

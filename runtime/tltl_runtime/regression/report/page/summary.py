@@ -12,11 +12,11 @@ from tltl_runtime.regression.report.page.contents import SuiteReport
 from tltl_runtime.regression.report.page.markup import coordinate
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.retraining_result import OUTCOMES
-from tltl_runtime.regression.verdict.verdict import Verdict
+from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.number_text import percent
 from tltlc.api import record
 
-_VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
+_VERDICTS: tuple[CaseVerdict, ...] = ("pass", "review", "fail")
 
 
 @record
@@ -69,7 +69,7 @@ class _Row:
 
     name: str
     slug: str
-    verdict: Verdict
+    verdict: CaseVerdict
     retrained: str | None
     pass_rate: _PassRate | None
     progress: _Mean | None
