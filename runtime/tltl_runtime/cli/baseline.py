@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_file
-from tltl_runtime.cli.support.player_outside_level import level_faults
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.suite_argument import check_suite_exists
 from tltl_runtime.cli.support.worker_options import all_cores_option
 from tltl_runtime.cli.support.writable_paths import check_apart, check_writable

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from tltl_runtime.cli.support.film import FILMS, Film, write_film
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
-from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.game.level_name import split_level
 from tltlc.api import cli
 

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder, seed_option
-from tltl_runtime.cli.support.player_outside_level import level_faults
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.cli.support.writable_paths import check_writable
 from tltl_runtime.support.number_text import short_list

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
-from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
-from tltl_runtime.cli.support.player_outside_level import level_faults
+from tltl_runtime.cli.support.keyboard_play import keyboard_options, play_at_keyboard
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltl_runtime.cli.support.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
+from tltl_runtime.cli.support.keyboard_play import keyboard_options, play_at_keyboard
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
-from tltl_runtime.cli.support.player_outside_level import level_faults
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.game.level_name import split_level
 from tltlc.api import TltlError, cli
 

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import click
 
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.suite.trace_case import TraceCase

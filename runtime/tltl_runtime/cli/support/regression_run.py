@@ -11,7 +11,7 @@ from typing import Final
 
 import click
 
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_files import REPORTS, SuiteRun, write_reports
 from tltl_runtime.cli.support.regression_text import case_lines, summary_line

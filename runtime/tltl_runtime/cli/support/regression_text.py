@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import click
 
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.retraining_result import OUTCOMES

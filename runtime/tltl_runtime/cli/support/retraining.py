@@ -12,8 +12,8 @@ from typing import Final
 
 import click
 
-from tltl_runtime.cli.support.player_outside_level import level_faults
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.training_progress import train_with_display
 from tltl_runtime.cli.support.training_text import minutes as minutes_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.handmade import an_episode, case
-from tltl_runtime.cli.support.printable import plain_text
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.regression_display import RegressionDisplay
 from tltl_runtime.cli.support.regression_text import case_lines
 from tltl_runtime.regression.report.case_report import CaseReport
