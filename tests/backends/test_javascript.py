@@ -241,9 +241,9 @@ import { Monitor, MonitorError, Result, type Params, type Signals, type Verdict 
 const monitor = new Monitor({ level_size: 10 });
 const result = new Result();
 const sample: Signals = { "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: 1 };
-const found: Result = monitor.step(sample, result);
-const verdict: Verdict = found.verdict;
-const limiting: string | null = found.limiting;
+const same: Result = monitor.step(sample, result);
+const verdict: Verdict = same.verdict;
+const limiting: string | null = same.limiting;
 const params: Params = { level_size: 10 };
 monitor.reset();
 // @ts-expect-error: there is no such param.
@@ -257,7 +257,7 @@ monitor.step({ ...sample, wealth: 1 });
 // @ts-expect-error: it is for the monitor to change.
 monitor.state = 1;
 // @ts-expect-error: it may be null.
-const name: string = found.limiting;
+const name: string = same.limiting;
 // @ts-expect-error: a verdict is one of four.
 if (verdict === "unknown") throw new MonitorError("never");
 export { limiting, name, params };

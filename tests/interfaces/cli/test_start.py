@@ -31,11 +31,11 @@ def copies(event, arguments):
         os.kill(os.getpid(), signal.SIGINT)
         return
     os.close(writing)
-    with os.fdopen(reading, "rb") as told:
-        said = told.read()
+    with os.fdopen(reading, "rb") as pipe:
+        output = pipe.read()
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     what = str(arguments[0]).replace("\\n", " ")
-    ends.append((status, event, what, said.decode(errors="replace")))
+    ends.append((status, event, what, output.decode(errors="replace")))
     state["copy"] = False
 
 def tell():

@@ -169,7 +169,7 @@ def test_names_and_comments_are_not_interpreted_as_markup(page: Page) -> None:
 
 
 COVERED = """() => {
-    const areas = [...document.querySelectorAll("#picture .frame, #picture .guard")].map((each) => each.getBBox());
+    const areas = [...document.querySelectorAll("#picture .frame, #picture .guard")].map((shape) => shape.getBBox());
     const isOver = (a, b) => a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
     return areas.flatMap((a, i) => areas.slice(i + 1).filter((b) => isOver(a, b))).length;
 }"""

@@ -203,15 +203,15 @@ sys.path.insert(0, "unpacked")
 from tltlc.interfaces.playground.protocol import answer
 
 for example in json.loads(answer("{}"))["examples"]:
-    found = json.loads(answer(json.dumps({"text": example["text"]})))
-    assert found["spec"] and not found["diagnostics"], found
+    analysis = json.loads(answer(json.dumps({"text": example["text"]})))
+    assert analysis["spec"] and not analysis["diagnostics"], analysis
 
 # In a browser sympy is no file that is missing: what it alone can prove stays unproved.
 sys.platform = "emscripten"
 text = "signal a: ratio  signal b: ratio  predicate p in [0, 1] = a*a + b*b - 2*a*b  spec x { limit 9 steps reach p }"
-found = json.loads(answer(json.dumps({"text": text})))
-assert found["specs"] == ["x"]
-print(sys.modules["tltlc"].__file__, [said["code"] for said in found["diagnostics"]])
+analysis = json.loads(answer(json.dumps({"text": text})))
+assert analysis["specs"] == ["x"]
+print(sys.modules["tltlc"].__file__, [diagnostic["code"] for diagnostic in analysis["diagnostics"]])
 """
 
 

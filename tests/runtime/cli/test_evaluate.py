@@ -276,7 +276,7 @@ def test_a_signal_ends_it_with_a_report_of_the_played_episodes(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "status", "said"),
+    ("arguments", "status", "message"),
     [
         ((), 2, "error[TLT0700]: name a POLICY or a --level, or both"),
         (("nowhere.safetensors",), 3, "error[TLT0001]"),
@@ -306,7 +306,7 @@ def test_invalid_options_are_rejected(
     monkeypatch: pytest.MonkeyPatch,
     arguments: tuple[str, ...],
     status: int,
-    said: str,
+    message: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").touch()
@@ -314,7 +314,7 @@ def test_invalid_options_are_rejected(
     (tmp_path / "cover_and_hide.tltl").write_text(SOON.replace("20 steps", "25 steps"))
     result = tltlc("evaluate", *(str(policy) if argument == "POLICY" else argument for argument in arguments))
     assert (result.status, result.out) == (status, "")
-    assert result.err.lower().startswith(said.lower())
+    assert result.err.lower().startswith(message.lower())
 
 
 def test_a_level_uses_its_shipped_policy(tltlc: Run) -> None:  # noqa: F811

@@ -378,7 +378,7 @@ def test_a_level_that_does_not_load_fails_its_cases(tltlc: Run, game: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "reason"),
     [
         (("--json", "game.toml"), "`game.toml`: the suite reads it"),
         (("--json", "game.baseline.json"), "`game.baseline.json`: the suite reads it"),
@@ -390,12 +390,12 @@ def test_inputs_are_not_overwritten(
     tltlc: Run,  # noqa: F811
     game: Path,
     words: tuple[str, ...],
-    said: str,
+    reason: str,
 ) -> None:
     before = {path: path.read_bytes() for path in game.iterdir() if path.is_file()}
     result = tltlc("regress", "game.toml", *words)
     assert (result.status, result.out) == (3, "")
-    assert result.err.startswith(f"error[TLT0005]: cannot write {said}\n  help: name another place with --")
+    assert result.err.startswith(f"error[TLT0005]: cannot write {reason}\n  help: name another place with --")
     assert {path: path.read_bytes() for path in game.iterdir() if path.is_file()} == before
 
 

@@ -39,16 +39,16 @@ def test_the_line_of_an_iteration(stop: Stop) -> None:
 
 
 @pytest.mark.parametrize(
-    ("lengths", "said"),
+    ("lengths", "ways"),
     [
         ((), "no way to meet the spec yet"),
         ((80,), "1 way to meet the spec, the shortest of 80 steps"),
         ((80, 90), "2 ways to meet the spec, the shortest of 80 steps"),
     ],
 )
-def test_the_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
+def test_the_line_of_the_search(lengths: tuple[int, ...], ways: str) -> None:
     searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
-    assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
+    assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {ways}"
 
 
 def test_the_line_at_the_end_of_the_search() -> None:
@@ -84,11 +84,11 @@ def test_the_line_of_a_confirmation(stop: Stop) -> None:
 
 
 @pytest.mark.parametrize(
-    ("seconds", "said"),
+    ("seconds", "text"),
     [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (754, "12 min 34 s"), (12000, "3 h 20 min")],
 )
-def test_durations_have_fitting_units(seconds: float, said: str) -> None:
-    assert duration(seconds) == said
+def test_durations_have_fitting_units(seconds: float, text: str) -> None:
+    assert duration(seconds) == text
 
 
 def test_a_limit_in_minutes_is_in_words() -> None:

@@ -64,12 +64,12 @@ def test_equal_episodes_are_as_before(level: StealthLevel, fspa: Fspa) -> None:
     assert only.mentions == Mentions(("s1", "s2", "exit"))
 
 
-@pytest.mark.parametrize(("fewer", "said"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
-def test_one_failure_in_twenty_is_not_as_before(level: StealthLevel, fspa: Fspa, fewer: int, said: str) -> None:
+@pytest.mark.parametrize(("fewer", "text"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
+def test_one_failure_in_twenty_is_not_as_before(level: StealthLevel, fspa: Fspa, fewer: int, text: str) -> None:
     now = successes(fspa, 40)
     for index in range(fewer):
         now[index] = an_episode(index, False, states=states_after(fspa, 2))
-    assert said in sentences(level, fspa, now, successes(fspa, 40))[0]
+    assert text in sentences(level, fspa, now, successes(fspa, 40))[0]
 
 
 def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: StealthLevel, fspa: Fspa) -> None:
@@ -311,17 +311,17 @@ def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) ->
 
 
 @pytest.mark.parametrize(
-    ("came", "said"),
+    ("came", "approach"),
     [
         (1.06, "1.1 m (`near(s1)` is the limit, below 1.0 m is enough); "),
         (1.04, "1.04 m (`near(s1)` is the limit, below 1.00 m is enough); "),
         (1.0, "1.00 m (`near(s1)` is the limit, less is enough); "),
     ],
 )
-def test_near_misses_have_enough_decimals(level: StealthLevel, fspa: Fspa, came: float, said: str) -> None:
+def test_near_misses_have_enough_decimals(level: StealthLevel, fspa: Fspa, came: float, approach: str) -> None:
     near = NearestMiss("near(s1)", -0.01, MIDDLE, "s1", came)
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
-    assert f"; closest approach to `s1`: {said}" in sentences(level, fspa, now)[1]
+    assert f"; closest approach to `s1`: {approach}" in sentences(level, fspa, now)[1]
 
 
 def test_a_distance_that_depends_on_a_param_has_no_threshold(level: StealthLevel) -> None:

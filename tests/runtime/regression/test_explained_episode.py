@@ -23,29 +23,29 @@ def _episode(request: pytest.FixtureRequest) -> Episode:
     return episodes[0]
 
 
-@pytest.fixture(name="found", scope="module")
-def _found(episode: Episode) -> ExplainedEpisode:
+@pytest.fixture(name="explained", scope="module")
+def _explained(episode: Episode) -> ExplainedEpisode:
     return samples.explained_of(0, episode)
 
 
-def test_every_entered_state_has_an_arrival(episode: Episode, found: ExplainedEpisode) -> None:
-    states = [arrival.state for arrival in found.arrivals]
+def test_every_entered_state_has_an_arrival(episode: Episode, explained: ExplainedEpisode) -> None:
+    states = [arrival.state for arrival in explained.arrivals]
     assert states[0] == 0 and all(one != other for one, other in pairwise(states))
     assert set(states) == set(episode.states.tolist())
-    for arrival in found.arrivals:
+    for arrival in explained.arrivals:
         assert episode.states[arrival.step] == arrival.state
         assert dist(arrival.place, episode.snapshots[arrival.step].player.position) < 0.01
-    if found.summary.success:
+    if explained.summary.success:
         assert episode.fspa.states[states[-1]].distance == 0
 
 
-def test_a_success_has_no_cause_of_failure(found: ExplainedEpisode) -> None:
-    if found.summary.success:
-        assert (found.nearest, found.seen_by, found.cause) == (None, (), "success")
+def test_a_success_has_no_cause_of_failure(explained: ExplainedEpisode) -> None:
+    if explained.summary.success:
+        assert (explained.nearest, explained.seen_by, explained.cause) == (None, (), "success")
 
 
-def test_an_explained_episode_survives_json(found: ExplainedEpisode) -> None:
-    assert from_json(ExplainedEpisode, to_json(found), "account") == found
+def test_an_explained_episode_survives_json(explained: ExplainedEpisode) -> None:
+    assert from_json(ExplainedEpisode, to_json(explained), "episode") == explained
 
 
 def test_a_death_has_its_killers_and_the_closest_approach() -> None:

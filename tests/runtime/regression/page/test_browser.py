@@ -104,7 +104,7 @@ def test_a_link_in_an_explanation_opens_its_episode(still: Tab) -> None:
     assert tab.locator(f"#{CASE} .moment").inner_text().startswith(f"step {step} of ")
     episode = samples.suite().cases[1].episodes[int(index)]
     assert current(tab) == str(episode.states[int(step)])
-    assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
+    assert tab.locator(f"#{CASE} .stage").evaluate("stage => stage.getBoundingClientRect().top < innerHeight")
 
 
 def test_a_link_in_an_explanation_plays_its_episode(tab: Tab) -> None:
@@ -137,7 +137,7 @@ def test_after_a_link_keys_control_the_player_and_the_link_works_again(still: Ta
     tab.wait_for_function(f"location.hash.endsWith('/{step}')")
     tab.evaluate("scrollTo(0, 0)")
     link.click()
-    assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
+    assert tab.locator(f"#{CASE} .stage").evaluate("stage => stage.getBoundingClientRect().top < innerHeight")
     expect(moment).to_contain_text(f"step {step} of ")
 
 
@@ -154,7 +154,7 @@ def test_the_slider_shows_the_state_the_values_and_the_map_of_a_step(browser: Br
             scrub(tab, row)
             assert current(tab) == str(states[row])
             assert tab.locator(f"#{CASE} .state").inner_text().startswith(f"State {states[row]}: ")
-            shown = tab.locator(f"#{CASE} meter.progress").evaluate("each => each.value")
+            shown = tab.locator(f"#{CASE} meter.progress").evaluate("meter => meter.value")
             assert shown == pytest.approx(float(episode.progress[row]), abs=0.001)
             atoms = tab.locator(f"#{CASE} .atoms td.number").all_inner_texts()
             assert [float(text) for text in atoms] == pytest.approx(episode.atoms[row - 1].tolist(), abs=0.0051)
@@ -365,7 +365,7 @@ def test_nothing_scrolls_sideways_on_a_small_screen(browser: Browser, file: Path
 def test_texts_have_enough_contrast(browser: Browser, file: Path, scheme: str) -> None:
     with chromium.opened(browser, file, f"#{CASE}/0/20", color_scheme=scheme, **WIDE) as tab:
         for selector in (".verdict.pass", ".verdict.fail", ".facts", ".hint", ".verdicts a", ".reasons li", ".state"):
-            colour = tab.locator(selector).first.evaluate("each => getComputedStyle(each).color")
+            colour = tab.locator(selector).first.evaluate("element => getComputedStyle(element).color")
             paper = tab.evaluate("getComputedStyle(document.body).backgroundColor")
             assert contrast(colour, paper) >= 4.5, (selector, colour, paper)
 
