@@ -88,7 +88,7 @@ def run(options: RegressOptions) -> int:
     selection = _select_cases(suite, options)
     cases, left_out = selection.cases, tuple(case.name for case in selection.left_out)
     if options.minutes is not None:
-        # What retrains needs torch; what judges does not.
+        # Retraining needs torch; judging does not.
         from tltl_runtime.regression.retrain.retrain import check_policy_folders
 
         check_policy_folders(suite, played(cases), options.folder)

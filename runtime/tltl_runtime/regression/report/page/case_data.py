@@ -27,7 +27,7 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     level, fspa = case.level, case.fspa
     if level is None or fspa is None:
         return None
-    # What draws the level needs the packages of the game, which recorded traces do not.
+    # Drawing a level needs the packages of the game; a page of traces does not.
     from tltl_runtime.regression.report.page.stealth.level_map import map_data
     from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
 
