@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from tests.runtime.regression.handmade import ROOM, an_episode, changed
+from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
 from tltl_runtime.regression.explain.mentions import Mentions
@@ -364,6 +365,16 @@ def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) ->
         replace(explained, by=("b", "a") if explained.summary.index % 2 else ("a", "b")) for explained in now[:14]
     ]
     assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
+
+
+def test_places_with_the_same_text_are_one_group(level: StealthLevel, fspa: Fspa) -> None:
+    """A place outside the region `middle` is in the middle of the level, too."""
+    region = Region("middle", Box((3.8, 3.8, 0.0), (4.2, 4.2, 3.0)))
+    places = ((4.0, 4.0, 0.0), MIDDLE)
+    now = [an_episode(index, False, states=states_after(fspa, 0), place=places[index % 2]) for index in range(25)]
+    end = findings(replace(level, regions=(region,)), fspa, now, successes(fspa))[1]
+    assert end.text.startswith("runs out of time in the middle in 25 of 25 episodes")
+    assert end.mentions.regions == ("middle",)
 
 
 def test_an_obstacle_is_named(level: StealthLevel, fspa: Fspa) -> None:

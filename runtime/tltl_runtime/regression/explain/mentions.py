@@ -24,10 +24,20 @@ NO_MENTIONS: Final = Mentions()
 
 @record
 class Phrase:
-    """A text of a report, and the names that it mentions."""
+    """A text of a report, and the names that it mentions.
+
+    Phrases with the same text are equal, because a reader cannot tell them apart: *in the middle* may
+    be in a region of that name, or in the middle of a level.
+    """
 
     text: str
     mentions: Mentions = NO_MENTIONS
+
+    def __eq__(self, other: object) -> bool:
+        return self.text == other.text if isinstance(other, Phrase) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((Phrase, self.text))
 
 
 def phrase(*parts: Phrase | str) -> Phrase:
