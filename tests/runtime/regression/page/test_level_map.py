@@ -28,7 +28,7 @@ def test_a_map_draws_everything_in_the_level(name: str) -> None:
         ("switch", level.switches),
         ("exit", level.exits),
         ("route", level.enemies),
-        ("mover-way", level.movers),
+        ("mover-path", level.movers),
         ("region", level.regions),
     ):
         assert sum(kind in classes for classes in class_lists) == len(things), kind
@@ -82,13 +82,15 @@ def test_things_named_in_the_reasons_are_highlighted() -> None:
     mentioned = Mentions(("s2", "corridor_block_2", "another"), ("corridor",))
     root = ElementTree.fromstring(level_map(level, mentioned))
     outlined = [
-        element.findtext("title") for element in root.iter("rect") if "spoken" in element.get("class", "").split()
+        element.findtext("title") for element in root.iter("rect") if "mentioned" in element.get("class", "").split()
     ]
     assert outlined == ["corridor_block_2"]
-    assert {name for name, kind, *_ in names_on(root) if "spoken" in kind} == {"s2", "corridor_block_2", "corridor"}
+    assert {name for name, kind, *_ in names_on(root) if "mentioned" in kind} == {"s2", "corridor_block_2", "corridor"}
     assert "mentioned in a reason" in map_key(level, mentioned) and "mentioned in a reason" not in map_key(level)
     quiet = names_on(ElementTree.fromstring(level_map(level)))
-    assert "corridor_block_2" not in {name for name, *_ in quiet} and not any("spoken" in kind for _, kind, *_ in quiet)
+    assert "corridor_block_2" not in {name for name, *_ in quiet} and not any(
+        "mentioned" in kind for _, kind, *_ in quiet
+    )
 
 
 @pytest.mark.parametrize("sentence", ["The `wall.far_wall` is new.", "Moves `wall.far_wall.at`.", "Opens `far_wall`."])

@@ -36,11 +36,11 @@ _SIGNS: Final = {
     "barrier solid": "gate",
     "barrier laser": "laser",
     "route": "route of an enemy",
-    "mover-way": "way of a moving obstacle",
+    "mover-path": "way of a moving obstacle",
     "solid platform": "platform",
     "solid low": "low obstacle",
     "solid wall": "wall",
-    "solid spoken": "mentioned in a reason",
+    "solid mentioned": "mentioned in a reason",
 }
 """The signs on a map: the CSS class of each, and its meaning in the legend."""
 
@@ -77,10 +77,10 @@ def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
         "switch": level.switches,
         "exit": level.exits,
         "route": level.enemies,
-        "mover-way": level.movers,
+        "mover-path": level.movers,
         **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
-        "solid spoken": any(solid.name in mentions.things for solid in level.solids),
+        "solid mentioned": any(solid.name in mentions.things for solid in level.solids),
     }
     rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if present.get(kind, True)]
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
@@ -125,7 +125,7 @@ def _sign(kind: str) -> Markup:
         shape = element("polygon", class_=kind, points=_star(0, 0, 8.0))
     elif kind in ("switch", "start"):
         shape = element("circle", class_=kind, r=7 if kind == "switch" else 4)
-    elif kind in ("route", "mover-way"):
+    elif kind in ("route", "mover-path"):
         shape = element("polyline", class_=kind, points="-8,0 8,0")
     else:
         shape = element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
@@ -134,7 +134,7 @@ def _sign(kind: str) -> Markup:
 
 def _ground(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterable[Markup]:
     for solid in sorted(level.solids, key=lambda item: (item.name in mentions.things, item.box.high[2])):
-        kind = f"solid {solid.kind}{' spoken' * (solid.name in mentions.things)}"
+        kind = f"solid {solid.kind}{' mentioned' * (solid.name in mentions.things)}"
         yield element("rect", element("title", solid.name), class_=kind, **scale.sides(solid.box))
     for region in level.regions:
         yield element("rect", class_="region", **scale.sides(region.box))
@@ -146,7 +146,7 @@ def _entities(level: StealthLevel, scale: MapScale) -> Iterable[Markup]:
         yield element("path", title, class_="route", d=_patrol_path([*map(scale.at, patrol_path(level, enemy))]))
     for mover in level.movers:
         title = element("title", f"way of {mover.name}")
-        yield element("polyline", title, class_="mover-way", points=scale.line(mover.path))
+        yield element("polyline", title, class_="mover-path", points=scale.line(mover.path))
     for barrier in level.barriers:
         title = element("title", barrier.name)
         yield element("rect", title, class_=f"barrier {barrier.kind}", **scale.sides(barrier.box))
@@ -164,7 +164,7 @@ def _entities(level: StealthLevel, scale: MapScale) -> Iterable[Markup]:
 
 def _label(name: MapLabel) -> Markup:
     lines = [element("tspan", line, x=name.x, dy="1.1em" if row else 0) for row, line in enumerate(name.lines)]
-    return element("text", *lines, class_=f"{name.kind}{' spoken' * name.is_mentioned}", x=name.x, y=name.y)
+    return element("text", *lines, class_=f"{name.kind}{' mentioned' * name.is_mentioned}", x=name.x, y=name.y)
 
 
 def _patrol_path(points: Sequence[tuple[int, int]]) -> str:
