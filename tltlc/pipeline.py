@@ -270,7 +270,7 @@ def read_artefact(source: SourceFile) -> Fspa:
     """Return the automaton in the text of an artefact. Errors: as for :func:`load`."""
     from tltlc.artefact.decode import read
 
-    return read(source.text, source.name)
+    return read(source)
 
 
 @resource_limits()

@@ -18,6 +18,7 @@ from tests.fuzzing import times
 from tltlc import backends
 from tltlc.artefact.decode import decode, read
 from tltlc.automaton.fspa import Fspa, Text
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 WRONG = (None, True, -1, 1.5, 7, "é\n", [], {}, [[]], math.nan, math.inf, -math.inf, {"op": "+"})
@@ -54,13 +55,13 @@ def test_a_damaged_document_has_the_errors_of_its_text(place: tuple[int, tuple[s
         parent = parent[step]
     parent[path[-1]] = value
     text = json.dumps(document, ensure_ascii=False)
-    assert result(lambda: decode(document, "x")) == result(lambda: read(text, "x"))
+    assert result(lambda: decode(document, "x")) == result(lambda: read(SourceFile("x", text)))
 
 
 @pytest.mark.parametrize("document", [None, [], "fspa", {"format": "gltf"}, {"format": "fspa"}])
 def test_another_document_is_rejected_as_its_text_is(document: object) -> None:
     text = json.dumps(document)
-    assert errors(document) == result(lambda: read(text, "bot/artefact"))
+    assert errors(document) == result(lambda: read(SourceFile("bot/artefact", text)))
 
 
 @pytest.mark.parametrize(("number", "constant"), [(math.nan, "NaN"), (math.inf, "Infinity"), (-math.inf, "-Infinity")])

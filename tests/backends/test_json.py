@@ -19,6 +19,7 @@ from tltlc.artefact.encode import encode
 from tltlc.artefact.json_layout import WIDTH, layout
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When
@@ -34,20 +35,20 @@ def json_text(fspa: Fspa) -> str:
 
 
 def test_cover_and_hide_is_read_back() -> None:
-    assert read(json_text(cover_and_hide()), "x.fspa.json") == cover_and_hide()
+    assert read(SourceFile("x.fspa.json", json_text(cover_and_hide()))) == cover_and_hide()
 
 
 @times(25)
 @given(automata() | infinite_automata())
 def test_automata_are_read_back_unchanged(fspa: Fspa) -> None:
-    assert read(json_text(fspa), "x.fspa.json") == fspa
+    assert read(SourceFile("x.fspa.json", json_text(fspa))) == fspa
 
 
 @times(25)
 @given(hostile_automata())
 def test_hostile_texts_are_read_back_unchanged(fspa: Fspa) -> None:
     text = json_text(fspa)
-    assert read(text, "x.fspa.json") == fspa
+    assert read(SourceFile("x.fspa.json", text)) == fspa
     assert "</" not in text
     assert "<!" not in text
     assert not [
@@ -60,7 +61,7 @@ def test_a_name_that_tltlc_would_write_otherwise_stays_a_name(name: str) -> None
     fspa = cover_and_hide()
     label = Text(name, "in unicode", "In English.")
     fspa = replace(fspa, formula=label, states=(replace(fspa.states[0], label=label), *fspa.states[1:]))
-    assert read(json_text(fspa), "x.fspa.json") == fspa
+    assert read(SourceFile("x.fspa.json", json_text(fspa))) == fspa
 
 
 def test_invisible_characters_are_escaped() -> None:
@@ -75,14 +76,14 @@ def test_invisible_characters_are_escaped() -> None:
 def test_expressions_are_read_back_unchanged(expression: Expression) -> None:
     fspa = cover_and_hide()
     fspa = replace(fspa, atoms=(Atom("near", expression, "", ("s1",)), *fspa.atoms[1:]))
-    assert read(json_text(fspa), "x.fspa.json") == fspa
+    assert read(SourceFile("x.fspa.json", json_text(fspa))) == fspa
 
 
 @given(finite())
 def test_numbers_keep_every_digit(number: float) -> None:
     fspa = cover_and_hide()
     fspa = replace(fspa, atoms=(Atom("near", Const(number), "", ("s1",)), *fspa.atoms[1:]))
-    (atom, *_) = read(json_text(fspa), "x.fspa.json").atoms
+    (atom, *_) = read(SourceFile("x.fspa.json", json_text(fspa))).atoms
     assert isinstance(atom.expression, Const)
     assert repr(atom.expression.value) == repr(number)
 
@@ -93,7 +94,7 @@ def test_unknown_fields_are_ignored_and_integers_may_have_a_decimal_point() -> N
     document["states"][0]["colour"] = "blue"
     document["spec_size"] = 3.0
     document["params"][0]["value"] = 20
-    fspa = read(json.dumps(document), "x.fspa.json")
+    fspa = read(SourceFile("x.fspa.json", json.dumps(document)))
     assert fspa == cover_and_hide()
     assert isinstance(fspa.spec_size, int)
     assert isinstance(fspa.params[0].value, float)
@@ -124,7 +125,7 @@ def test_a_non_finite_number_is_never_written() -> None:
 )
 def test_invalid_artefacts_are_rejected(text: str, code: str, title: str) -> None:
     with pytest.raises(TltlError) as caught:
-        read(text, "x.fspa.json")
+        read(SourceFile("x.fspa.json", text))
     (error,) = caught.value.diagnostics
     assert error.code == code
     assert title in error.title
@@ -133,15 +134,15 @@ def test_invalid_artefacts_are_rejected(text: str, code: str, title: str) -> Non
 def test_an_artefact_has_pairs_only_over_infinite_traces() -> None:
     document = json.loads(json_text(cover_and_hide()))
     with pytest.raises(TltlError, match="TLT0603: the artefact lacks `acceptance`"):
-        read(json.dumps({**document, "semantics": "infinite"}), "x.fspa.json")
+        read(SourceFile("x.fspa.json", json.dumps({**document, "semantics": "infinite"})))
     with pytest.raises(TltlError, match="TLT0603: `semantics` must be `infinite`"):
-        read(json.dumps({**document, "acceptance": {"pairs": []}}), "x.fspa.json")
+        read(SourceFile("x.fspa.json", json.dumps({**document, "acceptance": {"pairs": []}})))
 
 
 def test_an_error_points_at_the_value() -> None:
     text = json_text(cover_and_hide()).replace('"distance": 2', '"distance": "2"')
     with pytest.raises(TltlError) as caught:
-        read(text, "x.fspa.json")
+        read(SourceFile("x.fspa.json", text))
     (error,) = caught.value.diagnostics
     (label,) = error.labels
     assert error.title == "`states[1].distance` must be a whole number or null"
@@ -156,7 +157,7 @@ def test_damaged_texts_raise_only_errors_of_artefacts(data: st.DataObject) -> No
     end = data.draw(st.integers(start, min(len(text), start + 30)))
     patch = data.draw(st.sampled_from(["", "0", "-1", "null", '"', "[", "}", ",", "1e400", "true", '"x"', "[]", "{}"]))
     try:
-        read(text[:start] + patch + text[end:], "x.fspa.json")
+        read(SourceFile("x.fspa.json", text[:start] + patch + text[end:]))
     except TltlError as error:
         assert all(diagnostic.code.startswith("TLT06") for diagnostic in error.diagnostics)
 
@@ -258,7 +259,7 @@ LEVELS: dict[str, tuple[int, Callable[[Expression], Expression]]] = {
 def test_every_reader_of_an_automaton_handles_the_deepest_arithmetic(name: str) -> None:
     nodes, level = LEVELS[name]
     text = json_text(with_arithmetic(nested(level, (ARITHMETIC.compared - 1) // nodes)))
-    one, other = read(text, "x.fspa.json"), read(text, "x.fspa.json")
+    one, other = read(SourceFile("x.fspa.json", text)), read(SourceFile("x.fspa.json", text))
     assert one == other
     assert different_atoms(one, other) == ()
     assert hash(one.atoms[0].expression) == hash(other.atoms[0].expression)
@@ -272,7 +273,7 @@ def test_deeper_arithmetic_is_rejected(name: str) -> None:
     nodes, level = LEVELS[name]
     text = json.dumps(encode(with_arithmetic(nested(level, ARITHMETIC.compared // nodes + 1))))
     with pytest.raises(TltlError) as caught:
-        read(text, "x.fspa.json")
+        read(SourceFile("x.fspa.json", text))
     assert caught.value.diagnostics[0].code == "TLT0006"
 
 
@@ -285,8 +286,8 @@ def test_deeper_arithmetic_is_rejected(name: str) -> None:
     ids=["arguments", "cases"],
 )
 def test_wide_arithmetic_is_rejected(wide: Callable[[int], Expression]) -> None:
-    fspa = read(json_text(with_arithmetic(wide(ARITHMETIC.parts))), "x.fspa.json")
+    fspa = read(SourceFile("x.fspa.json", json_text(with_arithmetic(wide(ARITHMETIC.parts)))))
     compile_expressions([fspa.atoms[0].expression], [signal.name for signal in fspa.signals], {"level_size": 20.0})
     with pytest.raises(TltlError) as caught:
-        read(json_text(with_arithmetic(wide(ARITHMETIC.parts + 1))), "x.fspa.json")
+        read(SourceFile("x.fspa.json", json_text(with_arithmetic(wide(ARITHMETIC.parts + 1)))))
     assert caught.value.diagnostics[0].code == "TLT0006"

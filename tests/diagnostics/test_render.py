@@ -250,8 +250,9 @@ SARIF = {
 
 def test_sarif_matches_its_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    names = ["level one/ä.tltl", str(tmp_path / "below.tltl"), str(tmp_path.parent / "above.tltl"), "<stdin>"]
-    labels = [Label(SourceFile(name, "keep a"), Span(5, 6), "here") for name in names]
+    names = ["level one/ä.tltl", str(tmp_path / "below.tltl"), str(tmp_path.parent / "above.tltl")]
+    sources = [*(SourceFile(name, "keep a") for name in names), SourceFile("<stdin>", "keep a", "text")]
+    labels = [Label(source, Span(5, 6), "here") for source in sources]
     diagnostics = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
     diagnostics.append(Diagnostic("TLT0001", "no place", severity="warning"))
     fixes = (replacement_fix(labels[0].source, labels[0].span, "b"),)

@@ -8,8 +8,11 @@ import pytest
 
 from tests.calls import calls
 from tests.resolve.helpers import only_spec, resolve_text, valid_program, write
+from tltlc.core.source import SourceFile
+from tltlc.grammar.parser import parse
 from tltlc.io.limits import IMPORTED
-from tltlc.resolve.imports import library_with
+from tltlc.resolve.imports import library_with, standard_library
+from tltlc.resolve.resolution import resolve
 from tltlc.resolve.spec import Spec
 
 
@@ -89,6 +92,25 @@ def test_different_declarations_are_an_error_that_shows_both(text: str) -> None:
     _, (diagnostic,) = resolve_text(f"import stealth {text} spec s = true")
     assert diagnostic.code == "TLT0204"
     assert [label.source.name.split("/")[0] for label in diagnostic.labels] == ["<test>", "<standard library>"]
+
+
+def test_every_source_has_its_kind(tmp_path: Path) -> None:
+    write(tmp_path, own="import stealth")
+    module, _ = parse(SourceFile(str(tmp_path / "main.tltl"), "import own"))
+    *libraries, own, main = (loaded.module.source for loaded in resolve(module).modules)
+    assert (own.kind, own.location) == ("file", own.name)
+    assert main.kind == "file"
+    assert {library.kind for library in libraries} == {"standard library"}
+    assert Path(libraries[-1].location) == standard_library().absolute() / "stealth.tltl"
+
+
+def test_the_path_of_a_file_may_begin_with_an_angle_bracket(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "<levels>"
+    folder.mkdir()
+    write(folder, own="signal x: bool")
+    monkeypatch.chdir(tmp_path)
+    _, diagnostics = resolve_text("import own spec s = F x", "<levels>/main.tltl")
+    assert diagnostics == ()
 
 
 def test_a_cycle_of_imports_is_named(tmp_path: Path) -> None:

@@ -26,18 +26,18 @@ RECOMPILE: Final = "compile the spec again"
 class Origin:
     """Where a document comes from, for messages that point into it.
 
-    ``name`` is the name of the document in messages. ``text`` returns its text; it is called at
+    ``name`` is the name of the document in messages. ``source`` returns its text; it is called at
     the first error that points into the document.
     """
 
-    def __init__(self, name: str, text: Callable[[], str]) -> None:
+    def __init__(self, name: str, source: Callable[[], SourceFile]) -> None:
         self.name = name
-        self._text = text
+        self._source = source
 
     @cached_property
     def source(self) -> SourceFile:
         """The text of the document."""
-        return SourceFile(self.name, self._text())
+        return self._source()
 
     def error(self, code: str, title: str, path: Path, advice: str = RECOMPILE) -> Diagnostic:
         """Return an error that points at the first line of the value at ``path``."""

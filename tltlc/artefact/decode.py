@@ -35,20 +35,17 @@ def decode(document: object, name: str) -> Fspa:
     constant = first_non_finite(document)
     if constant is not None:
         raise _not_finite(name, constant)
-    return _decode_and_check(document, Origin(name, lambda: json.dumps(document, ensure_ascii=False)))
+    return _decode_and_check(document, Origin(name, lambda: SourceFile(name, json.dumps(document, ensure_ascii=False))))
 
 
-def read(text: str, name: str) -> Fspa:
+def read(source: SourceFile) -> Fspa:
     """Return the automaton of an artefact, given its text.
-
-    ``name`` is the name of the artefact in messages.
 
     Raises:
         TltlError: the errors of :func:`decode`, and also TLT0006 the text has too many values, and
             TLT0601 the text is not JSON.
     """
-    origin = Origin(name, lambda: text)
-    return _decode_and_check(_parse(origin.source), origin)
+    return _decode_and_check(_parse(source), Origin(source.name, lambda: source))
 
 
 def _parse(source: SourceFile) -> object:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from typing import Literal
 
 from tltlc.core.record import record
+
+SourceKind = Literal["file", "standard library", "text"]
 
 
 @record
@@ -26,14 +29,20 @@ class Span:
 class SourceFile:
     """A text and its name in messages: a path, or ``<stdin>``.
 
+    ``kind`` says where the text comes from: a file, a file of the standard library, or elsewhere.
+    ``location`` is the path of the file, or the URI of a text that is open in an editor; by default
+    it is the name.
+
     A carriage return without a newline after it is replaced by a newline, so that the lines are
     those that an editor shows. Offsets do not change.
     """
 
-    __slots__ = ("_line_starts", "name", "text")
+    __slots__ = ("_line_starts", "kind", "location", "name", "text")
 
-    def __init__(self, name: str, text: str) -> None:
+    def __init__(self, name: str, text: str, kind: SourceKind = "file", location: str | None = None) -> None:
         self.name = name
+        self.kind: SourceKind = kind
+        self.location = name if location is None else location
         if "\r" in text:
             import re
 
@@ -47,13 +56,22 @@ class SourceFile:
         self._line_starts = starts
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, SourceFile) and (self.name, self.text) == (other.name, other.text)
+        return isinstance(other, SourceFile) and (self.name, self.text, self.kind, self.location) == (
+            other.name,
+            other.text,
+            other.kind,
+            other.location,
+        )
 
     def __hash__(self) -> int:
         return hash((self.name, self.text))
 
     def __repr__(self) -> str:
         return f"SourceFile(name={self.name!r})"
+
+    def with_text(self, text: str) -> SourceFile:
+        """Return a source with another text, and with the name, kind and location of this one."""
+        return SourceFile(self.name, text, self.kind, self.location)
 
     def position(self, offset: int) -> tuple[int, int]:
         """Return the line and the column of a character offset, both from 1.

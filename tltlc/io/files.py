@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from typing import TYPE_CHECKING, BinaryIO, Final, Union
 
 from tltlc.core.record import EMPTY
-from tltlc.core.source import SourceFile, Span
+from tltlc.core.source import SourceFile, SourceKind, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import ARTEFACT, SOURCE
 
@@ -298,18 +298,25 @@ def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def read_source(
-    path: str | os.PathLike[str], name: str | None = None, *, max_bytes: int = MAX_SOURCE_BYTES
+    path: str | os.PathLike[str],
+    name: str | None = None,
+    *,
+    max_bytes: int = MAX_SOURCE_BYTES,
+    kind: SourceKind = "file",
 ) -> SourceFile:
     """Return the text of a file.
 
-    ``name`` is the name of the file in messages, by default its path.
+    ``name`` is the name of the file in messages, by default its path. A file of the standard library
+    has its own ``kind``, and its path as its location.
 
     Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002 if it is not
     UTF-8, TLT0003 if it is binary, TLT0004 if it is larger than ``max_bytes``, TLT0777 if
     :func:`confine_reads` forbids to read it.
     """
     display_name = name if name is not None else os.fspath(path)
-    return decode(read_bytes(path, display_name, max_bytes), display_name, max_bytes=max_bytes)
+    location = os.fspath(path) if kind == "standard library" else None
+    data = read_bytes(path, display_name, max_bytes)
+    return decode(data, display_name, max_bytes=max_bytes, kind=kind, location=location)
 
 
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
@@ -334,10 +341,18 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
         raise reading_error(name, error) from None
 
 
-def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:
+def decode(
+    data: bytes,
+    name: str,
+    *,
+    max_bytes: int = MAX_SOURCE_BYTES,
+    kind: SourceKind = "file",
+    location: str | None = None,
+) -> SourceFile:
     """Decode the bytes of a file, which must be UTF-8, with or without a byte order mark.
 
-    ``name`` is the name of the file in messages.
+    ``name`` is the name of the file in messages; ``kind`` and ``location`` are those of the source
+    that is returned.
 
     Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than
     ``max_bytes``.
@@ -352,9 +367,10 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
     if b"\0" in data:
         raise TltlError([Diagnostic("TLT0003", f"`{name}` is a binary file", help="name a text file")])
     try:
-        return SourceFile(name, data.removeprefix(_BYTE_ORDER_MARK).decode())
+        return SourceFile(name, data.removeprefix(_BYTE_ORDER_MARK).decode(), kind, location)
     except UnicodeDecodeError as error:
-        raise _not_utf8(error.object, name, error.start) from None
+        source = SourceFile(name, error.object.decode(errors="replace"), kind, location)
+        raise _not_utf8(error.object, source, error.start) from None
 
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
@@ -398,13 +414,12 @@ def _missing_file_help(name: str) -> str | None:
     return f"did you mean `{os.path.join(folder, close_matches[0])}`?" if close_matches else None  # noqa: PTH118
 
 
-def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
+def _not_utf8(data: bytes, source: SourceFile, start: int) -> TltlError:
     """Return the error for text that is not UTF-8, with a label at the first invalid byte.
 
-    The text of the label has U+FFFD in place of the invalid bytes. ``start`` is the offset of the
+    The text of ``source`` has U+FFFD in place of the invalid bytes. ``start`` is the offset of the
     first one in ``data``.
     """
-    source = SourceFile(name, data.decode(errors="replace"))
     offset = len(data[:start].decode())
     label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is not valid UTF-8")
-    return TltlError([Diagnostic("TLT0002", f"`{name}` is not UTF-8 text", (label,), help="save it as UTF-8")])
+    return TltlError([Diagnostic("TLT0002", f"`{source.name}` is not UTF-8 text", (label,), help="save it as UTF-8")])

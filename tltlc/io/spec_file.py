@@ -8,7 +8,7 @@ import sys
 from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
-from tltlc.core.source import SourceFile
+from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.files import (
     MAX_ARTEFACT_BYTES,
@@ -66,10 +66,10 @@ def read(path: str) -> tuple[SourceFile, bool]:
         if path == STDIN:
             stream = standard_input()
             log_stream_read(stream)
-            return _read_stream(stream, STDIN_NAME)
+            return _read_stream(stream, STDIN_NAME, "text")
         log_read(path)
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
-            return _read_stream(file, path)
+            return _read_stream(file, path, "file")
     except (OSError, ValueError) as error:
         raise input_error(name, error) from None
 
@@ -80,7 +80,12 @@ def read_text(path: str, max_bytes: int) -> SourceFile:
     Errors are those of :func:`tltlc.io.files.read_source`.
     """
     data, name = read_data(path, max_bytes)
-    return decode(data, name, max_bytes=max_bytes)
+    return decode(data, name, max_bytes=max_bytes, kind=input_kind(path))
+
+
+def input_kind(path: str) -> SourceKind:
+    """Return the kind of source that a path of the command line names: standard input is a text."""
+    return "text" if path == STDIN else "file"
 
 
 def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
@@ -114,9 +119,9 @@ def input_error(name: str, error: OSError | ValueError) -> TltlError:
     return reading_error(name, error)
 
 
-def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:
+def _read_stream(stream: BinaryIO, name: str, kind: SourceKind) -> tuple[SourceFile, bool]:
     data = stream.read(MAX_SOURCE_BYTES + 1)
     if not name.endswith(ARTEFACT_ENDING) and not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return decode(data, name), False
+        return decode(data, name, kind=kind), False
     data += stream.read(MAX_ARTEFACT_BYTES + 1 - len(data))
-    return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES), True
+    return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES, kind=kind), True

@@ -9,7 +9,7 @@ from itertools import chain
 from typing import Any, Final, Protocol
 
 from tltlc.core.record import record
-from tltlc.core.source import SourceFile, Span
+from tltlc.core.source import SourceFile, SourceKind, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import TRACE_LINE
 
@@ -82,8 +82,9 @@ class TraceLines:
     line breaks, and has at most ``TRACE_LINE.size`` bytes. At most one row is kept in memory.
     """
 
-    def __init__(self, stream: Stream, name: str) -> None:
+    def __init__(self, stream: Stream, name: str, kind: SourceKind = "file") -> None:
         self.name = name
+        self._kind: SourceKind = kind
         self.text = ""
         """The first line of the current row."""
         self._stream = stream
@@ -170,7 +171,7 @@ class TraceLines:
         offset = self._first - 1
         # Earlier lines are no longer in memory. Empty lines in their place make the number of this line right. A CR
         # inside the line would count as a line end.
-        source = SourceFile(self.name, "\n" * offset + self.text.replace("\r", " "))
+        source = SourceFile(self.name, "\n" * offset + self.text.replace("\r", " "), self._kind)
         return Label(source, Span(offset + start, offset + max(start, end)), remark)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tltlc.core.record import replace
+from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.sample_times import SampleTimes, times_name
 from tltlc.monitor.samples import name_list
@@ -27,22 +28,22 @@ _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
 def read_trace(
-    stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None
+    stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None, kind: SourceKind = "file"
 ) -> Iterator[TraceSample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
-    ``stream`` is binary; ``name`` is the trace's name in messages. The format is described in
-    ``docs/traces.md``. A column ``time`` is checked against the clock of the spec, whose period is
-    ``clock_s`` seconds; None without a clock. Other columns that belong to none of the signals are
-    ignored. A sample from JSON lines may lack values, and numbers may be infinite or NaN: the
-    monitor reports both.
+    ``stream`` is binary; ``name`` is the trace's name in messages, and ``kind`` its kind of source.
+    The format is described in ``docs/traces.md``. A column ``time`` is checked against the clock of
+    the spec, whose period is ``clock_s`` seconds; None without a clock. Other columns that belong
+    to none of the signals are ignored. A sample from JSON lines may lack values, and numbers may be
+    infinite or NaN: the monitor reports both.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
             line cannot be read, TLT0623 the time of a sample is wrong. Raised during the iteration,
             after the samples before the error.
     """
-    lines = TraceLines(stream, name)
+    lines = TraceLines(stream, name, kind)
     trace = read_rows(lines)
     samples: Iterator[TraceSample] = iter(())
     if isinstance(trace, TraceTable):

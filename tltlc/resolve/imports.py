@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.core.record import record, replace
-from tltlc.core.source import SourceFile
+from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, replacement_fix
 from tltlc.grammar.tree import Import, Module
 from tltlc.grammar.typos import likely_name
@@ -16,7 +16,7 @@ from tltlc.io.files import is_file, may_be_file, may_read, outside_diagnostic, r
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 
-STANDARD_LIBRARY_NAME = "<standard library>"
+_STANDARD_LIBRARY_NAME: Final = "<standard library>"
 _NO_FILE: Final = "there is no file `{}` beside this one"
 
 
@@ -52,13 +52,13 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModul
             continue
         source = visit.module.source
         try:
-            path, display_name = _find(declaration, source, options)
+            path, written = _find(declaration, source, options)
             if path in done:
                 visit.add(declaration, done[path])
             elif any(path == ancestor.path for ancestor in stack):
                 raise _cycle_error(declaration, source, path, stack)
             else:
-                stack.append(_parse(path, display_name, declaration, source, log))
+                stack.append(_parse(path, written, declaration, source, log))
         except ResolutionError as failure:
             log.add(failure.diagnostic)
             visit.complete = False
@@ -96,7 +96,7 @@ def _names_of_libraries() -> Mapping[str, str]:
     libraries: dict[str, str] = {}
     for path in _files(standard_library()):
         if not path.stem.endswith("_tests"):
-            for match in declared.finditer(read_source(path, _display_name(path)).text):
+            for match in declared.finditer(_read(path, path).text):
                 libraries.setdefault(match[1], path.stem)
     return libraries
 
@@ -122,13 +122,10 @@ class _Visit:
 
 
 def _path_of(source: SourceFile) -> Path:
-    standard = standard_library()
-    if source.name.startswith(STANDARD_LIBRARY_NAME):
-        return standard / source.name[len(STANDARD_LIBRARY_NAME) + 1 :]
     try:
-        return Path(source.name).absolute()
+        return Path(source.location).absolute()
     except FileNotFoundError:
-        return Path(source.name)  # the current folder has been deleted
+        return Path(source.location)  # the current folder has been deleted
 
 
 def _folder(source: SourceFile) -> Path:
@@ -136,13 +133,13 @@ def _folder(source: SourceFile) -> Path:
 
     For a text without a file, it is the current folder.
     """
-    if source.name.startswith(STANDARD_LIBRARY_NAME):
+    if source.kind == "standard library":
         return standard_library()
-    return Path(source.name).parent if not source.name.startswith("<") else Path()
+    return Path(source.location).parent if source.kind == "file" else Path()
 
 
-def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, str]:
-    """Return the absolute path of an imported file and the name to show for it.
+def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, Path]:
+    """Return the absolute path of an imported file, and its path as the user wrote the folder.
 
     Raises ResolutionError: TLT0010 if there is no file, TLT0777 if it may not be read.
     """
@@ -174,12 +171,12 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 or "a path is relative to the folder of this file",
                 fixes=(replacement_fix(source, declaration.target_span, replacement),) if replacement else (),
             )
-        return Path(_normalise(file.absolute())), _display_name(file)
+        return Path(_normalise(file.absolute())), file
     name = target.replace(".", "/") + ".tltl"
     for folder in folders:
         _check_inside(folder / name, declaration, source)
         if is_file(folder / name):
-            return Path(_normalise((folder / name).absolute())), _display_name(folder / name)
+            return Path(_normalise((folder / name).absolute())), folder / name
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
     suggestion = likely_name(target, known)
     advice = _similar_help(suggestion) or "a library is a file NAME.tltl beside this one or in a --library folder"
@@ -241,21 +238,23 @@ def _normalise(path: Path) -> str:
     return normpath(path)
 
 
-def _display_name(path: Path) -> str:
-    """Return the path to show for a file.
+def _read(path: Path, written: Path) -> SourceFile:
+    """Read a file; its name in messages is its path as the user wrote it.
 
-    The path of a file of the standard library does not depend on where the package is installed.
+    The name of a file of the standard library does not depend on where the package is installed.
     """
+    kind: SourceKind = "standard library"
     try:
-        inside = Path(_normalise(path.absolute())).relative_to(standard_library().absolute())
+        inside = Path(_normalise(written.absolute())).relative_to(standard_library().absolute())
+        name = f"{_STANDARD_LIBRARY_NAME}/{inside.as_posix()}"
     except ValueError:
-        return str(path)
-    return f"{STANDARD_LIBRARY_NAME}/{inside.as_posix()}"
+        kind, name = "file", str(written)
+    return read_source(path, name, kind=kind)
 
 
-def _parse(path: Path, display_name: str, declaration: Import, source: SourceFile, log: Log) -> _Visit:
+def _parse(path: Path, written: Path, declaration: Import, source: SourceFile, log: Log) -> _Visit:
     try:
-        text = read_source(path, display_name)
+        text = _read(path, written)
     except TltlError as failure:
         here = Label(source, declaration.target_span, "imported here")
         cause = failure.diagnostics[0]

@@ -92,7 +92,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
         advice = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
         raise TypeError(f"a spec must be a path, a text or an automaton, not {spec!r:.60}{advice}")
     if isinstance(spec, str) and _is_text(spec):
-        source, path, name = SourceFile("<text>", spec), "<text>", None
+        source, path, name = SourceFile("<text>", spec, "text"), "<text>", None
         is_artefact = _is_artefact(spec)
     else:
         path, name = fileio.split_spec_name(os.fspath(spec))

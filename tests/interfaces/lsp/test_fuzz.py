@@ -48,7 +48,7 @@ def test_random_edits_keep_all_answers_consistent(path: Path) -> None:
     whole = path.read_text(encoding="utf-8")
     for _ in range(4):
         document, _, workspace = open_text(whole, path.parent)
-        uri, text = uri_of(document.source.name), whole
+        uri, text = uri_of(document.source), whole
         for version in range(2, 2 + generator.randint(1, 5)):
             text = random_edit(text, generator)
             workspace.put(uri, version, text)

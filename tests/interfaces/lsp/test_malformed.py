@@ -14,7 +14,7 @@ import pytest
 from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.texts import ENDLESS
 from tests.waiting import HANG_S, until
-from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.paths import location_at, location_of, source_at, uri_of
 from tltlc.interfaces.lsp.server import create
 from tltlc.io.limits import MESSAGE
 
@@ -328,6 +328,9 @@ def test_a_document_may_be_closed_during_a_request(client: Client, tmp_path: Pat
 
 
 def test_invalid_uris_have_names() -> None:
-    assert name_of("file://[oh/a.tltl") == "<file://[oh/a.tltl>"
-    assert name_of("untitled:a") == "<untitled:a>"
-    assert Path(name_of(HERE)).is_absolute()
+    for uri in ("file://[oh/a.tltl", "untitled:a"):
+        source = source_at(uri, "")
+        assert (source.name, source.kind, source.location) == (f"<{uri}>", "text", uri)
+        assert location_at(uri) == location_of(source) == uri_of(source) == uri
+    assert Path(location_at(HERE)).is_absolute()
+    assert source_at(HERE, "").kind == "file"

@@ -85,7 +85,7 @@ def test_a_signal_declared_in_two_files_is_one_symbol() -> None:
     # The two files are unrelated until a third one imports both.
     assert set(texts) == {"main"}
     document, _, workspace = open_text(main, first=first, second=second)
-    symbol = workspace.document_named("/nowhere/first.tltl")
+    symbol = workspace.document_at("/nowhere/first.tltl")
     assert symbol is not None
     changed = rename(symbol.names[0].symbol, "m", workspace)
     assert sorted(Path(document_.source.name).stem for document_, _ in changed) == ["first", "second"]

@@ -51,7 +51,7 @@ def diagnostics_of(workspace: Workspace, uri: str) -> tuple[Diagnostics, Diagnos
     document = workspace.document(uri)
     assert document is not None
     diagnostics = tuple(replace(diagnostic, help=None, fixes=()) for diagnostic in document.diagnostics)
-    return diagnostics, workspace.project(document.source.name)[1]
+    return diagnostics, workspace.project(document.source)[1]
 
 
 @given(st.integers(0, 2), st.lists(STEPS, min_size=1, max_size=12))

@@ -118,7 +118,7 @@ def _as_artefact(fspa: Fspa) -> Fspa:
 
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
     assert isinstance(text, str)
-    return read(text, "x")
+    return read(SourceFile("x", text))
 
 
 def accepts(fspa: Fspa, prefix: Sequence[int], cycle: Sequence[int]) -> bool:

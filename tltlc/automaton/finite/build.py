@@ -322,6 +322,6 @@ def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[
         semantics="finite",
         tags=(),
         clock_s=None,
-        source=SourceFile("<formula>", ascii_text(formula)),
+        source=SourceFile("<formula>", ascii_text(formula), "text"),
         name_span=Span(0, 0),
     )

@@ -62,13 +62,13 @@ def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
     replacements = [
         {"deletedRegion": _region(source, edit.span), "insertedContent": {"text": edit.text}} for edit in fix.edits
     ]
-    change = {"artifactLocation": {"uri": _uri(source.name)}, "replacements": replacements}
+    change = {"artifactLocation": {"uri": _uri(source)}, "replacements": replacements}
     return {"description": {"text": fix.title}, "artifactChanges": [change]}
 
 
 def _location(label: Label) -> dict[str, object]:
     region = _region(label.source, label.span)
-    return {"physicalLocation": {"artifactLocation": {"uri": _uri(label.source.name)}, "region": region}}
+    return {"physicalLocation": {"artifactLocation": {"uri": _uri(label.source)}, "region": region}}
 
 
 def _region(source: SourceFile, span: Span) -> dict[str, object]:
@@ -77,9 +77,13 @@ def _region(source: SourceFile, span: Span) -> dict[str, object]:
     return {"startLine": start_line, "startColumn": start_column, "endLine": end_line, "endColumn": end_column}
 
 
-def _uri(name: str) -> str:
-    """Return the URI of a file, relative to the current folder if the file is inside."""
-    path = os.path.relpath(name) if name and not name.startswith("<") else name
-    if path.startswith(os.pardir):
-        return "file://" + quote(os.path.abspath(name).replace(os.sep, "/"))  # noqa: PTH100
+def _uri(source: SourceFile) -> str:
+    """Return the URI of a file, relative to the current folder if the file is inside.
+
+    A text that is no file of the user has its name as its URI.
+    """
+    is_file = source.kind == "file" and source.name
+    path = os.path.relpath(source.name) if is_file else source.name
+    if is_file and path.startswith(os.pardir):
+        return "file://" + quote(os.path.abspath(source.name).replace(os.sep, "/"))  # noqa: PTH100
     return quote(path.replace(os.sep, "/"))

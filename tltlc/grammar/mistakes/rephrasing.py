@@ -108,7 +108,7 @@ def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> boo
         source_text[tokens[0].start : tokens[start].start],
         source_text[tokens[stop - 1].end : tokens[-1].end],
     )
-    source = SourceFile("", f"{before}{text}{after}")
+    source = SourceFile("", f"{before}{text}{after}", "text")
     lexed = tokenize(source.text)
     builder = Builder(source, lexed.docs)
     try:

@@ -110,7 +110,7 @@ def artefact_error(artefact: str) -> Diagnostic:
 
 def _hoa_diagnostic(source: SourceFile) -> Diagnostic:
     title = f"`{source.name}` is an automaton in the Hanoi format, not a spec"
-    path = STDIN if source.name == STDIN_NAME else source.name
+    path = STDIN if source.kind == "text" else source.name
     help_ = f"make an artefact of it with `tltlc import {path} --predicates LIB.tltl`"
     return Diagnostic("TLT0652", title, help=help_)
 

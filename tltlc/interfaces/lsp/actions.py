@@ -11,6 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
+from tltlc.interfaces.lsp.paths import location_of
 from tltlc.tools.lint.fixes import fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.rule import LintFinding
 
@@ -20,21 +21,21 @@ def actions(
     span: Span,
     findings: tuple[LintFinding, ...],
     encoding: str,
-    uri_of: Callable[[str], str],
+    uri_of: Callable[[SourceFile], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
 ) -> list[types.CodeAction]:
     """Return the fixes for diagnostics that touch a span, as quick-fix actions.
 
     ``findings`` are the linter's findings in ``document``. ``encoding`` is the unit of columns.
-    ``uri_of`` converts a file name to a URI. ``edit_of`` converts the edits of each URI to a
+    ``uri_of`` returns the URI of a source. ``edit_of`` converts the edits of each URI to a
     workspace edit.
     """
-    uri = uri_of(document.source.name)
+    uri = uri_of(document.source)
 
     def errors(source: SourceFile) -> tuple[Sequence[Diagnostic], Sequence[Diagnostic]]:
         edited = document
         if source != document.source:
-            edited = Document(source, document.project, {**document.texts, source.name: source.text})
+            edited = Document(source, document.project, {**document.texts, location_of(source): source.text})
         return edited.syntax_errors, edited.diagnostics
 
     findings_at_span = [finding for finding in findings if _touches(finding.diagnostic, document, span)]

@@ -27,7 +27,7 @@ from tltlc.interfaces.lsp import (
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
 from tltlc.interfaces.lsp.names import Occurrence, Symbol
-from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.paths import location_at
 from tltlc.interfaces.lsp.positions import offset, range_of
 from tltlc.interfaces.lsp.session import EditorSession
 from tltlc.interfaces.lsp.worker import LONGEST_S
@@ -52,12 +52,10 @@ def _definition(server: EditorSession, params: types.DefinitionParams) -> types.
     name = document.name_at(at)
     if name is not None:
         symbol = name.symbol
-        return types.Location(
-            server.texts.uri(symbol.source.name), range_of(symbol.source, symbol.span, server.encoding)
-        )
+        return types.Location(server.texts.uri(symbol.source), range_of(symbol.source, symbol.span, server.encoding))
     for span, source in imports.targets(document):
         if span.start <= at <= span.end:
-            return types.Location(server.texts.uri(source.name), range_of(source, Span(0, 0), server.encoding))
+            return types.Location(server.texts.uri(source), range_of(source, Span(0, 0), server.encoding))
     return None
 
 
@@ -71,7 +69,7 @@ async def _references(server: EditorSession, params: types.ReferenceParams) -> l
     if name is None:
         return None
     return [
-        types.Location(server.texts.uri(document.source.name), range_of(document.source, place.span, server.encoding))
+        types.Location(server.texts.uri(document.source), range_of(document.source, place.span, server.encoding))
         for document, places in references.references(name.symbol, server.texts)
         for place in places
         if params.context.include_declaration or not place.declares
@@ -113,7 +111,7 @@ async def _rename(server: EditorSession, params: types.RenameParams) -> types.Wo
 
 async def _move_files(server: EditorSession, params: types.RenameFilesParams) -> types.WorkspaceEdit:
     await server.texts.parse(file_renames.may_import)
-    renames = [(name_of(file.old_uri), name_of(file.new_uri)) for file in params.files]
+    renames = [(location_at(file.old_uri), location_at(file.new_uri)) for file in params.files]
     return _workspace_edit(server, file_renames.edits_of_moves(renames, server.texts))
 
 
@@ -169,7 +167,7 @@ async def _find_symbols(server: EditorSession, params: types.WorkspaceSymbolPara
         symbol
         for document in server.texts.all()
         for symbol in symbols.matching_symbols(
-            document, params.query, server.encoding, server.texts.uri(document.source.name)
+            document, params.query, server.encoding, server.texts.uri(document.source)
         )
     ]
 
@@ -195,7 +193,7 @@ async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
 
 def _workspace_edit(server: EditorSession, changes: list[tuple[Document, list[Edit]]]) -> types.WorkspaceEdit:
     edits = {
-        server.texts.uri(document.source.name): [
+        server.texts.uri(document.source): [
             text_edit(document.source, edit, server.encoding) for edit in document_edits
         ]
         for document, document_edits in changes

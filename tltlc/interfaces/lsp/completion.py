@@ -9,7 +9,7 @@ from typing import Final
 
 from lsprotocol import types
 
-from tltlc.core.source import SourceFile, Span
+from tltlc.core.source import Span
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, JUDGE, SEMANTICS, TEST_ITEMS, VERDICTS
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
@@ -17,9 +17,9 @@ from tltlc.grammar.tree import Clause, LetDecl, NameExpr, PredicateDecl, SignalD
 from tltlc.interfaces.lsp.cursor import Cursor, cursor, quoted_text
 from tltlc.interfaces.lsp.declaration_text import declaration_text
 from tltlc.interfaces.lsp.document import Document
-from tltlc.interfaces.lsp.paths import path_of
+from tltlc.interfaces.lsp.paths import location_of
 from tltlc.interfaces.lsp.positions import range_of
-from tltlc.io.files import unsaved_texts
+from tltlc.io.files import is_file, unsaved_texts
 from tltlc.resolve import units
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.scope import FUNCTIONS, Binding
@@ -285,7 +285,7 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
         yield from _libraries(document)
     elif place.last in ("LPAR", "COMMA"):
         # The incomplete import cannot be parsed, so resolve an import of the whole file instead.
-        alone = SourceFile(document.source.name, f"import {place.piece[1].text}")
+        alone = document.source.with_text(f"import {place.piece[1].text}")
         yield from _visible_names(Document(alone, document.project, document.texts), tuple(_KINDS))
 
 
@@ -316,10 +316,10 @@ def _sources(folder: Path, document: Document) -> list[Path]:
             paths = set(folder.glob("*.tltl"))
         except OSError:
             paths = set()
-    paths |= {Path(name) for name in document.texts if Path(name).parent == folder and name.endswith(".tltl")}
+        open_files = (Path(location) for location in document.texts if is_file(location))
+        paths |= {path for path in open_files if path.parent == folder and path.suffix == ".tltl"}
     return sorted(path for path in paths if not path.stem.endswith("_tests"))
 
 
 def _folder(document: Document) -> Path:
-    name = path_of(document.source.name)
-    return Path() if name.startswith("<") else Path(name).parent
+    return Path() if document.source.kind == "text" else Path(location_of(document.source)).parent

@@ -57,7 +57,7 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
         return None
     if tokens and tokens[-1].type == BAD and tokens[-1].text.startswith('"'):
         return None
-    return _cursor_after(SourceFile(source.name, before[:start]), tokens, Span(start, offset))
+    return _cursor_after(source.with_text(before[:start]), tokens, Span(start, offset))
 
 
 def _word_start(text: str) -> int:

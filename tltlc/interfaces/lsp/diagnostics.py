@@ -7,7 +7,7 @@ from typing import Final
 
 from lsprotocol import types
 
-from tltlc.core.source import Span
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.diagnostics.shortening import shorten
 from tltlc.grammar.tree import Import
@@ -24,12 +24,12 @@ _UNNECESSARY: Final = {"TLT0421", "TLT0422", "TLT0425", "TLT0427"}
 
 
 def protocol_diagnostic(
-    diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]
+    diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[SourceFile], str]
 ) -> types.Diagnostic:
     """Convert a diagnostic for display in a document.
 
     A diagnostic of an imported file appears at the import through which the document reads that
-    file. ``encoding`` is the unit of columns, and ``uri_of`` converts a file name to a URI.
+    file. ``encoding`` is the unit of columns, and ``uri_of`` returns the URI of a source.
     """
     diagnostic = shorten(diagnostic)
     main = label_in(diagnostic, document)
@@ -41,7 +41,7 @@ def protocol_diagnostic(
         message += f"\n{diagnostic.help}"
     related = [
         types.DiagnosticRelatedInformation(
-            types.Location(uri_of(label.source.name), range_of(label.source, label.span, encoding)),
+            types.Location(uri_of(label.source), range_of(label.source, label.span, encoding)),
             label.message or ("here" if main else diagnostic.title),
         )
         for label in diagnostic.labels

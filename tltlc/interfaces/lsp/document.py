@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
 from tltlc.interfaces.lsp.names import Occurrence, occurrences
-from tltlc.interfaces.lsp.paths import path_of
+from tltlc.interfaces.lsp.paths import location_of
 from tltlc.io.files import Stamp, access_log, stamp, unsaved_texts
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.resolution import Resolution
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 class Document:
     """One version of a text, with its syntax and names.
 
-    ``texts`` contains the texts of all open documents, by path; they replace the files on disk.
+    ``texts`` contains the texts of all open documents, by location; they replace the files on disk.
     ``notes`` contains the stamps, by path, of the files that were read to find the project;
     :meth:`is_current` compares them with new stamps (:func:`tltlc.io.files.stamp`). Each property
     is computed on first use and then cached, because the text does not change.
@@ -68,7 +69,10 @@ class Document:
 
         Files that are open in the editor are not checked, because their texts come from the editor.
         """
-        return all(path_of(path) in self.texts or stamp(path) == state for path, state in self._notes.items())
+        return all(
+            os.path.abspath(path) in self.texts or stamp(path) == state  # noqa: PTH100 (keeps links as they are)
+            for path, state in self._notes.items()
+        )
 
     @property
     def scope(self) -> Scope:
@@ -125,14 +129,14 @@ class Document:
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """The paths of this file and of all files that it imports, also indirectly."""
-        return frozenset(path_of(loaded.module.source.name) for loaded in self.resolution.modules)
+        """The locations of this file and of all files that it imports, also indirectly."""
+        return frozenset(location_of(loaded.module.source) for loaded in self.resolution.modules)
 
-    def depends_on(self, name: str) -> bool:
-        """Whether a change of the file at path ``name`` may affect this document.
+    def depends_on(self, location: str) -> bool:
+        """Whether a change of the document at ``location`` may affect this document.
 
         Changes of this document's file and of the files that it imports may affect it. If an import
         failed, any file may be the one that the import did not find.
         """
         # Until the names are resolved, it is not known which files this one imports.
-        return "resolution" not in self.__dict__ or name in self.reads or self.scope.incomplete
+        return "resolution" not in self.__dict__ or location in self.reads or self.scope.incomplete

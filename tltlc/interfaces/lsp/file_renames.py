@@ -11,9 +11,8 @@ from tltlc.grammar.quotes import quote
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Import
 from tltlc.interfaces.lsp.document import Document
-from tltlc.interfaces.lsp.paths import is_below, path_of
+from tltlc.interfaces.lsp.paths import is_below, location_of
 from tltlc.interfaces.lsp.workspace import Workspace
-from tltlc.resolve.imports import STANDARD_LIBRARY_NAME
 
 Moves = Sequence[tuple[str, str]]
 """Old and new paths of renamed files and folders."""
@@ -36,10 +35,10 @@ def may_import(text: str) -> bool:
 
 
 def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
-    here = path_of(document.source.name)
+    here = location_of(document.source)
     for declaration, loaded in document.resolution.modules[-1].imports:
-        there = path_of(loaded.module.source.name)
-        if loaded.module.source.name.startswith(STANDARD_LIBRARY_NAME):
+        there = location_of(loaded.module.source)
+        if loaded.module.source.kind == "standard library":
             continue
         if (_path_after(here, moves), _path_after(there, moves)) != (here, there):
             folder = dirname(_path_after(here, moves))  # noqa: PTH120

@@ -17,12 +17,12 @@ def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
         yield declaration.target_span, loaded.module.source
 
 
-def links(document: Document, encoding: str, uri_of: Callable[[str], str]) -> list[types.DocumentLink]:
+def links(document: Document, encoding: str, uri_of: Callable[[SourceFile], str]) -> list[types.DocumentLink]:
     """Return the imports of a document as links to their files.
 
-    ``encoding`` is the unit of columns, and ``uri_of`` converts a file name to a URI.
+    ``encoding`` is the unit of columns, and ``uri_of`` returns the URI of a source.
     """
     return [
-        types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source.name))
+        types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source))
         for span, source in targets(document)
     ]

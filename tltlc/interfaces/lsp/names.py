@@ -153,7 +153,7 @@ class _Walk:
         Names in labels never begin with the alias of an import.
         """
         text = self._tokens[self._starts[item.span.start] + 2]
-        formula, _ = parse_formula(SourceFile(self._scope.source.name, text.text[1:-1]))
+        formula, _ = parse_formula(self._scope.source.with_text(text.text[1:-1]))
         if formula is not None:
             aliased, self._visible, self._label_start = self._visible, self._unaliased, text.start + 1
             self._expressions([formula])

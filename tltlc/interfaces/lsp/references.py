@@ -15,7 +15,7 @@ from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.file_renames import may_import
 from tltlc.interfaces.lsp.names import MERGED, Occurrence, Symbol
-from tltlc.interfaces.lsp.paths import path_of
+from tltlc.interfaces.lsp.paths import location_of
 from tltlc.interfaces.lsp.workspace import Workspace
 from tltlc.resolve.scope import FUNCTIONS
 
@@ -35,7 +35,7 @@ def references(symbol: Symbol, workspace: Workspace) -> Matches:
     programs = _programs(symbol, documents)
     result = []
     for document in documents:
-        if path_of(document.source.name) in programs:
+        if location_of(document.source) in programs:
             places = [place for place in document.names if place.symbol.is_same(symbol)]
             if places:
                 result.append((document, places))
@@ -71,7 +71,7 @@ def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Docume
     _check_form(symbol, name)
     matches = references(symbol, workspace)
     for document, _ in matches:
-        if path_of(document.source.name) not in workspace.texts() and not workspace.is_own(document.source.name):
+        if location_of(document.source) not in workspace.texts() and not workspace.is_own(document.source):
             raise _outside_workspace(symbol, document.source.name)
     changes = [(document, [Edit(place.span, name) for place in _distinct(places)]) for document, places in matches]
     _check_free(symbol, name, changes, workspace)
@@ -80,13 +80,13 @@ def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Docume
 
 def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
     """Raise TLT0770 if a symbol is declared outside the workspace."""
-    if not workspace.is_own(symbol.source.name):
+    if not workspace.is_own(symbol.source):
         raise _outside_workspace(symbol, symbol.source.name)
     if symbol.kind in MERGED:
         for document in _documents(symbol, workspace):
             for loaded in document.resolution.modules:
                 source = loaded.module.source
-                if workspace.is_own(source.name) or not _declares(document, symbol, source):
+                if workspace.is_own(source) or not _declares(document, symbol, source):
                     continue
                 raise _outside_workspace(symbol, source.name)
 
@@ -96,7 +96,7 @@ def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
 
     False if the document does not read the file of ``symbol``, itself or through imports.
     """
-    if path_of(symbol.source.name) not in document.reads:
+    if location_of(symbol.source) not in document.reads:
         return False
     modules = document.resolution.modules
     return any(
@@ -109,7 +109,7 @@ def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
 
 def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
     """Return the documents that may contain a symbol; the document that declares it comes first."""
-    own = workspace.document_named(path_of(symbol.source.name))
+    own = workspace.document_at(location_of(symbol.source))
     candidates = [] if symbol.kind in _FILE_LOCAL else [*workspace.all()]
     candidates = [document for document in candidates if may_have_references(symbol, document.source.text)]
     by_name = {document.source.name: document for document in candidates}
@@ -119,15 +119,15 @@ def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
 
 
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
-    """Return the paths of the files in which the name of ``symbol`` may mean this symbol.
+    """Return the locations of the files in which the name of ``symbol`` may mean this symbol.
 
     These are the file that declares the symbol and the documents that import this file. Several
     files may declare the same signal, param or entity. For these, the files that one document reads
     belong together, and so do two such groups that share a file.
     """
-    known = {path_of(symbol.source.name)}
+    known = {location_of(symbol.source)}
     if symbol.kind not in MERGED:
-        return known | {path_of(document.source.name) for document in documents if document.reads & known}
+        return known | {location_of(document.source) for document in documents if document.reads & known}
     while True:
         # If two files declare a signal of the same name, it is one signal in a third file that imports both.
         connected = set().union(*(document.reads for document in documents if document.reads & known))
@@ -157,11 +157,9 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
     """Raise TLT0771 if the rename would change what any name refers to, or add errors."""
     texts = workspace.texts()
     for document, edits in changes:
-        texts[path_of(document.source.name)] = apply_edits(document.source.text, edits)
+        texts[location_of(document.source)] = apply_edits(document.source.text, edits)
     for document, edits in changes:
-        after = Document(
-            SourceFile(document.source.name, texts[path_of(document.source.name)]), document.project, texts
-        )
+        after = Document(document.source.with_text(texts[location_of(document.source)]), document.project, texts)
         if _name_targets(document, edits) != _name_targets(after, edits, shift=True) or _errors(after) > _errors(
             document
         ):
@@ -173,7 +171,7 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
         [] if symbol.kind in _LOCAL else [document for document in workspace.all() if may_import(document.source.text)]
     )
     for document in importing:
-        if any(path_of(changed.source.name) in document.reads for changed, _ in changes) and not any(
+        if any(location_of(changed.source) in document.reads for changed, _ in changes) and not any(
             changed.source.name == document.source.name for changed, _ in changes
         ):
             after = Document(document.source, document.project, texts)

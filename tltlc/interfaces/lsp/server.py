@@ -24,7 +24,7 @@ from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
 from tltlc.interfaces.lsp.frames import Frames
 from tltlc.interfaces.lsp.lenses import RUN_TESTS
-from tltlc.interfaces.lsp.paths import name_of
+from tltlc.interfaces.lsp.paths import location_at
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
 from tltlc.interfaces.lsp.session import EditorSession
 
@@ -180,7 +180,7 @@ def _error_answers(server: EditorSession, params: Any) -> Iterator[None]:
 
 def _on_initialized(server: EditorSession, _: types.InitializedParams) -> None:
     root = server.workspace.root_uri
-    server.texts.folders = [name_of(uri) for uri in server.workspace.folders or ([root] if root else [])]
+    server.texts.folders = [location_at(uri) for uri in server.workspace.folders or ([root] if root else [])]
     capabilities = server.client_capabilities.workspace
     watching = capabilities.did_change_watched_files if capabilities else None
     if watching and watching.dynamic_registration:
@@ -223,7 +223,7 @@ def _on_files(server: EditorSession, _: Any) -> None:
 
 
 def _on_folders(server: EditorSession, _: types.DidChangeWorkspaceFoldersParams) -> None:
-    server.texts.folders = [name_of(uri) for uri in server.workspace.folders]
+    server.texts.folders = [location_at(uri) for uri in server.workspace.folders]
 
 
 _NOTIFICATIONS: Final[tuple[tuple[str, Callable[[EditorSession, Any], Any], Any], ...]] = (

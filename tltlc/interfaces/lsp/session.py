@@ -11,11 +11,12 @@ from pygls.exceptions import FeatureRequestError
 from pygls.lsp.server import LanguageServer
 
 from tltlc import __version__
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import SpecDecl
 from tltlc.interfaces.lsp.diagnostics import project_file_diagnostic, protocol_diagnostic
 from tltlc.interfaces.lsp.document import Document
-from tltlc.interfaces.lsp.paths import name_of, path_of
+from tltlc.interfaces.lsp.paths import location_at, location_of
 from tltlc.interfaces.lsp.positions import UTF_16
 from tltlc.interfaces.lsp.previous_diagnostics import previous_diagnostics
 from tltlc.interfaces.lsp.protocol import LOG, Protocol
@@ -47,6 +48,7 @@ class EditorSession(LanguageServer):
         self._analyses: dict[str, tuple[Document, DocumentAnalysis]] = {}
         self._timers: dict[tuple[str, str], asyncio.TimerHandle] = {}
         self._imported_uris: dict[str, list[str]] = {}
+        self._project_files: dict[str, SourceFile] = {}
         self._project_diagnostics: dict[str, tuple[Diagnostic, ...]] = {}
 
     @property
@@ -57,12 +59,12 @@ class EditorSession(LanguageServer):
 
     def analysis(self, document: Document) -> DocumentAnalysis | None:
         """Return the analysis of a document; None if its current text has not been analysed."""
-        analysed_document, analysis = self._analyses.get(document.source.name, (None, None))
+        analysed_document, analysis = self._analyses.get(location_of(document.source), (None, None))
         return analysis if analysed_document is document else None
 
     def last_analysis(self, document: Document) -> DocumentAnalysis | None:
         """Return the last analysis of a document, perhaps of an earlier text; None if there is none."""
-        _, analysis = self._analyses.get(document.source.name, (None, None))
+        _, analysis = self._analyses.get(location_of(document.source), (None, None))
         return analysis
 
     def workspace_edit(self, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
@@ -108,7 +110,7 @@ class EditorSession(LanguageServer):
     def on_close(self, uri: str) -> None:
         """Handle the closing of a document: forget its analysis, and clear its diagnostics."""
         self.queue.drop(uri)
-        self._analyses.pop(name_of(uri), None)
+        self._analyses.pop(location_at(uri), None)
         for task in ("now", "later", "again"):
             timer = self._timers.pop((task, uri), None)
             if timer is not None:
@@ -143,7 +145,7 @@ class EditorSession(LanguageServer):
         document = self.texts.document(uri) if self.texts.is_open(uri) else None
         if document is None:
             return
-        analysed_document, analysis = self._analyses.get(document.source.name, (document, None))
+        analysed_document, analysis = self._analyses.get(location_of(document.source), (document, None))
         if analysis is None:
             diagnostics = document.diagnostics
         elif analysed_document is document:
@@ -162,10 +164,11 @@ class EditorSession(LanguageServer):
 
         If diagnostics of other project files were sent before, bring these up to date, too.
         """
-        errors = self.texts.project(document.source.name)[1]
-        places = {label.source.name for diagnostic in errors for label in diagnostic.labels}
-        for name in dict.fromkeys([*self._project_diagnostics, *sorted(places)]):
-            project_errors = self.texts.project(path_of(name))[1]
+        errors = self.texts.project(document.source)[1]
+        files = {label.source.name: label.source for diagnostic in errors for label in diagnostic.labels}
+        self._project_files |= dict(sorted(files.items()))
+        for name, source in self._project_files.items():
+            project_errors = self.texts.project(source)[1]
             own = tuple(
                 diagnostic
                 for diagnostic in project_errors
@@ -175,7 +178,7 @@ class EditorSession(LanguageServer):
                 self._project_diagnostics[name] = own
                 protocol_diagnostics = [project_file_diagnostic(diagnostic, self.encoding) for diagnostic in own]
                 self.text_document_publish_diagnostics(
-                    types.PublishDiagnosticsParams(self.texts.uri(name), protocol_diagnostics)
+                    types.PublishDiagnosticsParams(self.texts.uri(source), protocol_diagnostics)
                 )
 
     # --- automata -----------------------------------------------------------------------------
@@ -225,7 +228,7 @@ class EditorSession(LanguageServer):
         analysis = await self.worker.analyse(request)
         if analysis is None or self.texts.document(uri) is not document:
             return None
-        self._analyses[document.source.name] = (document, analysis)
+        self._analyses[location_of(document.source)] = (document, analysis)
         if analysis == previous:
             return analysis
         self._publish(uri)

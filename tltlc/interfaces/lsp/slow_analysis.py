@@ -94,9 +94,9 @@ def _elsewhere(request: Request) -> Container[str]:
 
     For files that are open in the editor, the text in the editor counts.
     """
-    name = request.source.name
-    if name.startswith("<"):
+    if request.source.kind == "text":
         return frozenset()
+    name = request.source.name
     neighbour_texts = {str(path): text for path, text in neighbours([name]).items()}
     for path, text in request.texts.items():
         place = os.path.realpath(path)

@@ -9,7 +9,6 @@ from lsprotocol import types
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.names import Occurrence
 from tltlc.interfaces.lsp.positions import position
-from tltlc.resolve.imports import STANDARD_LIBRARY_NAME
 
 _TYPES: Final = {
     "signal": types.SemanticTokenTypes.Property,
@@ -54,6 +53,6 @@ def tokens(document: Document, encoding: str) -> list[int]:
 
 
 def _modifiers(name: Occurrence) -> int:
-    is_of_library = name.symbol.source.name.startswith(STANDARD_LIBRARY_NAME)
+    is_of_library = name.symbol.source.kind == "standard library"
     flags = (name.declares, name.symbol.kind == "param", is_of_library)
     return sum(1 << bit for bit, is_set in enumerate(flags) if is_set)

@@ -9,10 +9,11 @@ from collections.abc import Callable, Iterator
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.lsp.document import Document
-from tltlc.interfaces.lsp.paths import is_below, name_of, path_of, uri_of
+from tltlc.interfaces.lsp.paths import is_below, location_at, location_of, source_at, uri_of
 from tltlc.io.files import access_log, is_file, may_be_file, read_source, unsaved_texts, walk
 from tltlc.io.limits import WORKSPACE, WORKSPACE_PARSED
 from tltlc.io.project import Project, project_for
+from tltlc.io.spec_file import STDIN
 from tltlc.resolve.imports import standard_library
 
 
@@ -26,7 +27,7 @@ class Workspace:
 
     def __init__(self) -> None:
         self.folders: list[str] = []
-        self._open: dict[str, tuple[str, int | None, str]] = {}
+        self._open: dict[str, tuple[str, int | None, SourceFile]] = {}
         self._documents: dict[str, Document] = {}
 
     # --- notifications ------------------------------------------------------------------------
@@ -36,68 +37,68 @@ class Workspace:
 
         Return the URIs of the open documents that the change affects, first ``uri`` itself.
         """
-        name = name_of(uri)
-        self._open[name] = (uri, version, text)
-        return [uri, *self._forget(name)]
+        location = location_at(uri)
+        self._open[location] = (uri, version, source_at(uri, text))
+        return [uri, *self._forget(location)]
 
     def close(self, uri: str) -> list[str]:
         """Forget the text of a closed document, so that the file on disk counts again.
 
         Return the URIs of the open documents that this affects.
         """
-        name = name_of(uri)
-        self._open.pop(name, None)
-        return self._forget(name)
+        location = location_at(uri)
+        self._open.pop(location, None)
+        return self._forget(location)
 
     def refresh(self) -> list[str]:
         """Drop the cached documents that depend on a file that has changed on disk.
 
         Return the URIs of the dropped documents that are open.
         """
-        return self._drop([name for name, document in self._documents.items() if not document.is_current()])
+        return self._drop([location for location, document in self._documents.items() if not document.is_current()])
 
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
         """Return the document with this URI: the open text, else the file; None without either."""
-        return self.document_named(name_of(uri))
+        return self.document_at(location_at(uri))
 
-    def document_named(self, name: str) -> Document | None:
+    def document_at(self, location: str) -> Document | None:
         """Return the document of the text that is open in the editor, else of the file on disk.
 
-        Return None if there is neither. The name is an absolute path, or ``<URI>`` for a text that
+        Return None if there is neither. The location is an absolute path, or the URI of a text that
         is not a file.
         """
-        opened = self._open.get(name)
-        document = self._documents.get(name)
+        opened = self._open.get(location)
+        document = self._documents.get(location)
         # The editor reports changes of open texts; closed files may change without notice.
         if document is not None and (opened is not None or document.is_current()):
             return document
         with access_log() as notes:
             # Reading a named pipe would block the server until its other end is opened.
-            if opened is None and not is_file(name):
+            if opened is None and not is_file(location):
                 return None
             try:
-                source = SourceFile(name, opened[2]) if opened else read_source(name)
+                source = opened[2] if opened else read_source(location)
             except TltlError:
                 return None
-            project, _ = self.project(name)
-        document = self._documents[name] = Document(source, project, self.texts(), notes)
+            project, _ = self.project(source)
+        document = self._documents[location] = Document(source, project, self.texts(), notes)
         return document
 
     def version(self, uri: str) -> int | None:
         """Return the version of an open document; None if it is not open or has no version."""
-        opened = self._open.get(name_of(uri))
+        opened = self._open.get(location_at(uri))
         return opened[1] if opened else None
 
-    def uri(self, name: str) -> str:
+    def uri(self, source: SourceFile) -> str:
         """Return the URI of a file; if the file is open, the URI that the editor uses."""
-        opened = self._open.get(path_of(name))
-        return opened[0] if opened else uri_of(name)
+        opened = self._open.get(location_of(source))
+        return opened[0] if opened else uri_of(source)
 
     def is_open(self, uri: str) -> bool:
         """Whether a document is open in the editor."""
-        return name_of(uri) in self._open
+        return location_at(uri) in self._open
 
     def open_uris(self) -> list[str]:
         """Return the URIs of the open documents."""
@@ -106,32 +107,32 @@ class Workspace:
     def open_imports(self, uri: str) -> list[str]:
         """Return the URIs of the other open documents that a document imports, also indirectly."""
         document = self.document(uri)
-        names = document.reads - {document.source.name} if document else ()
-        return [self._open[name][0] for name in sorted(names) if name in self._open]
+        locations = document.reads - {location_of(document.source)} if document else ()
+        return [self._open[location][0] for location in sorted(locations) if location in self._open]
 
     def texts(self) -> dict[str, str]:
-        """Return the texts of the open documents, by path."""
-        return {name: text for name, (_, _, text) in self._open.items()}
+        """Return the texts of the open documents, by location."""
+        return {location: source.text for location, (_, _, source) in self._open.items()}
 
-    def project(self, name: str) -> tuple[Project, tuple[Diagnostic, ...]]:
+    def project(self, source: SourceFile) -> tuple[Project, tuple[Diagnostic, ...]]:
         """Return the project of a file, and the errors of its project file.
 
         The project file is the nearest ``tltl.toml``.
         """
         try:
             with unsaved_texts(self.texts()):
-                return project_for(name if not name.startswith("<") else "-"), ()
+                return project_for(STDIN if source.kind == "text" else location_of(source)), ()
         except TltlError as error:
             return Project(), error.diagnostics
 
-    def is_own(self, name: str) -> bool:
+    def is_own(self, source: SourceFile) -> bool:
         """Whether a file belongs to the workspace: it is open, or in a folder of :attr:`folders`.
 
         The standard library belongs to the workspace only if it is in one of these folders.
         """
-        path = path_of(name)
-        if path.startswith("<"):
+        if source.kind == "text":
             return True
+        path = location_of(source)
         if is_below(path, str(standard_library().absolute())) and not self._is_in_folders(
             str(standard_library().absolute())
         ):
@@ -145,8 +146,8 @@ class Workspace:
             TltlError: TLT0004, the folders are too large to search.
         """
         size = 0
-        for name in self._names():
-            document = self.document_named(name)
+        for location in self._locations():
+            document = self.document_at(location)
             if document is not None:
                 size += len(document.source.text)
                 if size > WORKSPACE.size:
@@ -170,8 +171,8 @@ class Workspace:
                     raise _too_large(f"{WORKSPACE_PARSED.size >> 20} MiB of sources that may matter here")
                 _ = document.names
 
-    def _names(self) -> list[str]:
-        names = dict.fromkeys(self._open)
+    def _locations(self) -> list[str]:
+        locations = dict.fromkeys(self._open)
         count = 0
         for folder in self.folders:
             for place, folders, files in walk(folder):
@@ -180,30 +181,30 @@ class Workspace:
                     raise _too_large(f"{WORKSPACE.values:,} files and folders")
                 folders[:] = sorted(name for name in folders if not name.startswith(".") and name != "node_modules")
                 paths = [os.path.join(place, file) for file in sorted(files) if _is_source(file)]  # noqa: PTH118
-                names.update(dict.fromkeys(filter(may_be_file, paths)))
-        return [*names]
+                locations.update(dict.fromkeys(filter(may_be_file, paths)))
+        return [*locations]
 
     def _is_in_folders(self, path: str) -> bool:
         return any(is_below(path, folder) for folder in self.folders)
 
-    def _forget(self, name: str) -> list[str]:
-        """Drop the cached document called ``name``, and the documents that depend on it.
+    def _forget(self, location: str) -> list[str]:
+        """Drop the cached document at ``location``, and the documents that depend on it.
 
         Return the URIs of the dependent documents that are open.
         """
-        self._documents.pop(name, None)
+        self._documents.pop(location, None)
         return self._drop(
             [
                 dependent
                 for dependent, document in self._documents.items()
-                if document.depends_on(name) or _is_project(name)
+                if document.depends_on(location) or _is_project(location)
             ]
         )
 
-    def _drop(self, names: list[str]) -> list[str]:
-        for name in names:
-            del self._documents[name]
-        return [self._open[name][0] for name in names if name in self._open]
+    def _drop(self, locations: list[str]) -> list[str]:
+        for location in locations:
+            del self._documents[location]
+        return [self._open[location][0] for location in locations if location in self._open]
 
 
 def _is_source(file: str) -> bool:
@@ -215,5 +216,5 @@ def _too_large(content: str) -> TltlError:
     return TltlError([Diagnostic("TLT0004", title, help="open a smaller folder in the editor")])
 
 
-def _is_project(name: str) -> bool:
-    return os.path.basename(name) == "tltl.toml"  # noqa: PTH119
+def _is_project(location: str) -> bool:
+    return os.path.basename(location) == "tltl.toml"  # noqa: PTH119

@@ -56,7 +56,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
 
     The contents of a text never raise an error. There is no time limit: the caller sets one.
     """
-    source = SourceFile(NAME, text)
+    source = SourceFile(NAME, text, "text")
     page: dict[str, Any] = {"diagnostics": [], "more": 0, "specs": [], "tests": [], "spec": None}
     libraries: tuple[Path, ...] = ()
     try:

@@ -94,7 +94,7 @@ class EarlierTree:
             return original.replace(root, self.prefix)
 
         def label(original: Label) -> Label:
-            source = SourceFile(text(original.source.name), original.source.text)
+            source = SourceFile(text(original.source.name), original.source.text, original.source.kind)
             return replace(original, source=source, message=text(original.message))
 
         return tuple(

@@ -30,7 +30,7 @@ def format_text(text: str, style: str = DEFAULT) -> str:
     >>> format_text("signal seen:bool  spec hide=G !seen")
     'signal seen: bool\nspec hide = always not seen\n'
     """
-    return format_source(SourceFile("<text>", text), style)
+    return format_source(SourceFile("<text>", text, "text"), style)
 
 
 def format_source(source: SourceFile, style: str = DEFAULT) -> str:
@@ -59,17 +59,17 @@ def _format_module(module: tree.Module, style: Style) -> str:
     constraints = NO_CONSTRAINTS
     while True:
         text = _lay_out(module, style, constraints)
-        _check_size(module.source.name, text)
+        _check_size(module.source.with_text(text))
         needed = required_constraints(module, text, constraints)
         if needed == constraints:
             return text
         constraints = needed
 
 
-def _check_size(name: str, text: str) -> None:
+def _check_size(layout: SourceFile) -> None:
     """Raise TLT0004 if a layout is too large to be read again."""
-    if is_too_large(SourceFile(name, text)):
-        title = f"the layout of `{name}` would have more than 1 MiB, or more than {MAX_TOKENS:,} words and signs"
+    if is_too_large(layout):
+        title = f"the layout of `{layout.name}` would have more than 1 MiB, or more than {MAX_TOKENS:,} words and signs"
         help_ = "the file is not changed; to format it, split it: a file may `import` others"
         raise TltlError([Diagnostic("TLT0004", title, help=help_)])
 

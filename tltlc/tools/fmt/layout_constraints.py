@@ -50,7 +50,7 @@ def required_constraints(module: Module, text: str, constraints: LayoutConstrain
     list_spans = {span for list_ in lists for span in (list_.span, *(name.span for name in list_.names))}
     if not any(_may_change(comment, places or (), module.source.text, list_spans) for comment, places in before):
         return constraints
-    new_module, _ = parse(SourceFile("<layout>", text))
+    new_module, _ = parse(SourceFile("<layout>", text, "text"))
     old_spans = dict(zip(statements(new_module), statements(module), strict=True))
     affected: set[Span] = set()
     after = commented_spans(new_module)

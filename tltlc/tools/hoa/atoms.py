@@ -32,10 +32,10 @@ def vocabulary_of(
     stop_at_errors(diagnostics)
     predicates = _by_proposition(hoa, predicates)
     sources = [
-        SourceFile(f"--atom {atom.text}", predicates[atom.text])
+        SourceFile(f"--atom {atom.text}", predicates[atom.text], "text")
         if atom.text in predicates
         # Each atom has a source name of its own: with the name of the file, equal messages would be merged.
-        else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span))
+        else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span), "text")
         for atom in hoa.atoms
     ]
     vocabulary, formula_of, atom_diagnostics = resolve_atoms(module, sources, options)

@@ -22,7 +22,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.parser import parse_formula
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.io.resources import resource_limits
-from tltlc.io.spec_file import STDIN_NAME, is_plain_name
+from tltlc.io.spec_file import is_plain_name
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.options import ResolveOptions
@@ -134,7 +134,7 @@ def _name(hoa: Hoa) -> str:
     """Return the automaton's name if a spec can have it, else a name made from the file name."""
     if hoa.name and is_plain_name(hoa.name.text):
         return hoa.name.text
-    if hoa.source.name == STDIN_NAME:
+    if hoa.source.kind == "text":
         return "automaton"
     stem = re.sub("[^A-Za-z0-9_]+", "_", PurePath(hoa.source.name).stem).strip("_")
     return stem if is_plain_name(stem) else f"automaton_{stem}".rstrip("_")
@@ -161,7 +161,7 @@ def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
 
     The name is a formula if it parses as one, and if the formula is printed exactly like the name.
     """
-    expression, _ = parse_formula(SourceFile("<name>", name))
+    expression, _ = parse_formula(SourceFile("<name>", name, "text"))
     formula = None if expression is None else formula_of(expression)
     # Compare, because the tool that wrote the name may give its operators other precedences.
     if formula is not None and ascii_text(formula) == name:

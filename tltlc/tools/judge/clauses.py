@@ -131,6 +131,6 @@ def _as_spec(fspa: Fspa) -> Spec:
         semantics=fspa.semantics,
         tags=fspa.tags,
         clock_s=fspa.clock_s,
-        source=SourceFile(f"<{fspa.name}>", ""),
+        source=SourceFile(f"<{fspa.name}>", "", "text"),
         name_span=Span(0, 0),
     )

@@ -26,7 +26,7 @@ def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
     for edit in sorted(edits, key=lambda edit: edit.span.start):
         pieces += [source.text[place : edit.span.start], edit.text]
         place = edit.span.end
-    return SourceFile(source.name, "".join([*pieces, source.text[place:]]))
+    return source.with_text("".join([*pieces, source.text[place:]]))
 
 
 def preserve_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from tltlc.core.source import SourceKind
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, cell_number, read_rows
 
 _NamedCells = Sequence[tuple[str, bool]]
 
 
-def columns(data: bytes, name: str) -> dict[str, bool]:
+def columns(data: bytes, name: str, kind: SourceKind = "file") -> dict[str, bool]:
     """Map each column of a trace, in order, to whether all its values are 0, 1, true or false.
 
-    ``name`` is the name of the trace in messages. A column that is missing in some sample is left
-    out.
+    ``name`` is the name of the trace in messages, and ``kind`` its kind of source. A
+    column that is missing in some sample is left out.
 
     Raises:
         TltlError: TLT0622, a line cannot be read.
@@ -22,7 +23,7 @@ def columns(data: bytes, name: str) -> dict[str, bool]:
     truths: dict[str, bool] = {}
     count = 0
     row_counts: dict[str, int] = {}
-    for row in _rows(TraceLines(io.BytesIO(data), name)):
+    for row in _rows(TraceLines(io.BytesIO(data), name, kind)):
         count += 1
         for column, is_truth in row:
             truths[column] = truths.get(column, True) and is_truth

@@ -9,7 +9,6 @@ from tltlc.automaton.compare import Letter, are_equivalent
 from tltlc.automaton.fspa import Edge, Fspa
 from tltlc.automaton.work import OutOfWork
 from tltlc.core.record import record, replace
-from tltlc.core.source import SourceFile
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.pipeline import CompileOptions, compile_source
@@ -116,7 +115,7 @@ def _compile(batch: Sequence[Conjunction], vocabulary: MiningVocabulary, options
         f"\nspec {_NAME}{number} {{\n" + "".join(f"    {clause.text}\n" for clause in clauses) + "}\n"
         for number, clauses in enumerate(batch)
     )
-    source = SourceFile(vocabulary.library.name, text)
+    source = vocabulary.library.with_text(text)
     names = tuple(f"{_NAME}{number}" for number in range(len(batch)))
     return compile_source(source, replace(options, specs=names)).automata
 

@@ -37,7 +37,7 @@ def read_evidence(
     all_columns = []
     for file in (*good, *bad):
         report_progress(f"looking at {file.name}")
-        all_columns.append(TraceColumns(file.name, columns(file.data, file.name)))
+        all_columns.append(TraceColumns(file.name, columns(file.data, file.name, file.kind)))
         if not all_columns[-1].columns:
             check_trace(file)
     common = common_columns([trace.columns for trace in all_columns])

@@ -8,6 +8,7 @@ from math import nan
 
 from tltlc.automaton.compare import Letter
 from tltlc.core.record import record
+from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
@@ -25,10 +26,11 @@ def ignore_progress(_: str) -> None:
 
 @record
 class TraceFile:
-    """A trace file: its name in messages and its bytes."""
+    """A trace file: its name in messages, its bytes and its kind of source."""
 
     name: str
     data: bytes
+    kind: SourceKind = "file"
 
 
 def read_traces(
@@ -63,7 +65,7 @@ def check_trace(file: TraceFile) -> None:
 
 
 def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[TraceSample]:
-    return read_trace(io.BytesIO(file.data), file.name, signals, clock_s)
+    return read_trace(io.BytesIO(file.data), file.name, signals, clock_s, file.kind)
 
 
 def _letters(

@@ -111,7 +111,7 @@ def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    library = SourceFile("<traces>", signal_declarations([*calls.values(), *((name, ()) for name in simple)]))
+    library = SourceFile("<traces>", signal_declarations([*calls.values(), *((name, ()) for name in simple)]), "text")
     readable = _readable_atoms(_module(library), [name for name in names if name in simple or name in calls], columns)
     if readable is None:
         raise _no_columns(names)
@@ -184,7 +184,7 @@ def _module(source: SourceFile) -> Module:
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
     """Return the library with further entities at its end, where they shift no other text."""
-    return SourceFile(library.name, f"{library.text}\nentity {', '.join(names)}\n") if names else library
+    return library.with_text(f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 
 # --- instances ------------------------------------------------------------------------------------
@@ -249,7 +249,7 @@ def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | Non
 
     Texts that are not atoms or that repeat an atom are left out. None if no text is left.
     """
-    sources = [SourceFile("<atom>", text) for text in texts]
+    sources = [SourceFile("<atom>", text, "text") for text in texts]
     while sources:
         vocabulary, _, problems = resolve_atoms(module, sources, options)
         if vocabulary is not None and not any(problem.severity == "error" for problem in problems):
@@ -299,5 +299,5 @@ def _parameters(count: int) -> str:
 
 def _declares(text: str) -> bool:
     """Whether a text parses as a declaration. It does not if a name in it is a keyword."""
-    errors = Session(SourceFile("<column>", text)).syntax_errors
+    errors = Session(SourceFile("<column>", text, "text")).syntax_errors
     return not any(error.severity == "error" for error in errors)

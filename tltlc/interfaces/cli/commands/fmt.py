@@ -77,12 +77,12 @@ def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.interfaces.cli.report import wants_colour
     from tltlc.io.files import MAX_SOURCE_BYTES, decode
-    from tltlc.io.spec_file import STDIN, read_data
+    from tltlc.io.spec_file import STDIN, input_kind, read_data
     from tltlc.io.writing import rewrite
     from tltlc.tools.fmt import format_source
 
     data, name = read_data(path, MAX_SOURCE_BYTES)
-    source = decode(data, name)
+    source = decode(data, name, kind=input_kind(path))
     check_text(source)
     formatted = format_source(source, style)
     is_same = formatted.encode() == data

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
@@ -185,7 +186,7 @@ def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
     files = []
     for argument in arguments:
         if argument == STDIN:
-            files.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
+            files.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0], "text"))
         else:
             trace_files = find_traces([argument])
             if trace_files.errors:
@@ -195,7 +196,7 @@ def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
         if len(file.data) > _MOST_BYTES:
             title = f"`{file.name}` is larger than {_MOST_BYTES >> 20} MiB"
             raise TltlError([Diagnostic("TLT0004", title, help="record fewer steps, or fewer signals")])
-    return [TraceFile(file.name, as_text(file.data, file.name)) for file in files]
+    return [replace(file, data=as_text(file.data, file.name)) for file in files]
 
 
 def _library(predicates: str) -> SourceFile:
@@ -208,7 +209,7 @@ def _library(predicates: str) -> SourceFile:
     from tltlc.io.files import is_file, read_source
 
     if _is_name(predicates) and not is_file(predicates):
-        return SourceFile(f"<{predicates}>", f"import {predicates}\n")
+        return SourceFile(f"<{predicates}>", f"import {predicates}\n", "text")
     library = read_source(predicates)
     check_text(library)
     return library

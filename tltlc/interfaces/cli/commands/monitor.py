@@ -19,7 +19,7 @@ from tltlc.interfaces.cli.inputs import open_input
 from tltlc.interfaces.cli.numbers import WholeRange
 from tltlc.interfaces.cli.report import Report
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
-from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, split, standard_input
+from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, input_kind, split, standard_input
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -103,7 +103,13 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
         with _open_trace(trace) as lines:
             rows = run(
                 monitor,
-                read_trace(_as_text(lines, trace, fspa.signals), _trace_name(trace), fspa.signals, fspa.clock_s),
+                read_trace(
+                    _as_text(lines, trace, fspa.signals),
+                    _trace_name(trace),
+                    fspa.signals,
+                    fspa.clock_s,
+                    input_kind(trace),
+                ),
             )
             show = _show_json if as_json else _show_csv
             result = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
