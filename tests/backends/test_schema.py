@@ -161,3 +161,18 @@ def test_every_error_is_in_plain_words(place: tuple[int, tuple[str | int, ...]],
         validate(document)
     except JsonSchemaValueException as error:
         assert not {"properties", "integer", "array", "[]", "'"} & set(schema_error_title(error).split())
+
+
+def test_an_error_holds_the_broken_rule_as_data() -> None:
+    document = copy.deepcopy(DOCUMENT)
+    document["states"][1]["distance"] = "far"
+    with pytest.raises(JsonSchemaValueException) as caught:
+        validate(document)
+    assert (caught.value.path, caught.value.rule) == (("states", 1, "distance"), "type")
+    assert caught.value.definition == ["integer", "null"]
+    document = copy.deepcopy(DOCUMENT)
+    document["states"][0] = {"id": 0, "label": document["states"][0]["label"]}
+    with pytest.raises(JsonSchemaValueException) as caught:
+        validate(document)
+    assert (caught.value.path, caught.value.rule) == (("states", 0), "required")
+    assert caught.value.fields == ["accepting", "distance", "verdict"]

@@ -10,7 +10,7 @@ from typing import Any, Final
 from tltlc.artefact.consistency import problems
 from tltlc.artefact.encode import VERSION
 from tltlc.artefact.errors import JsonSchemaValueException
-from tltlc.artefact.locations import Path, path_of, span_of
+from tltlc.artefact.locations import Path, span_of
 from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile, Span
@@ -107,4 +107,4 @@ def _version_error(version: object, origin: Origin) -> Diagnostic:
 def _schema_error(error: JsonSchemaValueException, origin: Origin) -> Diagnostic:
     from tltlc.artefact.schema_messages import schema_error_title
 
-    return origin.error("TLT0603", schema_error_title(error), path_of(error.place))
+    return origin.error("TLT0603", schema_error_title(error), error.path)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+from tltlc.artefact.locations import Path
+
 
 class JsonSchemaValueException(ValueError):
     """Raised when a value does not match the schema.
 
-    ``place`` is the path of the value, such as ``data.states[0].id``; the message begins with it.
-    ``rule`` is the keyword of the schema that the value violates, such as ``type``.
+    ``path`` leads to the value. ``rule`` is the keyword of the schema that the value violates, such
+    as ``type``, and ``definition`` what the schema requires under this keyword. ``fields`` are the
+    names of the fields that are missing or not allowed.
     """
 
-    def __init__(self, message: str, place: str, rule: str) -> None:
-        super().__init__(message)
-        self.place = place
+    def __init__(self, path: Path, rule: str, definition: Any, fields: Sequence[str] = ()) -> None:
+        super().__init__(path, rule, definition, fields)
+        self.path = path
         self.rule = rule
+        self.definition = definition
+        self.fields = fields

@@ -7,6 +7,7 @@ tltlc[dev]`` installs.
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 from pathlib import Path
@@ -21,7 +22,14 @@ HEADER = '''"""Validates artefacts. Generated from fspa.schema.json by generate.
 '''
 
 PLAIN_HEAD = "(data, custom_formats={}, name_prefix=None):"
-TYPED_HEAD = "(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:"
+TYPED_HEAD = "(data: object, custom_formats: object = {}, path: Path = ()) -> object:"
+
+PLACE = re.compile(r'(?:"" \+ )?\(name_prefix or "data"\) \+ "([^"]*)"(?:\.format\(\*\*locals\(\)\))?(?: \+ "")?')
+"""The text of a value's place, as fastjsonschema writes it; the group is the part after the prefix."""
+STEP = re.compile(r"\.(\w+)|\[\{(\w+)\}\]|\[(\d+)\]")
+"""A step of a place: a key, the variable of an index, or an index."""
+RAISE = re.compile(r"Exception\((.*?), value=.*?, name=(.*?), definition=(.*), rule='(\w+)'\)$")
+"""The arguments of an exception: its message, the place, the schema of the value, and the keyword."""
 
 RECURSIVE = ("#/definitions/expression", "#/definitions/condition")
 
@@ -33,7 +41,7 @@ def validator_source() -> str:
     schema = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
     code = fastjsonschema.compile_to_code(_inline(schema, schema["definitions"]), use_default=False)
     lines = [_shorten_line(line) for line in code.splitlines() if not line.startswith(("VERSION = ", "from "))]
-    imports = "from tltlc.artefact.errors import JsonSchemaValueException\n"
+    imports = "from tltlc.artefact.errors import JsonSchemaValueException\nfrom tltlc.artefact.locations import Path\n"
     return HEADER + imports + "\n".join(lines).strip() + "\n"
 
 
@@ -56,13 +64,34 @@ def _inline(node: Any, definitions: dict[str, Any]) -> Any:
 def _shorten_line(line: str) -> str:
     """Return a line of the code that fastjsonschema generates, with the changes that the project needs.
 
-    Removes the value and the schema from a ``raise``, the class ``Decimal``, and the exception for
-    several errors. Adds types to the heads of functions, and sorts the keys in messages.
+    Gives exceptions the broken rule as data instead of a message. Passes the path of a value as a
+    tuple instead of a text. Removes the class ``Decimal`` and the exception for several errors, and
+    adds types to the heads of functions.
     """
-    line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
+    line = RAISE.sub(_exception_arguments, line)
+    line = PLACE.sub(_path, line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")
-    line = line.replace(PLAIN_HEAD, TYPED_HEAD)
-    return line.replace(", Decimal", "").replace("str(data_keys)", "str(sorted(data_keys))").rstrip()
+    return line.replace(PLAIN_HEAD, TYPED_HEAD).replace(", Decimal", "").rstrip()
+
+
+def _exception_arguments(match: re.Match[str]) -> str:
+    """Return the arguments of an exception: place, rule, the rule's part of the schema, and fields."""
+    message, place, schema, rule = match.groups()
+    definition = ast.literal_eval(schema)[rule]
+    if rule == "dependencies":
+        # A schema has several dependencies; only the message says which one is broken.
+        needed, field = re.findall(r"missing dependency (\w+) for (\w+)", message)[0]
+        definition = {field: needed}
+    elif rule in ("required", "additionalProperties"):
+        (names,) = re.findall(r"\b\w+_keys\b", message)
+        return f"Exception({place}, {rule!r}, {definition!r}, sorted({names}))"
+    return f"Exception({place}, {rule!r}, {definition!r})"
+
+
+def _path(match: re.Match[str]) -> str:
+    """Return the code of the tuple for a place, such as ``(*path, 'states', i, 'id')``."""
+    steps = [repr(key) if key else index for key, *indices in STEP.findall(match[1]) for index in ["".join(indices)]]
+    return f"({', '.join(['*path', *steps])})" if steps else "path"
 
 
 if __name__ == "__main__":

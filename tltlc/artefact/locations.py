@@ -12,12 +12,6 @@ Path = tuple[Union[str, int], ...]
 """The keys and indices that lead from the whole document to a value, such as ``("states", 0, "id")``."""
 
 _blank = re.compile(r"[ \t\n\r]*")
-_step = re.compile(r"\.(\w+)|\[(\d+)\]")
-
-
-def path_of(place: str) -> Path:
-    """Convert the text of a path to a path: ``data.states[0].id`` to ``("states", 0, "id")``."""
-    return tuple(key or int(index) for key, index in _step.findall(place))
 
 
 def span_of(text: str, path: Path) -> Span:

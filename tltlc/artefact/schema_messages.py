@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import ast
+from collections.abc import Sequence
+from typing import Final
 
 from tltlc.artefact.errors import JsonSchemaValueException
+from tltlc.artefact.locations import Path
 
-_TYPES = {
+_TYPES: Final = {
     "integer": "a whole number",
     "number": "a number",
     "string": "a text",
@@ -16,42 +18,50 @@ _TYPES = {
     "null": "null",
 }
 
-_COUNTS = {
-    "minItems": "must contain at least {} {}",
-    "maxItems": "must contain at most {} {}",
+_REMARKS: Final = {
     "minProperties": "is empty",
     "maxProperties": "contains fields that do not go together",
     "minLength": "is empty",
+    "minimum": "must be bigger than or equal to {}",
+    "maximum": "must be smaller than or equal to {}",
+    "exclusiveMinimum": "must be bigger than {}",
+    "pattern": "must match pattern {}",
+    "uniqueItems": "must contain unique items",
 }
 
 
 def schema_error_title(error: JsonSchemaValueException) -> str:
     """Return the title of a schema error, e.g. "`states[1].distance` must be a whole number or null"."""
-    place = error.place.removeprefix("data").removeprefix(".")
-    subject = f"`{place}`" if place else "the artefact"
-    remark = str(error).removeprefix(error.place).strip()
+    subject = f"`{_path_text(error.path)}`" if error.path else "the artefact"
+    return f"{subject} {_remark(error)}"
+
+
+def _remark(error: JsonSchemaValueException) -> str:
+    definition = error.definition
     if error.rule == "type":
-        kinds = remark.removeprefix("must be ").split(" or ")
-        return f"{subject} must be {' or '.join(_TYPES[kind] for kind in kinds)}"
+        types = [definition] if isinstance(definition, str) else definition
+        return f"must be {' or '.join(_TYPES[name] for name in types)}"
     if error.rule == "enum":
-        return f"{subject} must be {_list_items(remark.removeprefix('must be one of '), ' or ')}"
+        return f"must be {_item_list(definition, ' or ')}"
     if error.rule == "required":
-        return (
-            f"{subject} lacks {_list_items(remark.removeprefix('must contain ').removesuffix(' properties'), ' and ')}"
-        )
+        return f"lacks {_item_list(error.fields, ' and ')}"
     if error.rule == "additionalProperties":
-        fields = _list_items(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
-        return f"{subject} must not contain {fields}"
-    if error.rule in _COUNTS:
-        count = "".join(word for word in remark.split() if word.isdigit())
-        return f"{subject} {_COUNTS[error.rule].format(count, 'value' if count == '1' else 'values')}"
-    return f"{subject} {remark}"
+        return f"must not contain {_item_list(error.fields, ' and ')}"
+    if error.rule == "dependencies":
+        ((name, needed),) = definition.items()
+        return f"missing dependency {needed} for {name}"
+    if error.rule in ("minItems", "maxItems"):
+        limit = "least" if error.rule == "minItems" else "most"
+        return f"must contain at {limit} {definition} {'value' if definition == 1 else 'values'}"
+    return _REMARKS[error.rule].format(definition)
 
 
-def _list_items(literal: str, last: str) -> str:
-    """Return the items of a list in backquotes, separated by commas, with ``last`` before the last item.
+def _path_text(path: Path) -> str:
+    """Return the text of a path: ``states[0].id`` for ``("states", 0, "id")``."""
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).removeprefix(".")
 
-    ``literal`` is the list as Python writes it.
-    """
-    items = [f"`{item}`" for item in ast.literal_eval(literal)]
+
+def _item_list(values: Sequence[object], last: str) -> str:
+    """Return values in backquotes, separated by commas, with ``last`` before the last one."""
+    items = [f"`{value}`" for value in values]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]
