@@ -15,7 +15,7 @@ import pytest
 import tltlc
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
-from tltlc.grammar.mistakes import english
+from tltlc.grammar.mistakes import english_forms
 from tltlc.grammar.parser import parse
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
@@ -328,9 +328,9 @@ def test_most_clear_sentences_get_an_edit() -> None:
 
 
 def test_all_words_of_the_compiler_are_tested() -> None:
-    assert {word.split()[0] for word in INFIX} == set(english._FORMS)
-    assert set(TIMES) == set(english._TIMES)
-    assert set(CONDITIONS[:-1]) == set(english._PREFIXES)
+    assert {word.split()[0] for word in INFIX} == set(english_forms.FORMS)
+    assert set(TIMES) == set(english_forms.TIMES)
+    assert set(CONDITIONS[:-1]) == set(english_forms.PREFIXES)
 
 
 @pytest.mark.parametrize("clause", [clause for clause, meaning in CASES.items() if meaning is None])

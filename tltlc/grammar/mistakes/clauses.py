@@ -19,7 +19,7 @@ from tltlc.grammar.keywords import (
 from tltlc.grammar.lexer import BAD, END, Token
 from tltlc.grammar.mistakes.english import condition_line
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL, UNCLEAR, has_token, is_of_one_step
-from tltlc.grammar.mistakes.place import (
+from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
     INFIX,
     KEYWORDS,

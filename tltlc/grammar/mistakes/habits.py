@@ -11,7 +11,7 @@ from tltlc.grammar.keywords import UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import effective_clause
-from tltlc.grammar.mistakes.place import (
+from tltlc.grammar.mistakes.parse_failure import (
     ARITHMETIC,
     BEFORE_ONE,
     CLOSING,

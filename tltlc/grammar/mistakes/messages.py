@@ -12,11 +12,13 @@ from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
-from tltlc.grammar.mistakes.english import comparison_in_words, filler_word, plain_english
+from tltlc.grammar.mistakes.comparison_words import comparison_in_words
+from tltlc.grammar.mistakes.english import plain_english
+from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.habits import HABITS, dash_comment, value_end
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token
-from tltlc.grammar.mistakes.place import (
+from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
     INFIX,
     OPENING,

@@ -10,7 +10,7 @@ from typing import Final
 
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, UNTILS, ParseFailure, outer_indices
+from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, UNTILS, ParseFailure, outer_indices
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop
 
 UNCLEAR: Final = INFIX - {"AND", "OR"}

@@ -11,7 +11,7 @@ from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, tokenize
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, UNCLEAR, has_token
-from tltlc.grammar.mistakes.place import BEFORE_ONE, INFIX, OPENING, ParseFailure, are_adjacent, outer_indices
+from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, OPENING, ParseFailure, are_adjacent, outer_indices
 from tltlc.grammar.mistakes.rephrasing import (
     LOOSE,
     formula_start,

@@ -14,7 +14,7 @@ from tltlc.grammar import checks, lalr
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import OPERATORS
 from tltlc.grammar.lexer import END, Token, tokenize
-from tltlc.grammar.mistakes.place import CLOSING, INFIX, OPENING, ParseFailure, outer_indices
+from tltlc.grammar.mistakes.parse_failure import CLOSING, INFIX, OPENING, ParseFailure, outer_indices
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause
 

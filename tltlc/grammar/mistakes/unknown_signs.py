@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES
 from tltlc.grammar.lexer import BAD
 from tltlc.grammar.mistakes.habits import equality
-from tltlc.grammar.mistakes.place import ParseFailure, quote_token
+from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
 from tltlc.grammar.mistakes.punctuation import leave_out_help, text_without_quotes
 from tltlc.grammar.mistakes.rephrasing import suggest_rewrite
 from tltlc.grammar.tables import load

@@ -1,4 +1,4 @@
-"""The place where parsing failed, and what could stand there, in plain words."""
+"""The failure of parsing a piece of text: where it happened, and what could stand there, in plain words."""
 
 from __future__ import annotations
 

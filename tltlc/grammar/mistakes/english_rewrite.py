@@ -1,0 +1,158 @@
+"""Suggest a form of the language for a phrase in plain English."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.keywords import CLAUSES
+from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, SEQUENCE, TIMED
+from tltlc.grammar.mistakes.one_reading import effective_clause, has_always_before, is_clear_here
+from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.rephrasing import formula_start, suggest_rewrite
+
+_REASONS: Final = {
+    ("if", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
+    ("when", "reach"): " for both at the same step, or `{b} then {a}` for one after the other",
+    ("while", "reach"): " for both at the same step; to require `{b}` at every step, write a clause `keep {b}`",
+    ("for", "reach"): "; `always for` requires nothing after the end of play, so `next after` requires the last step",
+}
+_WHERE: Final = ": where `{b}` holds, `{a}` must hold, too"
+_ONCE: Final = "; to require it at every step, write a clause `keep {b} implies {a}`"
+
+
+def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: str, parts: Parts | None) -> Diagnostic:
+    """Return the error for the English word at index ``at``; it suggests to write ``form`` instead.
+
+    ``part`` is the range of token indices to be replaced, and ``parts`` are the parts that ``form``
+    needs. If ``parts`` is None, the text has several meanings; then the help describes the form
+    with letters.
+    """
+    word, kind = failure.tokens[at], clause_keyword(failure)
+    title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
+    code = "TLT0101" if at else "TLT0107"
+    start, stop = part
+    is_timed = form in TIMED
+    if _is_clause(form):
+        start = 0
+    is_zero = is_timed and parts is not None and parts.time is not None and _is_zero(parts.time)
+    text = parts.fill(form) if parts and parts.a and parts.b and not is_zero else ""
+    if word.text == "before" and form == SEQUENCE[""]:
+        # `b` may be a later goal, or something that must not happen before `a`.
+        text = ""
+    if parts and text:
+        reason = ((word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
+            (_WHERE if _is_of_every_step(failure, at) else _ONCE) if form == CONDITION[""] else ""
+        )
+        diagnostic = suggest_rewrite(failure, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
+        if diagnostic:
+            return diagnostic
+    return failure.error(code, title, _general_help(failure, at, form), span=word.span)
+
+
+@record
+class Time:
+    """A time: a number as it stands in the text, and a unit of the language."""
+
+    number: str
+    unit: str
+
+    @property
+    def text(self) -> str:
+        """The time as it is written in a spec."""
+        return f"{self.number} {self.unit}"
+
+    @property
+    def steps(self) -> int | None:
+        """The number of steps, or None if the time has another unit or is no whole number."""
+        return int(self.number) if self.unit in ("step", "steps") and self.number.isdecimal() else None
+
+
+@record
+class Parts:
+    """The parts of an English phrase `a WORD b` or `c then a WORD b`, as texts.
+
+    ``a`` is a formula, and ``b`` is a formula or a time. ``c`` is the goal before ``a``, and empty
+    without one. ``time`` is None if ``b`` is a formula.
+    """
+
+    a: str
+    b: str
+    c: str = ""
+    time: Time | None = None
+
+    def fill(self, form: str) -> str:
+        """Return the text ``form`` with the parts in place of ``{a}``, ``{b}``, ``{c}``, ``{end}`` and ``{less}``.
+
+        Returns "" if the form has ``{less}``, but the time is not in steps.
+        """
+        if self.time is None or self.time.steps is None:
+            return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
+        less = f"{self.time.steps - 1} steps"
+        return form.format(a=self.a, b=self.b, c=self.c, end=self.time.number, less=less)
+
+
+def _general_help(failure: ParseFailure, at: int, form: str) -> str:
+    """Return a help text that shows ``form`` with the letters a, b and c in place of the parts of the text."""
+    word, is_timed, is_prefix = failure.tokens[at].text, form in TIMED, at == 0 or at < failure.stop.index
+    time = Time("20", "steps") if is_timed else None
+    parts = Parts("a", time.text if time else "b", "c", time)
+    infix = "followed by" if word == "followed" else word
+    english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
+    if form == CONDITION[""] and not _is_of_every_step(failure, at):
+        return (
+            f"for `{english}`, write `b implies a` if it is about one step, a clause `keep b implies a` if it is about "
+            "every step, or `a and b` if both must hold"
+        )
+    if word == "before" and form == SEQUENCE[""]:
+        return (
+            "write `a then b` to require `a` and later `b`; if `b` is not required, write `require (not b) until a` to "
+            "require `a` first"
+        )
+    if "{c}" in form:
+        english = f"c then {english}"
+    kind, text = clause_keyword(failure), parts.fill(form)
+    clause = effective_clause(failure, at)
+    if clause != kind and clause in FORMS.get(word, {}) and not is_timed:
+        # The general form would mean something else where this clause applies.
+        form = FORMS[word][clause]
+        text = parts.fill(form if _is_clause(form) else f"{clause} {form}")
+        return f"write `{text}` for `{clause} {english}`"
+    if at and _is_clause(form):
+        english = f"{kind} {english}"
+    return f"write `{text}` for `{english}`"
+
+
+def clause_keyword(failure: ParseFailure) -> str:
+    """Return the keyword of the clause whose formula is broken, or "".
+
+    It is "" if parsing failed inside brackets, or outside a clause.
+    """
+    return failure.tokens[0].text if failure.start == "clause" and not failure.open_brackets else ""
+
+
+def goal_starts(failure: ParseFailure, at: int) -> list[int]:
+    """Return the indices at which the goals of a `reach` clause begin, as far as they are before index ``at``.
+
+    In other clauses, return only the index at which the formula begins.
+    """
+    start = formula_start(failure)
+    if clause_keyword(failure) != "reach":
+        return [start]
+    thens = (index for index in outer_indices(failure.tokens, start, at) if failure.tokens[index].type == "THEN")
+    return [start, *(index + 1 for index in thens)]
+
+
+def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
+    """Whether the condition at index ``at`` is certainly about every step; if False, it may be about one step."""
+    is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
+    return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
+
+
+def _is_clause(form: str) -> bool:
+    return form.split()[0] in CLAUSES
+
+
+def _is_zero(time: Time) -> bool:
+    return not float(time.number)

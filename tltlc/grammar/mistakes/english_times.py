@@ -1,0 +1,103 @@
+"""Explain times in plain English, before or after their formula: `a within 20 steps`, `for 20 steps a`."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
+from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, IN_TIME, Forms
+from tltlc.grammar.mistakes.english_rewrite import Parts, Time, clause_keyword, goal_starts, rewrite_error
+from tltlc.grammar.mistakes.one_reading import (
+    QUANTIFIERS,
+    TEMPORAL,
+    UNCLEAR,
+    has_always_before,
+    has_token,
+    is_clear_time_here,
+    is_of_one_step,
+)
+from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, declares_clock
+from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text
+
+_UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
+
+
+def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
+    """Return the error for a time after its formula, such as ``reach a within 20 steps``."""
+    at, kind = failure.stop.index, clause_keyword(failure)
+    goals, stop = goal_starts(failure, at), formula_stop(failure)
+    begin = goals[-1]
+    time, end, is_clear_unit = _read_time(failure, at + 1)
+    if len(goals) > 1:
+        before = operand_text(failure, goals[-2], begin - 1)
+        is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
+        form, start = forms["then"], goals[-2]
+    elif kind in forms and kind:
+        before, form, start, is_clear = "", forms[kind], begin, True
+    else:
+        # The time applies to the last operand only.
+        last = last_index_of(failure, INFIX, begin)
+        start = begin = begin if last is None else last + 1
+        before, form, is_clear = "", forms[""], _is_clear_time(failure, begin, forms)
+        is_clear = is_clear and failure.tokens[begin].type not in _UNARY
+        is_clear = is_clear and not has_token(failure, formula_start(failure), at, TEMPORAL | QUANTIFIERS)
+    if kind != "keep":
+        is_clear = is_clear and failure.tokens[begin].type not in _UNARY
+    is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
+    parts = Parts(operand_text(failure, begin, at), time.text, before, time)
+    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
+
+
+def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnostic:
+    """Return the error for a time before its formula, such as ``reach within 20 steps a``."""
+    stop, kind, first = formula_stop(failure), clause_keyword(failure), formula_start(failure)
+    time, second, is_clear_unit = _read_time(failure, at + 1)
+    before, start = "", at
+    is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
+    if at == first:
+        form = forms.get(kind, forms[""])
+        has_own_form = form != forms[""]
+        is_clear = is_clear and (
+            has_own_form or (_is_clear_time(failure, at, forms) and not has_token(failure, second, stop, INFIX))
+        )
+    elif kind == "reach" and failure.tokens[at - 1].type == "THEN":
+        start = goal_starts(failure, at)[-2]
+        form, before = forms["then"], operand_text(failure, start, at - 1)
+        is_clear = is_clear and not has_token(failure, start, at - 1, UNCLEAR | TEMPORAL)
+    else:
+        form = forms[""]
+        is_clear = is_clear and _is_clear_time(failure, at, forms)
+        is_clear = is_clear and not has_token(failure, first, stop, {*TEMPORAL, "AND", "OR"})
+    parts = Parts(operand_text(failure, second, stop), time.text, before, time)
+    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
+
+
+def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
+    """Whether a time can apply only to the operand that begins at index ``begin``."""
+    clause = failure.tokens[0].text if failure.start == "clause" else ""
+    previous = failure.tokens[begin - 1].type if begin > formula_start(failure) else None
+    if clause in ("reach", "avoid"):
+        return False
+    is_kept = clause == "keep" or has_always_before(failure)
+    # These forms require a step to exist, which would turn what is kept into a goal.
+    if is_kept and (forms is AFTER_TIME or (previous is None and (clause == "keep" or forms is FOR_TIME))):
+        return False
+    may_be_negated = forms is IN_TIME
+    return previous in (None, "IMPLIES") and is_clear_time_here(
+        failure, may_be_negated=may_be_negated, may_be_kept=True
+    )
+
+
+def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
+    """Whether a time can apply to all tokens from index ``start`` up to ``stop`` together."""
+    is_one = is_of_one_step(failure, start, stop) and not has_token(failure, start, stop, UNCLEAR)
+    return is_one and failure.tokens[start].text not in OPERATORS
+
+
+def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:
+    """Return the time at index ``at``, the index after it, and whether its unit is certain."""
+    unit = failure.tokens[at + 1]
+    known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
+    is_clear = bool(known) or not declares_clock(failure.source)
+    return Time(failure.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear
