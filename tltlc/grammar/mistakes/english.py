@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES, OPERATORS
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.mistakes.english_forms import FORMS, PREFIXES, TIMES, Forms
+from tltlc.grammar.mistakes.english_forms import FORMS, PREFIXES, REVERSED_SEQUENCE, SEQUENCE, TIMES, Form, Forms
 from tltlc.grammar.mistakes.english_rewrite import Parts, clause_keyword, goal_starts, rewrite_error
 from tltlc.grammar.mistakes.english_times import prefix_time_error, time_error
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, UNCLEAR, has_token, is_clear_here, is_clear_word
@@ -63,7 +64,7 @@ def plain_english(failure: ParseFailure) -> Diagnostic | None:
 
 def condition_line(failure: ParseFailure) -> Diagnostic | None:
     """Return an error if a line of a spec begins with ``if``, ``when``, ``whenever`` or ``while``, else None."""
-    forms = {"": "keep {b} implies {a}"}
+    forms = {"": Form("{b} implies {a}", "keep")}
     return _prefix_word_error(failure, 0, forms, timed=False) if failure.tokens[0].text in PREFIXES else None
 
 
@@ -97,7 +98,7 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     is_clear = (
         (end == stop or (kind == "reach" and word not in _OF_THE_REST))
         and (begin == formula_start(failure) or word != "unless")
-        and not (" then " in form and kind == "keep")
+        and not (form in (SEQUENCE[""], REVERSED_SEQUENCE[""]) and kind == "keep")
         and is_clear_word(failure, word, (begin, at), (second, end), kind)
         and is_clear_here(failure, word)
     )
@@ -139,7 +140,7 @@ def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: b
     if keyword in OPERATORS:
         is_clear = is_clear and keyword == "reach" and failure.tokens[at].text != "while"
         is_clear = is_clear and not has_token(failure, second, stop, INFIX)
-    wrapped = form if previous in (None, "THEN") else f"({form})"
+    wrapped = form if previous in (None, "THEN") else replace(form, formula=f"({form.formula})")
     return rewrite_error(failure, at, (at, stop), wrapped, parts if is_clear else None)
 
 

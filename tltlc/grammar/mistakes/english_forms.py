@@ -5,61 +5,80 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from tltlc.core.record import record
 from tltlc.grammar.keywords import CONDITIONS
 
-Forms = Mapping[str, str]
-"""Maps the keyword of a clause to the text by which an English phrase is written in this clause.
 
-The key "" is for all other clauses. ``{a}``, ``{b}`` and ``{c}`` are parts of the phrase. A text
-that begins with a keyword replaces the whole clause.
+@record
+class Form:
+    """A way to write an English phrase in the language.
+
+    In ``formula``, ``{a}``, ``{b}`` and ``{c}`` are parts of the phrase. If ``clause`` is not empty,
+    it is the keyword of a clause that replaces the whole clause of the phrase.
+    """
+
+    formula: str
+    clause: str = ""
+
+
+Forms = Mapping[str, Form]
+"""Maps the keyword of a clause to the form in which an English phrase is written in this clause.
+
+The key "" is for all other clauses.
 """
 
-CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} implies {a}"}
-SEQUENCE: Final = {"": "{a} then {b}"}
+CONDITION: Final = {"reach": Form("{a} and {b}"), "avoid": Form("{a} and {b}"), "": Form("{b} implies {a}")}
+SEQUENCE: Final = {"": Form("{a} then {b}")}
+REVERSED_SEQUENCE: Final = {"": Form("{b} then {a}")}
 FORMS: Final[dict[str, Forms]] = {
     **dict.fromkeys((*CONDITIONS, "during"), CONDITION),
     # Use the weak operators: a `keep` or `avoid` must not turn into a goal.
     "before": {
-        "keep": "require {a} weak_until {b}",
-        "avoid": "require (not {a}) weak_until {b}",
+        "keep": Form("{a} weak_until {b}", "require"),
+        "avoid": Form("(not {a}) weak_until {b}", "require"),
         **SEQUENCE,
     },
     "after": {
-        "keep": "{b} implies always {a}",
-        "avoid": "require always ({b} implies always not {a})",
-        "": "{b} then {a}",
+        "keep": Form("{b} implies always {a}"),
+        "avoid": Form("always ({b} implies always not {a})", "require"),
+        **REVERSED_SEQUENCE,
     },
-    "followed": {"keep": "{a} implies next eventually {b}", **SEQUENCE},
-    "unless": {"reach": "{a} or {b}", "keep": "{a} or {b}", "avoid": "{a} and not {b}", "": "{a} weak_until {b}"},
-    "without": {"": "{a} and not {b}"},
-    "but": {"": "{a} and {b}"},
-    "xor": {"": "not ({a} iff {b})"},
-    "xnor": {"": "{a} iff {b}"},
-    "nor": {"": "not ({a} or {b})"},
-    "nand": {"": "not ({a} and {b})"},
+    "followed": {"keep": Form("{a} implies next eventually {b}"), **SEQUENCE},
+    "unless": {
+        "reach": Form("{a} or {b}"),
+        "keep": Form("{a} or {b}"),
+        "avoid": Form("{a} and not {b}"),
+        "": Form("{a} weak_until {b}"),
+    },
+    "without": {"": Form("{a} and not {b}")},
+    "but": {"": Form("{a} and {b}")},
+    "xor": {"": Form("not ({a} iff {b})")},
+    "xnor": {"": Form("{a} iff {b}")},
+    "nor": {"": Form("not ({a} or {b})")},
+    "nand": {"": Form("not ({a} and {b})")},
 }
 """Maps an English WORD to the ways to write `a WORD b` in the language."""
 
 IN_TIME: Final = {
-    "reach": "require eventually within {b} {a}",
-    "avoid": "require not eventually within {b} {a}",
-    "then": "{c} and F[1,{end}] {a}",
-    "": "eventually within {b} {a}",
+    "reach": Form("eventually within {b} {a}", "require"),
+    "avoid": Form("not eventually within {b} {a}", "require"),
+    "then": Form("{c} and F[1,{end}] {a}"),
+    "": Form("eventually within {b} {a}"),
 }
 FOR_TIME: Final = {
     # After the end of a trace, `always for` requires nothing: one step would satisfy it.
-    "reach": "(always for {b} {a}) and next after {less} {a}",
-    "keep": "require always for {b} {a}",
-    "avoid": "require always for {b} not {a}",
-    "then": "{c} then (always for {b} {a}) and next after {less} {a}",
-    "": "always for {b} {a}",
+    "reach": Form("(always for {b} {a}) and next after {less} {a}"),
+    "keep": Form("always for {b} {a}", "require"),
+    "avoid": Form("always for {b} not {a}", "require"),
+    "then": Form("{c} then (always for {b} {a}) and next after {less} {a}"),
+    "": Form("always for {b} {a}"),
 }
 AFTER_TIME: Final = {
-    "reach": "require next after {b} eventually {a}",
-    "keep": "require weak_next after {b} always {a}",
-    "avoid": "require weak_next after {b} always not {a}",
-    "then": "{c} and next after {b} eventually {a}",
-    "": "next after {b} {a}",
+    "reach": Form("next after {b} eventually {a}", "require"),
+    "keep": Form("weak_next after {b} always {a}", "require"),
+    "avoid": Form("weak_next after {b} always not {a}", "require"),
+    "then": Form("{c} and next after {b} eventually {a}"),
+    "": Form("next after {b} {a}"),
 }
 TIMES: Final[dict[str, Forms]] = {
     **dict.fromkeys(("within", "in", "before", "by"), IN_TIME),
@@ -74,6 +93,6 @@ time begins at the step that reaches ``c``.
 """
 TIMED: Final = {form for forms in TIMES.values() for form in forms.values()}
 
-_PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} implies {a}"}
+_PREFIX: Final = {"reach": Form("{b} and {a}"), "avoid": Form("{b} and {a}"), "": Form("{b} implies {a}")}
 PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
 """Maps an English WORD to the ways to write `WORD b, a` and `WORD b then a` in the language."""

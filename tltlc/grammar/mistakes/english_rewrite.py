@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.core.record import record
+from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.keywords import CLAUSES
-from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, SEQUENCE, TIMED
+from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, SEQUENCE, TIMED, Form
 from tltlc.grammar.mistakes.one_reading import effective_clause, has_always_before, is_clear_here
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
 from tltlc.grammar.mistakes.rephrasing import formula_start, suggest_rewrite
@@ -22,7 +21,7 @@ _WHERE: Final = ": where `{b}` holds, `{a}` must hold, too"
 _ONCE: Final = "; to require it at every step, write a clause `keep {b} implies {a}`"
 
 
-def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: str, parts: Parts | None) -> Diagnostic:
+def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: Form, parts: Parts | None) -> Diagnostic:
     """Return the error for the English word at index ``at``; it suggests to write ``form`` instead.
 
     ``part`` is the range of token indices to be replaced, and ``parts`` are the parts that ``form``
@@ -34,7 +33,7 @@ def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: s
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
     is_timed = form in TIMED
-    if _is_clause(form):
+    if form.clause:
         start = 0
     is_zero = is_timed and parts is not None and parts.time is not None and _is_zero(parts.time)
     text = parts.fill(form) if parts and parts.a and parts.b and not is_zero else ""
@@ -82,18 +81,21 @@ class Parts:
     c: str = ""
     time: Time | None = None
 
-    def fill(self, form: str) -> str:
-        """Return the text ``form`` with the parts in place of ``{a}``, ``{b}``, ``{c}``, ``{end}`` and ``{less}``.
+    def fill(self, form: Form) -> str:
+        """Return the text of ``form``, with the parts in place of ``{a}``, ``{b}``, ``{c}``, ``{end}`` and ``{less}``.
 
         Returns "" if the form has ``{less}``, but the time is not in steps.
         """
-        if self.time is None or self.time.steps is None:
-            return "" if "{less}" in form else form.format(a=self.a, b=self.b, c=self.c, end=self.b)
-        less = f"{self.time.steps - 1} steps"
-        return form.format(a=self.a, b=self.b, c=self.c, end=self.time.number, less=less)
+        end, less = self.b, ""
+        if self.time is not None and self.time.steps is not None:
+            end, less = self.time.number, f"{self.time.steps - 1} steps"
+        elif "{less}" in form.formula:
+            return ""
+        formula = form.formula.format(a=self.a, b=self.b, c=self.c, end=end, less=less)
+        return f"{form.clause} {formula}" if form.clause else formula
 
 
-def _general_help(failure: ParseFailure, at: int, form: str) -> str:
+def _general_help(failure: ParseFailure, at: int, form: Form) -> str:
     """Return a help text that shows ``form`` with the letters a, b and c in place of the parts of the text."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in TIMED, at == 0 or at < failure.stop.index
     time = Time("20", "steps") if is_timed else None
@@ -110,16 +112,16 @@ def _general_help(failure: ParseFailure, at: int, form: str) -> str:
             "write `a then b` to require `a` and later `b`; if `b` is not required, write `require (not b) until a` to "
             "require `a` first"
         )
-    if "{c}" in form:
+    if "{c}" in form.formula:
         english = f"c then {english}"
     kind, text = clause_keyword(failure), parts.fill(form)
     clause = effective_clause(failure, at)
     if clause != kind and clause in FORMS.get(word, {}) and not is_timed:
         # The general form would mean something else where this clause applies.
         form = FORMS[word][clause]
-        text = parts.fill(form if _is_clause(form) else f"{clause} {form}")
+        text = parts.fill(form if form.clause else replace(form, clause=clause))
         return f"write `{text}` for `{clause} {english}`"
-    if at and _is_clause(form):
+    if at and form.clause:
         english = f"{kind} {english}"
     return f"write `{text}` for `{english}`"
 
@@ -148,10 +150,6 @@ def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
     """Whether the condition at index ``at`` is certainly about every step; if False, it may be about one step."""
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
-
-
-def _is_clause(form: str) -> bool:
-    return form.split()[0] in CLAUSES
 
 
 def _is_zero(time: Time) -> bool:
