@@ -10,7 +10,8 @@ from typing import NoReturn
 
 import pytest
 
-from tltlc.io.files import access_log, exists, is_dir, is_file, log_read, read_source, stamp, walk, was_read
+from tltlc.io.access_log import access_log, log_read, stamp, was_read
+from tltlc.io.files import exists, is_dir, is_file, read_source, walk
 
 
 def test_existing_files_and_folders_are_found(tmp_path: Path) -> None:

@@ -7,11 +7,11 @@ The lock of ``try_lock`` ends with the process, even if it is killed, and a fold
 """
 
 from tltlc.io import limits
+from tltlc.io.access_log import descriptor_of
 from tltlc.io.archive import Archive, unpack
 from tltlc.io.child_interrupts import block_interrupts
 from tltlc.io.files import (
     MAX_ARTEFACT_BYTES,
-    descriptor_of,
     exists,
     is_dir,
     is_file,

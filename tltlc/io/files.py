@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, BinaryIO, Final, Union
+from typing import TYPE_CHECKING, Final
 
 from tltlc.core.record import EMPTY
 from tltlc.core.source import SourceFile, SourceKind, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.io.access_log import log_lookup, log_read
+from tltlc.io.confinement import may_read, outside_diagnostic
 from tltlc.io.limits import ARTEFACT, SOURCE
 
 if TYPE_CHECKING:
@@ -22,77 +24,8 @@ MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
 
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 
-Stamp = Union[tuple[int, ...], None]
-"""The state of a path, to see later whether it has changed: the file's time of change, size and inode number.
-
-For a folder, a device or a pipe, it is only the kind. It is None if nothing is at the path.
-"""
-
-
-class AccessLog(dict[str, Stamp]):
-    """Maps each path that was looked up or read to its stamp (such as time and size) just before.
-
-    ``read`` has the device and inode numbers of the regular files that were read.
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.read: set[tuple[int, int]] = set()
-
-
-_active_logs: Final[list[AccessLog]] = []
-"""The active access logs, the innermost last."""
-
 _unsaved_texts: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
 """The unsaved texts of an editor, by absolute path."""
-
-_folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", default=None)
-"""The folders that may be read, each as written and with links resolved.
-
-It is None if every file may be read.
-"""
-
-
-@contextmanager
-def confine_reads(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
-    """Allow reading only in these folders and their subfolders inside the ``with`` block.
-
-    A link is allowed only if the file that it leads to is in one of the folders, too.
-    """
-    resolvers = (os.path.abspath, os.path.realpath)
-    token = _folders.set(frozenset(os.path.normcase(resolve(folder)) for folder in folders for resolve in resolvers))
-    try:
-        yield
-    finally:
-        _folders.reset(token)
-
-
-def may_read(path: str | os.PathLike[str]) -> bool:
-    """Whether :func:`confine_reads` allows a path, both as written and with links resolved.
-
-    Without :func:`confine_reads`, every path is allowed.
-    """
-    folders = _folders.get()
-    if folders is None:
-        return True
-    try:
-        # Check the path as written first, so that no path outside is even looked up.
-        return _is_inside(os.path.abspath(path), folders) and _is_inside(os.path.realpath(path), folders)  # noqa: PTH100
-    except (OSError, ValueError):
-        return False
-
-
-def _is_inside(path: str, folders: Iterable[str]) -> bool:
-    key = os.path.normcase(path)
-    return any(key == folder or key.startswith(os.path.join(folder, "")) for folder in folders)  # noqa: PTH118
-
-
-def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
-    """Return the error TLT0777 for a file or folder that :func:`confine_reads` forbids to read."""
-    title = f"`{name}` is outside the folder of the playground, so it is not read"
-    return Diagnostic(
-        "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"
-    )
 
 
 @contextmanager
@@ -113,98 +46,10 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
     return texts.get(os.path.abspath(path)) if texts else None  # noqa: PTH100
 
 
-@contextmanager
-def access_log() -> Iterator[AccessLog]:
-    """Yield a log of the paths that this module looks up or reads inside the ``with`` block.
-
-    The log maps each path to its stamp just before the first access. Results that were computed
-    inside the block stay valid as long as :func:`stamp` returns the same for each of these paths.
-    """
-    log = AccessLog()
-    _active_logs.append(log)
-    try:
-        yield log
-    finally:
-        _active_logs.pop()
-
-
-def log_lookup(path: str | os.PathLike[str]) -> None:
-    """Record in all active access logs that this path is about to be looked up."""
-    for log in _active_logs:
-        name = os.fspath(path)
-        if name not in log:
-            log[name] = stamp(name)
-
-
-def log_read(path: str | os.PathLike[str]) -> None:
-    """Record in all active access logs that this file is about to be read."""
-    log_lookup(path)
-    _log_identity(path)
-
-
-def log_stream_read(stream: BinaryIO) -> None:
-    """Record in all active access logs that a stream is about to be read, if it comes from a file."""
-    with suppress(OSError, ValueError):
-        _log_identity(stream.fileno())
-
-
-def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path was read, under any name, since the innermost :func:`access_log` began.
-
-    Files are compared by their inode numbers. A command that watches files begins a new log in each
-    round, because the system reuses inode numbers: after an editor has replaced a source file, an
-    output may get the number of the old file.
-    """
-    # Devices and pipes do not count, because writing to them replaces nothing.
-    return bool(_active_logs) and _identity(path) in _active_logs[-1].read
-
-
-def descriptor_of(path: str | os.PathLike[str]) -> int | None:
-    """Return 1 if standard output of this process goes to the file at a path, 2 if standard error does.
-
-    Return None if neither does.
-    """
-    identity = _identity(path)
-    return next(
-        (descriptor for descriptor in (1, 2) if identity is not None and _identity(descriptor) == identity), None
-    )
-
-
-def _log_identity(file: str | os.PathLike[str] | int) -> None:
-    identity = _identity(file) if _active_logs else None
-    if identity is not None:
-        for log in _active_logs:
-            log.read.add(identity)
-
-
-def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
-    """Return the device and inode number of a regular file, and None for anything else."""
-    try:
-        status = os.stat(file)  # noqa: PTH116
-    except (OSError, ValueError):
-        return None
-    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
-
-
-def stamp(path: str) -> Stamp:
-    """Return the current stamp of a path: the file's time of change, size and inode number.
-
-    Another stamp later means that the file has changed. For a folder, a device or a pipe, the stamp
-    is only the kind; if nothing is at the path, it is None.
-    """
-    try:
-        status = os.stat(path)  # noqa: PTH116
-    except (OSError, ValueError):
-        return None
-    if not stat.S_ISREG(status.st_mode):
-        return (stat.S_IFMT(status.st_mode),)
-    return (status.st_mtime_ns, status.st_size, status.st_ino)
-
-
 def exists(path: str | os.PathLike[str]) -> bool:
     """Whether something exists at a path.
 
-    Returns False if the system rejects the name or denies access, or if :func:`confine_reads`
+    Returns False if the system rejects the name or denies access, or if :func:`~tltlc.io.confinement.confine_reads`
     forbids access.
     """
     if not may_read(path):
@@ -311,7 +156,7 @@ def read_source(
 
     Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002 if it is not
     UTF-8, TLT0003 if it is binary, TLT0004 if it is larger than ``max_bytes``, TLT0777 if
-    :func:`confine_reads` forbids to read it.
+    :func:`~tltlc.io.confinement.confine_reads` forbids to read it.
     """
     display_name = name if name is not None else os.fspath(path)
     location = os.fspath(path) if kind == "standard library" else None
@@ -326,7 +171,7 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
     messages.
 
     Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0777 if
-    :func:`confine_reads` forbids it.
+    :func:`~tltlc.io.confinement.confine_reads` forbids it.
     """
     if not may_read(path):
         raise TltlError([outside_diagnostic(name)])

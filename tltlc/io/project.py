@@ -27,7 +27,8 @@ from typing import TYPE_CHECKING, Any, Final
 from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.io.files import is_dir, is_file, may_be_file, may_read, outside_diagnostic, read_source
+from tltlc.io.confinement import may_read, outside_diagnostic
+from tltlc.io.files import is_dir, is_file, may_be_file, read_source
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Notation
@@ -110,7 +111,7 @@ def read_project(path: Path) -> Project:
     Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if ``path`` is
     not a file; TLT0701 if the file is not TOML. If it is TOML, all its errors are raised together:
     TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library that
-    :func:`tltlc.io.files.confine_reads` forbids to read.
+    :func:`tltlc.io.confinement.confine_reads` forbids to read.
     """
     from tltlc.io.toml_text import parse
 

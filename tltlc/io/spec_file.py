@@ -10,15 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import (
-    MAX_ARTEFACT_BYTES,
-    MAX_SOURCE_BYTES,
-    decode,
-    log_read,
-    log_stream_read,
-    read_bytes,
-    reading_error,
-)
+from tltlc.io.access_log import log_read, log_stream_read
+from tltlc.io.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, read_bytes, reading_error
 
 if TYPE_CHECKING:
     from typing import BinaryIO

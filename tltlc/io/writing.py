@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.io.files import descriptor_of, reason, was_read
+from tltlc.io.access_log import descriptor_of, was_read
+from tltlc.io.files import reason
 from tltlc.io.limits import SOURCE
 from tltlc.io.temporary import new_folders, temporaries
 

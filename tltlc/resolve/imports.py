@@ -12,7 +12,8 @@ from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, replacement_fix
 from tltlc.grammar.tree import Import, Module
 from tltlc.grammar.typos import likely_name
-from tltlc.io.files import is_file, may_be_file, may_read, outside_diagnostic, read_source
+from tltlc.io.confinement import may_read, outside_diagnostic
+from tltlc.io.files import is_file, may_be_file, read_source
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from tests.interfaces.playground.test_server import JSON, ask, running_server
 from tltlc.interfaces.playground import view
 from tltlc.interfaces.playground.child import readable_folders
-from tltlc.io.files import confine_reads, exists, is_dir, is_file, may_read, outside_diagnostic, read_source
+from tltlc.io.confinement import confine_reads, may_read, outside_diagnostic
+from tltlc.io.files import exists, is_dir, is_file, read_source
 from tltlc.resolve.imports import standard_library
 
 SECRET = "signal the_secret: bool\n  the_password = 12345\n"

@@ -120,7 +120,7 @@ class CommandLine(click.Group):
         After a closed pipe or Ctrl-C, the exit status is that of :mod:`tltlc.interfaces.cli.exits`,
         not that of click.
         """
-        from tltlc.io.files import access_log
+        from tltlc.io.access_log import access_log
 
         try:
             with access_log():

@@ -9,7 +9,7 @@ from typing import Final, NoReturn
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
-from tltlc.io.files import Stamp, access_log, stamp
+from tltlc.io.access_log import Stamp, access_log, stamp
 from tltlc.io.resources import OutOfTimeError, resource_limits
 
 PAUSE_S: Final = 0.2

@@ -16,7 +16,8 @@ from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
 from tltlc.interfaces.lsp.names import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import location_of
-from tltlc.io.files import Stamp, access_log, stamp, unsaved_texts
+from tltlc.io.access_log import Stamp, access_log, stamp
+from tltlc.io.files import unsaved_texts
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.resolution import Resolution
 from tltlc.resolve.scope import Scope
@@ -32,7 +33,7 @@ class Document:
 
     ``texts`` contains the texts of all open documents, by location; they replace the files on disk.
     ``notes`` contains the stamps, by path, of the files that were read to find the project;
-    :meth:`is_current` compares them with new stamps (:func:`tltlc.io.files.stamp`). Each property
+    :meth:`is_current` compares them with new stamps (:func:`tltlc.io.access_log.stamp`). Each property
     is computed on first use and then cached, because the text does not change.
     """
 

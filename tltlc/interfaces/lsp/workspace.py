@@ -10,7 +10,8 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import is_below, location_at, location_of, source_at, uri_of
-from tltlc.io.files import access_log, is_file, may_be_file, read_source, unsaved_texts, walk
+from tltlc.io.access_log import access_log
+from tltlc.io.files import is_file, may_be_file, read_source, unsaved_texts, walk
 from tltlc.io.limits import WORKSPACE, WORKSPACE_PARSED
 from tltlc.io.project import Project, project_for
 from tltlc.io.spec_file import STDIN

@@ -11,7 +11,7 @@ import sys
 from contextlib import suppress
 from typing import Final
 
-from tltlc.io.files import confine_reads
+from tltlc.io.confinement import confine_reads
 from tltlc.io.limits import ANSWER, PLAYGROUND_CHILD
 from tltlc.io.resources import limit
 

@@ -62,7 +62,7 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
     """Check, lint and test the source files once; report the findings, the failed tests and a summary."""
     from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report, count_text, tally
-    from tltlc.io.files import log_lookup
+    from tltlc.io.access_log import log_lookup
     from tltlc.tools.lint.importers import importer_names, names_used_elsewhere
     from tltlc.tools.lint.neighbours import neighbours
 
