@@ -298,7 +298,7 @@ def test_a_child_that_hangs_is_killed(monkeypatch: pytest.MonkeyPatch, tmp_path:
         "title": "this takes longer than 0.3 s, so it was stopped",
         "help": "make the spec smaller: bounds and large conjunctions cost most",
         "labels": [],
-        "ways_out": [],
+        "fixes": [],
     }
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)

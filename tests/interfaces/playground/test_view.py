@@ -62,9 +62,7 @@ def test_suggestions_equal_the_fixes_of_the_linter() -> None:
     assert [diagnostic["code"] for diagnostic in diagnostics] == [
         diagnostic.diagnostic.code for diagnostic in lint(source)
     ]
-    while suggestions := [
-        suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["ways_out"]
-    ]:
+    while suggestions := [suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["fixes"]]:
         text = text_after(text, suggestions[0])
     assert text == fix(source).source.text
 
@@ -84,7 +82,7 @@ def test_suggestions_equal_the_fixes_of_the_linter() -> None:
     ],
 )
 def test_a_suggestion_mends_its_error(text: str, title: str | None, after: str | None) -> None:
-    suggestions = [suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["ways_out"]]
+    suggestions = [suggestion for diagnostic in view(text)["diagnostics"] for suggestion in diagnostic["fixes"]]
     assert [(suggestion["title"], text_after(text, suggestion)) for suggestion in suggestions] == (
         [(title, after)] if title else []
     )
@@ -96,7 +94,7 @@ def test_suggestions_use_the_libraries_of_the_project(tmp_path: Path, monkeypatc
     (tmp_path / "lib" / "mine.tltl").write_text("signal shut: bool\n")
     (tmp_path / "tltl.toml").write_text('libraries = ["lib"]\n')
     (diagnostic,) = view("import mine\nspec x = F shutt")["diagnostics"]
-    assert [suggestion["title"] for suggestion in diagnostic["ways_out"]] == ["Write `shut`"]
+    assert [suggestion["title"] for suggestion in diagnostic["fixes"]] == ["Write `shut`"]
 
 
 def test_only_the_first_of_many_diagnostics_are_sent() -> None:

@@ -42,8 +42,8 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     the steps of the trace. ``notation`` is the notation of formulas in the picture. The keys of the
     result:
 
-    - ``diagnostics``: each with code, severity, title, help, labels and ways_out. Failed tests are
-      included. The ways_out are the fixes of :mod:`tltlc.tools.lint.fixes`, each with a title and
+    - ``diagnostics``: each with code, severity, title, help, labels and fixes. Failed tests are
+      included. The fixes are those of :mod:`tltlc.tools.lint.fixes`, each with a title and
       edits that do not overlap. The ``start`` and ``end`` of labels and edits are offsets into the
       text in UTF-16 units, as in browsers; None for a label in another file.
     - ``more``: how many messages beyond :data:`MOST_MESSAGES` are left out.
@@ -137,9 +137,7 @@ def diagnostic(
         "title": short.title,
         "help": short.help,
         "labels": [_label(label, source) for label in short.labels],
-        "ways_out": [
-            _fix_values(offer.fix, source) for offer in offered_fixes if source and offer.diagnostic is message
-        ],
+        "fixes": [_fix_values(offer.fix, source) for offer in offered_fixes if source and offer.diagnostic is message],
     }
 
 

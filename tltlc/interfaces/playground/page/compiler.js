@@ -111,7 +111,7 @@ const GIVEN_UP = {
 
 function givenUp(title) {
   const help = "make the spec smaller: bounds and large conjunctions cost most";
-  return { code: "TLT0775", severity: "error", title, help, labels: [], ways_out: [] };
+  return { code: "TLT0775", severity: "error", title, help, labels: [], fixes: [] };
 }
 
 /** Wait for the next message of a worker: `answer` is its promise, `since` when the wait began, `giveUp()` ends it. */

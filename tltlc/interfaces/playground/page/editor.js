@@ -52,7 +52,7 @@ export function show(diagnostics) {
   byId("messages").replaceChildren(...diagnostics.map(message));
 }
 
-function message({ code, severity, title, help, labels, ways_out: ways }) {
+function message({ code, severity, title, help, labels, fixes }) {
   const places = labels.map((label) =>
     element(
       "div",
@@ -73,7 +73,7 @@ function message({ code, severity, title, help, labels, ways_out: ways }) {
     element("span", { class: "code quiet" }, ` ${code}`),
     places,
     help ? element("div", { class: "help" }, ...prose(help)) : null,
-    ways.map((way) => element("button", { type: "button", class: "way", click: () => mend(way.edits) }, ...prose(way.title))),
+    fixes.map((fix) => element("button", { type: "button", class: "fix", click: () => mend(fix.edits) }, ...prose(fix.title))),
   );
 }
 
