@@ -87,7 +87,7 @@ def test_oracle_automaton_monitor_and_generated_monitor_agree(
 ) -> None:
     """The traces have many exact zeros, with and without exclusive atoms; the rewards of an episode also add up."""
     limit = data.draw(st.integers(1, 6))
-    judge: spec.Judge = data.draw(st.sampled_from(["goal", "limit"]))
+    judge: spec.JudgeMode = data.draw(st.sampled_from(["goal", "limit"]))
     fspa = replace(build(spec_from_formula(formula, exclusive=exclusive)), limit_steps=limit, judge=judge)
     generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
     names = [atom.name for atom in fspa.atoms]

@@ -10,7 +10,7 @@ from typing import Any, Final
 from tltlc.artefact.consistency import problems
 from tltlc.artefact.encode import VERSION
 from tltlc.artefact.errors import JsonSchemaValueException
-from tltlc.artefact.locations import Path, span_of
+from tltlc.artefact.locations import JsonPath, span_of
 from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile, Span
@@ -39,7 +39,7 @@ class Origin:
         """The text of the document."""
         return self._source()
 
-    def error(self, code: str, title: str, path: Path, advice: str = RECOMPILE) -> Diagnostic:
+    def error(self, code: str, title: str, path: JsonPath, advice: str = RECOMPILE) -> Diagnostic:
         """Return an error that points at the first line of the value at ``path``."""
         span = span_of(self.source.text, path)
         line_end = self.source.text.find("\n", span.start, span.end)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Final, Union
 
 from tltlc.artefact.guards import guard_problems
-from tltlc.artefact.locations import Path
+from tltlc.artefact.locations import JsonPath
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.core.record import record
 from tltlc.expression.tree import ParamValue, SignalValue, nodes
@@ -25,7 +25,7 @@ Large automata with many cycles need more. Their accepting states and verdicts a
 class Problem:
     """A contradiction in an artefact: the path of the wrong value in the document, and a message."""
 
-    path: Path
+    path: JsonPath
     message: str
 
 

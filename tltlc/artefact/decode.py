@@ -123,10 +123,10 @@ def _pair(pair: dict[str, Any]) -> Pair:
     return Pair(fin, inf)
 
 
-_Reader = Callable[[dict[str, str]], Formula | Text]
+_FormulaReader = Callable[[dict[str, str]], Formula | Text]
 
 
-def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _Reader:
+def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _FormulaReader:
     """Return a function that converts the texts of a formula, one for each notation, to a formula.
 
     If tltlc cannot parse the ASCII text, or would print the formula differently, the function
@@ -165,7 +165,7 @@ def _atom(atom: dict[str, Any]) -> Atom:
     return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
 
 
-def _state(state: dict[str, Any], formula: _Reader) -> State:
+def _state(state: dict[str, Any], formula: _FormulaReader) -> State:
     distance = state["distance"]
     return State(
         int(state["id"]),
@@ -176,7 +176,7 @@ def _state(state: dict[str, Any], formula: _Reader) -> State:
     )
 
 
-def _edge(edge: dict[str, Any], formula: _Reader) -> Edge:
+def _edge(edge: dict[str, Any], formula: _FormulaReader) -> Edge:
     guard = edge["guard"]
     text = dict.fromkeys(NOTATIONS, guard["text"])
     primes = tuple(tuple((int(index), polarity) for index, polarity in prime) for prime in guard["primes"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tltlc.artefact.locations import Path
+from tltlc.artefact.locations import JsonPath
 
 
 class JsonSchemaValueException(ValueError):
@@ -16,7 +16,7 @@ class JsonSchemaValueException(ValueError):
     names of the fields that are missing or not allowed.
     """
 
-    def __init__(self, path: Path, rule: str, definition: Any, fields: Sequence[str] = ()) -> None:
+    def __init__(self, path: JsonPath, rule: str, definition: Any, fields: Sequence[str] = ()) -> None:
         super().__init__(path, rule, definition, fields)
         self.path = path
         self.rule = rule

@@ -22,7 +22,7 @@ HEADER = '''"""Validates artefacts. Generated from fspa.schema.json by generate.
 '''
 
 PLAIN_HEAD = "(data, custom_formats={}, name_prefix=None):"
-TYPED_HEAD = "(data: object, custom_formats: object = {}, path: Path = ()) -> object:"
+TYPED_HEAD = "(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:"
 
 PLACE = re.compile(r'(?:"" \+ )?\(name_prefix or "data"\) \+ "([^"]*)"(?:\.format\(\*\*locals\(\)\))?(?: \+ "")?')
 """The text of a value's place, as fastjsonschema writes it; the group is the part after the prefix."""
@@ -41,7 +41,9 @@ def validator_source() -> str:
     schema = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
     code = fastjsonschema.compile_to_code(_inline(schema, schema["definitions"]), use_default=False)
     lines = [_shorten_line(line) for line in code.splitlines() if not line.startswith(("VERSION = ", "from "))]
-    imports = "from tltlc.artefact.errors import JsonSchemaValueException\nfrom tltlc.artefact.locations import Path\n"
+    imports = (
+        "from tltlc.artefact.errors import JsonSchemaValueException\nfrom tltlc.artefact.locations import JsonPath\n"
+    )
     return HEADER + imports + "\n".join(lines).strip() + "\n"
 
 

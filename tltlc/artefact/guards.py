@@ -13,10 +13,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from tltlc.artefact.locations import Path
+from tltlc.artefact.locations import JsonPath
 from tltlc.automaton.fspa import Fspa, Implicant
 
-Cube = tuple[int, int]
+MaskCube = tuple[int, int]
 
 WORK_LIMIT = 200_000
 """The most operations on cubes in one check, which take about a fifth of a second.
@@ -47,7 +47,7 @@ class _CubeBudget:
             raise _TooManyCubesError
 
 
-def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
+def guard_problems(fspa: Fspa) -> Iterator[tuple[JsonPath, str]]:
     """Yield the first problem of the guards, as a path in the document and a message.
 
     Yields nothing if there is no problem. A problem is a guard that is not the complete list of its
@@ -58,7 +58,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     leaving: list[list[int]] = [[] for _ in fspa.states]
     for index, edge in enumerate(fspa.edges):
         leaving[edge.source].append(index)
-    cubes: list[list[Cube]] = []
+    cubes: list[list[MaskCube]] = []
     try:
         # Building the pairs is work too: each has a bit for each atom, and each guard is compared with all pairs.
         work.spend(sum(len(group) ** 2 // 2 for group in fspa.exclusive) * (1 + len(fspa.atoms) // _BITS_OF_A_STEP))
@@ -82,7 +82,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
         return
 
 
-def _cube(prime: Implicant) -> Cube:
+def _cube(prime: Implicant) -> MaskCube:
     positive = negative = 0
     for atom, polarity in prime:
         if polarity:
@@ -93,7 +93,7 @@ def _cube(prime: Implicant) -> Cube:
 
 
 def _guard_problem(
-    primes: Sequence[Implicant], cubes: Sequence[Cube], pairs: Sequence[Cube], work: _CubeBudget
+    primes: Sequence[Implicant], cubes: Sequence[MaskCube], pairs: Sequence[MaskCube], work: _CubeBudget
 ) -> str | None:
     """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
 
@@ -123,12 +123,12 @@ def _guard_problem(
     return None
 
 
-def _lies_in(inner: Cube, outer: Cube) -> bool:
+def _lies_in(inner: MaskCube, outer: MaskCube) -> bool:
     """Whether ``inner`` implies ``outer``: every sample that satisfies ``inner`` satisfies ``outer``."""
     return outer[0] & ~inner[0] == 0 and outer[1] & ~inner[1] == 0
 
 
-def _consensus(one: Cube, other: Cube) -> Cube | None:
+def _consensus(one: MaskCube, other: MaskCube) -> MaskCube | None:
     """Return the consensus of two cubes: ``b & c`` for ``a & b`` and ``!a & c``.
 
     Returns None unless exactly one atom is true in one cube and false in the other.
@@ -139,7 +139,7 @@ def _consensus(one: Cube, other: Cube) -> Cube | None:
     return (one[0] | other[0]) & ~opposed, (one[1] | other[1]) & ~opposed
 
 
-def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget) -> bool:
+def _intersect(one: MaskCube, other: MaskCube, pairs: Sequence[MaskCube], work: _CubeBudget) -> bool:
     """Whether some sample satisfies both cubes, and no two exclusive atoms hold at it.
 
     ``pairs`` has a cube for each pair of exclusive atoms, which is true if both hold.
@@ -152,7 +152,7 @@ def _intersect(one: Cube, other: Cube, pairs: Sequence[Cube], work: _CubeBudget)
     return not any(_lies_in(both, pair) for pair in pairs)
 
 
-def _covers_all(cubes: Sequence[Cube], work: _CubeBudget) -> bool:
+def _covers_all(cubes: Sequence[MaskCube], work: _CubeBudget) -> bool:
     """Whether every sample satisfies at least one of the cubes."""
     work.spend(1 + len(cubes))
     if (0, 0) in cubes:

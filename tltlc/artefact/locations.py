@@ -8,13 +8,13 @@ from typing import Union
 
 from tltlc.core.source import Span
 
-Path = tuple[Union[str, int], ...]
+JsonPath = tuple[Union[str, int], ...]
 """The keys and indices that lead from the whole document to a value, such as ``("states", 0, "id")``."""
 
 _blank = re.compile(r"[ \t\n\r]*")
 
 
-def span_of(text: str, path: Path) -> Span:
+def span_of(text: str, path: JsonPath) -> Span:
     """Return the span of the value at ``path`` in a valid JSON text.
 
     If there is no such value, return the span of the innermost value on the path that exists.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltlc.artefact.errors import JsonSchemaValueException
-from tltlc.artefact.locations import Path
+from tltlc.artefact.locations import JsonPath
 
 _TYPES: Final = {
     "integer": "a whole number",
@@ -56,7 +56,7 @@ def _remark(error: JsonSchemaValueException) -> str:
     return _REMARKS[error.rule].format(definition)
 
 
-def _path_text(path: Path) -> str:
+def _path_text(path: JsonPath) -> str:
     """Return the text of a path: ``states[0].id`` for ``("states", 0, "id")``."""
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).removeprefix(".")
 

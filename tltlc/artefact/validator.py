@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 # fmt: off
 from tltlc.artefact.errors import JsonSchemaValueException
-from tltlc.artefact.locations import Path
+from tltlc.artefact.locations import JsonPath
 import re
 
 
@@ -13,7 +13,7 @@ REGEX_PATTERNS = {
 
 NoneType = type(None)
 
-def validate(data: object, custom_formats: object = {}, path: Path = ()) -> object:
+def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException(path, 'type', 'object')
     data_is_dict = isinstance(data, dict)
@@ -565,7 +565,7 @@ def validate(data: object, custom_formats: object = {}, path: Path = ()) -> obje
                 raise JsonSchemaValueException(path, 'required', ['acceptance'], sorted(data__missing_keys))
     return data
 
-def validate___definitions_expression(data: object, custom_formats: object = {}, path: Path = ()) -> object:
+def validate___definitions_expression(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException(path, 'type', 'object')
     try:
@@ -803,7 +803,7 @@ def validate___definitions_expression(data: object, custom_formats: object = {},
             raise JsonSchemaValueException(path, 'additionalProperties', False, sorted(data_keys))
     return data
 
-def validate___definitions_condition(data: object, custom_formats: object = {}, path: Path = ()) -> object:
+def validate___definitions_condition(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException(path, 'type', 'object')
     data_is_dict = isinstance(data, dict)

@@ -10,15 +10,15 @@ from collections.abc import Iterable
 from tltlc.logic.bounded_operators import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, and_
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.spec import Conjunct, Judge
+from tltlc.resolve.spec import Conjunct, JudgeMode
 
 
-def judge_of(parts: Iterable[Conjunct]) -> Judge:
+def judge_of(parts: Iterable[Conjunct]) -> JudgeMode:
     """Return the judge (``goal`` or ``limit``) of a spec over finite traces that has these clauses and no ``judge``."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
-def default_judge(formula: Formula) -> Judge:
+def default_judge(formula: Formula) -> JudgeMode:
     """Return how a spec without a ``judge`` clause is judged: at its ``limit`` or at its ``goal``.
 
     It is judged at its limit if its formula is true on the empty trace. The formula is taken in

@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 
 from tltlc.core.record import record
 from tltlc.logic.formula import FlatNodes, Formula, flatten, unflatten
-from tltlc.resolve.spec import Atom, Judge, Param, Signal
+from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
@@ -119,7 +119,7 @@ class Fspa:
     formula: Formula | Text
     level: str | None
     limit_steps: int | None
-    judge: Judge
+    judge: JudgeMode
     semantics: Literal["finite", "infinite"]
     tags: tuple[str, ...]
     clock_s: float | None

@@ -37,7 +37,7 @@ from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.trampoline import FormulaGenerator, run_to_result
 from tltlc.resolve.units import value_type
-from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
+from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown
 
 _UNARY: dict[str, Callable[[Formula], Formula]] = {
     "not": logic.not_,
@@ -68,7 +68,7 @@ def check_unused(binding: Binding, env: Env) -> None:
     """Expand a let with symbolic arguments, so that its body is checked even if nothing uses it."""
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
-    values: dict[str, Value] = {}
+    values: dict[str, ResolvedValue] = {}
     for parameter in declaration.parameters:
         values[parameter.name] = Entity(parameter.name) if parameter.type == "entity" else Unknown(parameter.name)
     inside = Env(env.context, binding.scope, values, symbolic=bool(declaration.parameters))
@@ -158,7 +158,7 @@ def _atom(value: Quantity, robustness: Expression, doc: str, expr: NameExpr | Ca
 def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGenerator:
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
-    values: dict[str, Value] = {}
+    values: dict[str, ResolvedValue] = {}
     for parameter, argument in match(expr, binding, declaration.parameters, env.scope):
         argument_env = env if argument is not None else env.inside(binding.scope, dict(values))
         expression = argument if argument is not None else parameter.default

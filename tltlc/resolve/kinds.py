@@ -13,7 +13,7 @@ from tltlc.grammar.walk import parts
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, closest_name
+from tltlc.resolve.scope import FUNCTIONS, Binding, BindingKind, closest_name
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
@@ -35,7 +35,7 @@ The message suggests it if the name resembles no known name.
 """
 
 
-def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: str) -> Binding:
+def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], noun: str) -> Binding:
     """Return the binding of a name: its declaration and scope.
 
     Raises ResolutionError (TLT0201) if the name is unknown. The error suggests a name of one of
@@ -91,7 +91,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[Kind, ...], noun: st
 _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
 
 
-def _split_operator_letters(name: str, env: Env, kinds: tuple[Kind, ...]) -> str | None:
+def _split_operator_letters(name: str, env: Env, kinds: tuple[BindingKind, ...]) -> str | None:
     """Return ``F a`` for ``Fa`` if `a` is a visible name of one of these kinds, else None."""
     for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
         if name[letters - 1] not in "FGXN":

@@ -25,7 +25,7 @@ from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.resolve.spec import Signal, ValueType
-from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
+from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown, constant
 
 
 @record
@@ -47,7 +47,7 @@ def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int =
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
-    values: dict[str, Value] = {}
+    values: dict[str, ResolvedValue] = {}
     argument_texts: list[str] = []
     place = None
     is_settled = True
@@ -86,7 +86,7 @@ def check_unused(binding: Binding, env: Env) -> None:
     assert isinstance(declaration, PredicateDecl)
     if any(key[0] == id(declaration) for key in env.context.instances):
         return
-    values: dict[str, Value] = {}
+    values: dict[str, ResolvedValue] = {}
     needs_numbers = False
     for parameter in declaration.parameters:
         if parameter.default is not None:
@@ -102,7 +102,7 @@ def check_unused(binding: Binding, env: Env) -> None:
         _instantiate((), declaration, binding.scope, values, env, 0)
 
 
-def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> Value:
+def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> ResolvedValue:
     """Return the value of an argument of a predicate, or of a numeric argument of a ``let``.
 
     Raises ResolutionError if the argument does not fit the parameter.
@@ -170,7 +170,7 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
     return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
 
 
-def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> Value:
+def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> ResolvedValue:
     """Return a value that stands for any argument of a parameter.
 
     For a number, it is a signal with the parameter's name.
@@ -186,7 +186,7 @@ def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> Value:
     return signal_value(signal)
 
 
-def _text(value: Value) -> str:
+def _text(value: ResolvedValue) -> str:
     return value.name if isinstance(value, (Entity, Unknown)) else value.text if isinstance(value, Quantity) else ""
 
 
@@ -194,7 +194,7 @@ def _instantiate(
     arguments: tuple[str, ...],
     declaration: PredicateDecl,
     scope: Scope,
-    values: Mapping[str, Value],
+    values: Mapping[str, ResolvedValue],
     env: Env,
     depth: int,
     place: Label | None = None,
@@ -239,7 +239,9 @@ def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[
     return low, high
 
 
-def _body(declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value], env: Env, depth: int) -> Quantity:
+def _body(
+    declaration: PredicateDecl, scope: Scope, values: Mapping[str, ResolvedValue], env: Env, depth: int
+) -> Quantity:
     context = env.context
     if id(declaration) in context.expanding:
         raise context.recursion_error(id(declaration), scope.source, declaration.name_span)
@@ -257,7 +259,7 @@ def _body(declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value],
 def _note_instance(
     declaration: PredicateDecl,
     scope: Scope,
-    values: Mapping[str, Value],
+    values: Mapping[str, ResolvedValue],
     declared: tuple[float, float],
     env: Env,
     depth: int,
@@ -268,7 +270,7 @@ def _note_instance(
     Entities are replaced by the names of the parameters, so that uses that differ only in entities
     are checked once.
     """
-    general: dict[str, Value] = {}
+    general: dict[str, ResolvedValue] = {}
     names: dict[str, str] = {}
     for name, value in values.items():
         if isinstance(value, Entity):

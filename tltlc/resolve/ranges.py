@@ -15,11 +15,11 @@ from math import exp, inf, isfinite, isnan, prod, sqrt, tanh
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 
-Range = tuple[float, float]
-EVERYTHING: Range = (-inf, inf)
+ValueRange = tuple[float, float]
+EVERYTHING: ValueRange = (-inf, inf)
 
 
-def range_of(op: str, args: tuple[Range, ...]) -> Range:
+def range_of(op: str, args: tuple[ValueRange, ...]) -> ValueRange:
     """Return the range of the results of the operator ``op`` (:class:`tltlc.expression.tree.Op`).
 
     Returns ``EVERYTHING`` if the result may be unbounded or undefined.
@@ -31,14 +31,14 @@ def range_of(op: str, args: tuple[Range, ...]) -> Range:
     return EVERYTHING if isnan(low) or isnan(high) else (low, high)
 
 
-def overflows(op: str, args: tuple[Range, ...]) -> bool:
+def overflows(op: str, args: tuple[ValueRange, ...]) -> bool:
     """Whether the ranges are finite, and ``op`` is defined everywhere in them but may overflow."""
     if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
         return False
     return not all(isfinite(end) for end in range_of(op, args))
 
 
-def _is_defined(op: str, args: tuple[Range, ...]) -> bool:
+def _is_defined(op: str, args: tuple[ValueRange, ...]) -> bool:
     first, second = args[0], args[-1]
     if op == "/":
         return not second[0] <= 0 <= second[1]
@@ -49,30 +49,30 @@ def _is_defined(op: str, args: tuple[Range, ...]) -> bool:
     return second[0] == second[1] == int(second[0]) and (second[0] >= 0 or first[1] < 0)
 
 
-def hull(ranges: tuple[Range, ...]) -> Range:
+def hull(ranges: tuple[ValueRange, ...]) -> ValueRange:
     """Return the smallest range that contains all the ranges."""
     return min(low for low, _ in ranges), max(high for _, high in ranges)
 
 
-def _add(*args: Range) -> Range:
+def _add(*args: ValueRange) -> ValueRange:
     return reduce(lambda a, b: (a[0] + b[0], a[1] + b[1]), args)
 
 
-def _subtract(a: Range, b: Range) -> Range:
+def _subtract(a: ValueRange, b: ValueRange) -> ValueRange:
     return a[0] - b[1], a[1] - b[0]
 
 
-def _multiply(*args: Range) -> Range:
+def _multiply(*args: ValueRange) -> ValueRange:
     return reduce(lambda a, b: _corners(a, b, lambda x, y: 0.0 if 0.0 in (x, y) else x * y), args)
 
 
-def _divide(a: Range, b: Range) -> Range:
+def _divide(a: ValueRange, b: ValueRange) -> ValueRange:
     if b[0] <= 0 <= b[1]:
         return EVERYTHING
     return _corners(a, b, lambda x, y: 0.0 if abs(y) == inf else x / y)
 
 
-def _power(a: Range, b: Range) -> Range:
+def _power(a: ValueRange, b: ValueRange) -> ValueRange:
     exponent = b[0]
     if b[0] == b[1] and exponent == int(exponent):
         if exponent < 0 and a[0] <= 0 <= a[1]:
@@ -91,26 +91,26 @@ def _integer_power(x: float, exponent: float) -> float:
     return float(x**exponent) if factors is None else prod([x] * (factors - 1), start=x)
 
 
-def _abs(a: Range) -> Range:
+def _abs(a: ValueRange) -> ValueRange:
     if a[0] >= 0:
         return a
     return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
 
 
-def _clamp(a: Range, low: Range, high: Range) -> Range:
+def _clamp(a: ValueRange, low: ValueRange, high: ValueRange) -> ValueRange:
     return min(max(a[0], low[0]), high[0]), min(max(a[1], low[1]), high[1])
 
 
-def _sqrt(a: Range) -> Range:
+def _sqrt(a: ValueRange) -> ValueRange:
     return EVERYTHING if a[0] < 0 else (sqrt(a[0]), sqrt(a[1]))
 
 
-def _corners(a: Range, b: Range, function: Callable[[float, float], float]) -> Range:
+def _corners(a: ValueRange, b: ValueRange, function: Callable[[float, float], float]) -> ValueRange:
     values = [function(x, y) for x in a for y in b]
     return min(values), max(values)
 
 
-_FUNCTIONS: dict[str, Callable[..., Range]] = {
+_FUNCTIONS: dict[str, Callable[..., ValueRange]] = {
     "+": _add,
     "-": _subtract,
     "*": _multiply,

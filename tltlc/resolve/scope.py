@@ -14,7 +14,7 @@ from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import LoadedModule
 from tltlc.resolve.problem import Log, problem
 
-Kind = Literal["signal", "param", "predicate", "let", "entity"]
+BindingKind = Literal["signal", "param", "predicate", "let", "entity"]
 NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, NameExpr]
 FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 _MERGED = ("signal", "param", "entity")
@@ -28,7 +28,7 @@ class Binding:
     itself.
     """
 
-    kind: Kind
+    kind: BindingKind
     declaration: NamedDeclaration
     scope: Scope
     via: str | None = None
@@ -83,7 +83,7 @@ def build_scopes(modules: Iterable[LoadedModule], log: Log) -> tuple[Scope, ...]
     return tuple(scopes.values())
 
 
-def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
+def closest_name(name: str, scope: Scope, kinds: Iterable[BindingKind], local: Iterable[str] = ()) -> str | None:
     """Return the visible name of one of these kinds that an unknown name most likely misspells.
 
     Returns None if no name is close.

@@ -14,7 +14,7 @@ from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
 
 ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "bool"]
-Judge = Literal["goal", "limit"]
+JudgeMode = Literal["goal", "limit"]
 
 
 @record
@@ -114,7 +114,7 @@ class Spec:
     exclusive: tuple[tuple[int, ...], ...]
     level: str | None
     limit_steps: int | None
-    judge: Judge | None
+    judge: JudgeMode | None
     semantics: Literal["finite", "infinite"]
     tags: tuple[str, ...]
     clock_s: float | None

@@ -17,7 +17,7 @@ from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Conjunct, Judge, Spec, Vocabulary
+from tltlc.resolve.spec import Conjunct, JudgeMode, Spec, Vocabulary
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
@@ -68,7 +68,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
         exclusive=words.exclusive,
         level=_word(metadata.get("level")),
         limit_steps=limit,
-        judge=cast("Judge | None", _word(metadata.get("judge"))),
+        judge=cast("JudgeMode | None", _word(metadata.get("judge"))),
         semantics=cast(Literal["finite", "infinite"], _word(metadata.get("semantics")) or "finite"),
         tags=tuple(tags),
         clock_s=words.clock_s,

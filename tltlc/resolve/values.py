@@ -68,7 +68,7 @@ class Unknown:
     name: str
 
 
-Value = Union[Entity, Quantity, Formula, Unknown]
+ResolvedValue = Union[Entity, Quantity, Formula, Unknown]
 
 
 @record
@@ -83,16 +83,16 @@ class Env:
 
     context: Context
     scope: Scope
-    local: Mapping[str, Value] = EMPTY
+    local: Mapping[str, ResolvedValue] = EMPTY
     symbolic: bool = False
     constant: bool = False
     unbounded: bool = False
 
-    def inside(self, scope: Scope, local: Mapping[str, Value]) -> Env:
+    def inside(self, scope: Scope, local: Mapping[str, ResolvedValue]) -> Env:
         """Return the environment inside a declaration of ``scope``, with these local names."""
         return replace(self, scope=scope, local=local)
 
-    def with_local(self, name: str, value: Value) -> Env:
+    def with_local(self, name: str, value: ResolvedValue) -> Env:
         """Return the environment with one more local name."""
         return replace(self, local={**self.local, name: value})
 

@@ -191,7 +191,7 @@ def test_temporaries_avoid_the_names_of_a_specification() -> None:
 
 @times(25)
 @given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
-def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.Judge) -> None:
+def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.JudgeMode) -> None:
     for statements in program(replace(fspa, judge=judge), ()).states:
         assert _declared(statements) <= variables_read(statements)
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltlc.interfaces.lsp.frames import Body, Fault, Frame, Frames
+from tltlc.interfaces.lsp.frames import Body, Fault, Frames, MessageFrame
 from tltlc.interfaces.lsp.json_end import JsonEnd
 from tltlc.io.limits import MESSAGE, MESSAGE_HEAD
 
@@ -19,7 +19,7 @@ def with_header(data: bytes, extra: int = 0) -> bytes:
     return b"Content-Length: %d\r\n\r\n%b" % (len(data) + extra, data)
 
 
-def frames(*pieces: bytes) -> list[Frame]:
+def frames(*pieces: bytes) -> list[MessageFrame]:
     reader = Frames()
     return [frame for piece in pieces for frame in reader.feed(piece)] + reader.end()
 

@@ -18,8 +18,8 @@ from tltlc.automaton.fspa import Fspa, Notation
 from tltlc.backends.drawing.folding import fold_runs
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import Curve
-from tltlc.interfaces.playground.layout import Size, StateBox, layout
-from tltlc.interfaces.playground.ordering import Ends
+from tltlc.interfaces.playground.layout import BoxSize, StateBox, layout
+from tltlc.interfaces.playground.ordering import EdgeEnds
 from tltlc.interfaces.playground.picture import MOST_STATES, picture
 
 SIGNALS = "signal a: bool  signal b: bool  signal c: bool  "
@@ -220,7 +220,7 @@ def test_names_are_escaped() -> None:
 
 
 @st.composite
-def graphs(draw: st.DrawFn) -> tuple[int, list[Ends]]:
+def graphs(draw: st.DrawFn) -> tuple[int, list[EdgeEnds]]:
     """A number of states, and edges between them."""
     size = draw(st.integers(1, 9))
     state = st.integers(0, size - 1)
@@ -229,7 +229,7 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Ends]]:
 
 @times(40)
 @given(graphs(), st.lists(st.tuples(st.floats(1, 200), st.floats(1, 90)), min_size=20, max_size=20))
-def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[Ends]], sizes: list[Size]) -> None:
+def test_edges_cross_no_state_and_no_text(graph: tuple[int, list[EdgeEnds]], sizes: list[BoxSize]) -> None:
     size, edges = graph
     traps = {state for state in range(1, size) if state % 4 == 3}
     texts = {(a, b): text_size for (a, b), text_size in zip(edges, sizes, strict=False) if a not in traps or a == b}

@@ -9,7 +9,7 @@ from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.automaton.infinite.cycles import MarkedEdge, MarkedEdges, accepting_parts, parts, rejecting_parts
 from tltlc.automaton.infinite.mark_conditions import pair_clauses, pair_marks
 from tltlc.automaton.work import Work
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 
 if TYPE_CHECKING:
     from tltlc.automaton.infinite.automaton import Rabin
@@ -71,7 +71,7 @@ class Analysis:
             return "satisfied"
         return "holding" if state in self.goals else "pending"
 
-    def default_judge(self) -> Judge:
+    def default_judge(self) -> JudgeMode:
         """Return when a spec without a ``judge`` clause is judged.
 
         Returns ``goal`` if the initial state is not a goal, and every run from a goal that avoids

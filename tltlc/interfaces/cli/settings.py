@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tltlc.io.project import Project
     from tltlc.pipeline import CompileOptions
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+CommandFunction = TypeVar("CommandFunction", bound=Callable[..., Any])
 
 
 @record
@@ -35,7 +35,7 @@ class CompileSettings:
     state_budget: int | None = None
 
 
-def source_options(command: Function) -> Function:
+def source_options(command: CommandFunction) -> CommandFunction:
     """Add ``--library --param --state-budget --format`` to a command.
 
     The command receives their values as ``settings`` and ``format``.
@@ -43,7 +43,7 @@ def source_options(command: Function) -> Function:
     return compile_options(format_option(command))
 
 
-def compile_options(command: Function) -> Function:
+def compile_options(command: CommandFunction) -> CommandFunction:
     """Add ``--library --param --state-budget`` to a command, which receives them as ``settings``."""
     from functools import wraps
 

@@ -24,13 +24,13 @@ from tltlc.resolve import units
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.scope import FUNCTIONS, Binding
 
-Kind = types.CompletionItemKind
+_ItemKind = types.CompletionItemKind
 _KINDS: Final = {
-    "signal": Kind.Field,
-    "param": Kind.Constant,
-    "predicate": Kind.Function,
-    "let": Kind.Function,
-    "entity": Kind.EnumMember,
+    "signal": _ItemKind.Field,
+    "param": _ItemKind.Constant,
+    "predicate": _ItemKind.Function,
+    "let": _ItemKind.Function,
+    "entity": _ItemKind.EnumMember,
 }
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
 _HEADS: Final = ("signal", "param", "predicate", "let")
@@ -91,7 +91,7 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
             word = spellings[terminal]
             # After a colon, `entity` is a type, and does not begin a declaration.
             form = _FORMS.get(word) if place.last != "COLON" else None
-            yield types.CompletionItem(word, kind=Kind.Keyword, detail=form.replace("`", "") if form else None)
+            yield types.CompletionItem(word, kind=_ItemKind.Keyword, detail=form.replace("`", "") if form else None)
 
 
 def _units(place: Cursor) -> Iterator[types.CompletionItem]:
@@ -105,7 +105,7 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
     for unit in unit_names:
         conversion = units.in_si(1.0, unit)
         detail = units.dimension_text(conversion[1]) if conversion else "samples"
-        yield types.CompletionItem(unit, kind=Kind.Unit, detail=detail)
+        yield types.CompletionItem(unit, kind=_ItemKind.Unit, detail=detail)
 
 
 # --- names --------------------------------------------------------------------------------------
@@ -117,7 +117,7 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
     if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
         yield from _settings(document, first)
     elif place.start == "test_item" and before == "expect":
-        yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in (*VERDICTS, "progress", "state"))
+        yield from (types.CompletionItem(word, kind=_ItemKind.EnumMember) for word in (*VERDICTS, "progress", "state"))
     elif place.start == "declaration" and first == "import":
         yield from _imports(document, place)
     elif place.start == "declaration" and first == "test":
@@ -147,7 +147,7 @@ def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]
         words = sorted(tags)
     if clause == "level":
         words = sorted({item.value.name for item in _clauses(document, "level") if isinstance(item.value, NameExpr)})
-    yield from (types.CompletionItem(word, kind=Kind.EnumMember) for word in words)
+    yield from (types.CompletionItem(word, kind=_ItemKind.EnumMember) for word in words)
 
 
 def _clauses(document: Document, kind: str = "tag") -> Iterator[Clause]:
@@ -161,7 +161,7 @@ def _types(head: str) -> Iterator[types.CompletionItem]:
     for name in (*units.TYPES, *extra_types):
         dimension = units.TYPES.get(name)
         detail = f"in {units.si_unit(dimension)}" if dimension and units.si_unit(dimension) else None
-        yield types.CompletionItem(name, kind=Kind.TypeParameter, detail=detail)
+        yield types.CompletionItem(name, kind=_ItemKind.TypeParameter, detail=detail)
 
 
 def _expression_names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
@@ -179,12 +179,12 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
         for parameter in parameters[position:]:
             if place.last in ("LPAR", "COMMA"):
                 detail = f"of {binding.name}" + (f", a {parameter.type}" if parameter.type else "")
-                yield types.CompletionItem(f"{parameter.name} = ", kind=Kind.Property, detail=detail)
+                yield types.CompletionItem(f"{parameter.name} = ", kind=_ItemKind.Property, detail=detail)
     yield from _local_names(place.piece)
     if place.start == "test_item":
         yield from _atoms(document, place.around)
     yield from _visible_names(document, ("predicate", "let", "signal", "param"))
-    yield from (types.CompletionItem(name, kind=Kind.Operator, detail="function") for name in FUNCTIONS)
+    yield from (types.CompletionItem(name, kind=_ItemKind.Operator, detail="function") for name in FUNCTIONS)
     if call:
         yield from _visible_names(document, ("entity",))
 
@@ -210,7 +210,7 @@ def _name_item(name: str, binding: Binding) -> types.CompletionItem:
 
 def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionItem:
     doc = declaration.doc or None
-    return types.CompletionItem(declaration.name, kind=Kind.Class, detail="spec", documentation=doc)
+    return types.CompletionItem(declaration.name, kind=_ItemKind.Class, detail="spec", documentation=doc)
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
@@ -223,7 +223,7 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
         if spec.name == name:
             for atom in spec.atoms:
                 yield types.CompletionItem(
-                    atom.name, kind=Kind.Event, detail=f"atom of {name}", documentation=atom.doc or None
+                    atom.name, kind=_ItemKind.Event, detail=f"atom of {name}", documentation=atom.doc or None
                 )
 
 
@@ -242,7 +242,7 @@ def _local_names(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
             if depth == 1 and before.type in ("LPAR", "COMMA") and token.type == "NAME":
                 names[token.text] = None
     names.update((token.text, None) for before, token in pairwise(piece) if before.type in ("ALL", "ANY"))
-    yield from (types.CompletionItem(name, kind=Kind.Variable, detail="parameter") for name in names)
+    yield from (types.CompletionItem(name, kind=_ItemKind.Variable, detail="parameter") for name in names)
 
 
 def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
@@ -298,7 +298,7 @@ def _libraries(document: Document) -> Iterator[types.CompletionItem]:
                 folders.setdefault(path.stem, folder)
     for name, folder in folders.items():
         detail = "standard library" if folder == standard_library() else str(folder)
-        yield types.CompletionItem(name, kind=Kind.Module, detail=detail)
+        yield types.CompletionItem(name, kind=_ItemKind.Module, detail=detail)
 
 
 def _paths(document: Document) -> Iterator[types.CompletionItem]:
@@ -307,7 +307,7 @@ def _paths(document: Document) -> Iterator[types.CompletionItem]:
     for folder, prefix in ((here, ""), (here.parent, "../")):
         for path in _sources(folder, document):
             if str(path) != document.source.name:
-                yield types.CompletionItem(f"{prefix}{path.name}", kind=Kind.File)
+                yield types.CompletionItem(f"{prefix}{path.name}", kind=_ItemKind.File)
 
 
 def _sources(folder: Path, document: Document) -> list[Path]:

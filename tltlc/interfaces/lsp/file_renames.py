@@ -14,11 +14,11 @@ from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import is_below, location_of
 from tltlc.interfaces.lsp.workspace import Workspace
 
-Moves = Sequence[tuple[str, str]]
+FileMoves = Sequence[tuple[str, str]]
 """Old and new paths of renamed files and folders."""
 
 
-def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
+def edits_of_moves(moves: FileMoves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
     """Return the edits, by document, that correct the imports which renamed files would break.
 
     ``moves`` contains the old and new paths of the renamed files and folders.
@@ -34,7 +34,7 @@ def may_import(text: str) -> bool:
     return "import" in text
 
 
-def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
+def _edits(document: Document, moves: FileMoves) -> Iterator[Edit]:
     here = location_of(document.source)
     for declaration, loaded in document.resolution.modules[-1].imports:
         there = location_of(loaded.module.source)
@@ -52,7 +52,7 @@ def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
                 yield Edit(declaration.target_span, target)
 
 
-def _path_after(path: str, moves: Moves) -> str:
+def _path_after(path: str, moves: FileMoves) -> str:
     for old, new in moves:
         if is_below(path, old):
             return new + path[len(old) :]

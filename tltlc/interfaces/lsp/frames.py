@@ -49,7 +49,7 @@ class Fault:
     is_answered: bool = False
 
 
-Frame = Union[Body, Fault]
+MessageFrame = Union[Body, Fault]
 """What is found in the bytes: the body of a message, or a fault of its headers."""
 
 
@@ -70,16 +70,16 @@ class Frames:
         """The fault to report if the bytes that ``_padding`` counts are not all white space."""
         self._is_skipping = False
         """Whether bytes are being skipped up to the next header. This is reported only once."""
-        self._frames: list[Frame] = []
+        self._frames: list[MessageFrame] = []
 
-    def feed(self, data: bytes) -> list[Frame]:
+    def feed(self, data: bytes) -> list[MessageFrame]:
         """Take the next bytes of the stream, and return the frames that are now complete."""
         self._buffer += data
         while self._read_part():
             pass
         return self._take_frames()
 
-    def end(self) -> list[Frame]:
+    def end(self) -> list[MessageFrame]:
         """Return the remaining frames at the end of the stream; an incomplete body becomes a frame."""
         if self._in_body and self._buffer:
             self._add_body(len(self._buffer))
@@ -91,7 +91,7 @@ class Frames:
             return self._read_body()
         return self._read_padding() if self._padding else self._read_line()
 
-    def _take_frames(self) -> list[Frame]:
+    def _take_frames(self) -> list[MessageFrame]:
         frames, self._frames = self._frames, []
         return frames
 

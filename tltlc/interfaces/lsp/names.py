@@ -13,8 +13,8 @@ from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.walk import children
 from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
-Kind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
-MERGED: tuple[Kind, ...] = ("signal", "param", "entity")
+SymbolKind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
+MERGED: tuple[SymbolKind, ...] = ("signal", "param", "entity")
 """Kinds whose declarations count as one if several files of a program declare the same name.
 
 A program is a file with all files that it imports.
@@ -27,7 +27,7 @@ _FORMULA_CLAUSES = ("reach", "keep", "avoid", "require")
 class Symbol:
     """The declaration that a name refers to; ``span`` is the place of the declared name in ``source``."""
 
-    kind: Kind
+    kind: SymbolKind
     name: str
     declaration: Union[NamedDeclaration, tree.SpecDecl, tree.Parameter, tree.Quantified]
     source: SourceFile

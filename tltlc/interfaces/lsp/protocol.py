@@ -21,7 +21,7 @@ from pygls.exceptions import (
 )
 from pygls.protocol import LanguageServerProtocol
 
-from tltlc.interfaces.lsp.frames import Fault, Frame
+from tltlc.interfaces.lsp.frames import Fault, MessageFrame
 
 LOG: Final = logging.getLogger("tltlc.interfaces.lsp")
 """Logs to standard error, which editors show as the server's log."""
@@ -32,7 +32,7 @@ _NOTEBOOK_METHODS: Final = "notebookDocument/"
 class Protocol(LanguageServerProtocol):
     """The protocol of pygls, extended so that malformed messages are answered, too."""
 
-    def receive(self, frame: Frame) -> None:
+    def receive(self, frame: MessageFrame) -> None:
         """Handle a frame: parse and handle the body of a message, or answer or log a fault of headers."""
         if isinstance(frame, Fault):
             if frame.is_answered:

@@ -13,13 +13,12 @@ from tltlc.interfaces.lsp.declaration_text import declaration_text
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.positions import range_of
 
-Kind = types.SymbolKind
 _KINDS: Final = {
-    tree.SignalDecl: Kind.Field,
-    tree.ParamDecl: Kind.Constant,
-    tree.PredicateDecl: Kind.Function,
-    tree.LetDecl: Kind.Function,
-    tree.SpecDecl: Kind.Class,
+    tree.SignalDecl: types.SymbolKind.Field,
+    tree.ParamDecl: types.SymbolKind.Constant,
+    tree.PredicateDecl: types.SymbolKind.Function,
+    tree.LetDecl: types.SymbolKind.Function,
+    tree.SpecDecl: types.SymbolKind.Class,
 }
 
 
@@ -72,12 +71,12 @@ def _outline_entries(declaration: tree.Declaration) -> Iterator[tuple[str, types
     """Yield each name of a declaration, its kind, the span of the declaration, and the span of the name."""
     match declaration:
         case tree.Import():
-            yield declaration.target, Kind.Module, declaration.span, declaration.target_span
+            yield declaration.target, types.SymbolKind.Module, declaration.span, declaration.target_span
         case tree.EntityDecl():
             for name in declaration.names:
-                yield name.name, Kind.EnumMember, name.span, name.span
+                yield name.name, types.SymbolKind.EnumMember, name.span, name.span
         case tree.TestDecl():
-            yield declaration.title or "test", Kind.Event, declaration.span, declaration.spec.span
+            yield declaration.title or "test", types.SymbolKind.Event, declaration.span, declaration.spec.span
         case tree.SignalDecl() | tree.ParamDecl() | tree.PredicateDecl() | tree.LetDecl() | tree.SpecDecl():
             yield declaration.name, _KINDS[type(declaration)], declaration.span, declaration.name_span
 
@@ -90,7 +89,7 @@ def _clause(clause: tree.Clause, document: Document, encoding: str) -> types.Doc
     text = " ".join(document.source.slice(clause.span).split())
     return types.DocumentSymbol(
         text if len(text) <= 80 else f"{text[:79]}…",
-        Kind.Property,
+        types.SymbolKind.Property,
         range_of(document.source, clause.span, encoding),
         range_of(document.source, clause.keyword_span, encoding),
     )

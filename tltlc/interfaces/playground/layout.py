@@ -15,8 +15,16 @@ from math import inf
 from typing import Final
 
 from tltlc.core.record import record
-from tltlc.interfaces.playground.curves import Curve, Point, add_bend, add_drop, add_line
-from tltlc.interfaces.playground.ordering import Ends, Node, chain, columns_of, mean, neighbours, order_columns
+from tltlc.interfaces.playground.curves import Curve, PicturePoint, add_bend, add_drop, add_line
+from tltlc.interfaces.playground.ordering import (
+    EdgeEnds,
+    LayoutNode,
+    chain,
+    columns_of,
+    mean,
+    neighbours,
+    order_columns,
+)
 
 _SWEEPS: Final = 12
 _GAP, _NARROW_GAP = 30.0, 12.0
@@ -26,7 +34,7 @@ _LEAST_BEND, _MOST_BEND = 36.0, 110.0
 _LANE: Final = 20.0
 """Width of the lane in which edges drop past the lower states of a column."""
 
-Size = tuple[float, float]
+BoxSize = tuple[float, float]
 """Width and height."""
 
 
@@ -55,14 +63,16 @@ class Layout:
     edges, as pairs of source and target.
     """
 
-    middles: Mapping[int, Point]
-    texts: Mapping[Ends, Point]
-    curves: Mapping[Ends, Curve]
+    middles: Mapping[int, PicturePoint]
+    texts: Mapping[EdgeEnds, PicturePoint]
+    curves: Mapping[EdgeEnds, Curve]
     width: float
     height: float
 
 
-def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point = (0.0, 0.0)) -> Layout:
+def layout(
+    boxes: Mapping[int, StateBox], texts: Mapping[EdgeEnds, BoxSize], corner: PicturePoint = (0.0, 0.0)
+) -> Layout:
     """Lay out boxes and edges; ``corner`` is the left upper corner of the picture.
 
     Box 0 is the initial state, and ``texts`` has the size of each edge's text. Loops, and the texts
@@ -75,7 +85,7 @@ def layout(boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Po
 class _LayoutPass:
     """Computes one layout: first the columns, then the heights of their nodes, then the curves of edges."""
 
-    def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[Ends, Size], corner: Point) -> None:
+    def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[EdgeEnds, BoxSize], corner: PicturePoint) -> None:
         self.boxes, self.texts = boxes, texts
         upper_states = [state for state in boxes if not boxes[state].below]
         inner_edges = [(a, b) for a, b in texts if a != b and not boxes[a].below and not boxes[b].below]
@@ -104,7 +114,7 @@ class _LayoutPass:
     def _is_lowest(self, state: int) -> bool:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
 
-    def _reach(self, node: Node) -> tuple[float, float]:
+    def _reach(self, node: LayoutNode) -> tuple[float, float]:
         """Return how far a node extends above and below its level (height), in pixels."""
         if len(node) == 1:
             box = self.boxes[node[0]]
@@ -112,13 +122,13 @@ class _LayoutPass:
         is_text = self.chains[node[0], node[1]][1] == node
         return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
 
-    def _levels(self, top: float) -> dict[Node, float]:
+    def _levels(self, top: float) -> dict[LayoutNode, float]:
         """Return the level (height) of each node; ``top`` is the upper end of the highest node.
 
         Nodes that an edge links have similar levels. Nodes of a column do not overlap.
         """
         beside = neighbours(link for nodes in self.chains.values() for link in pairwise(nodes))
-        levels: dict[Node, float] = {}
+        levels: dict[LayoutNode, float] = {}
         for nodes in self.columns:
             self._spread(nodes, dict.fromkeys(nodes, 0.0), levels)
         for sweep in range(_SWEEPS):
@@ -133,12 +143,14 @@ class _LayoutPass:
         shift = top - min(level - self._reach(node)[0] for node, level in levels.items())
         return {node: level + shift for node, level in levels.items()}
 
-    def _spread(self, nodes: Sequence[Node], ideal_levels: Mapping[Node, float], levels: dict[Node, float]) -> None:
+    def _spread(
+        self, nodes: Sequence[LayoutNode], ideal_levels: Mapping[LayoutNode, float], levels: dict[LayoutNode, float]
+    ) -> None:
         """Set the levels of ``nodes``, a whole column, near their ideal levels, in order and with gaps.
 
         The mean of the levels is the mean of the ideal levels.
         """
-        last: Node = ()
+        last: LayoutNode = ()
         for node in nodes:
             levels[node] = ideal_levels[node]
             if last:
@@ -148,12 +160,12 @@ class _LayoutPass:
         for node in nodes:
             levels[node] += shift
 
-    def _apart(self, upper: Node, lower: Node) -> float:
+    def _apart(self, upper: LayoutNode, lower: LayoutNode) -> float:
         """Return the least distance between the levels of two nodes that are neighbours in a column."""
         gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
-    def _straighten(self, nodes: Sequence[Node], levels: dict[Node, float]) -> None:
+    def _straighten(self, nodes: Sequence[LayoutNode], levels: dict[LayoutNode, float]) -> None:
         """Change ``levels``, so that an edge through these nodes has few bends.
 
         Set as many of the nodes as possible to one level, then repeat with the rest.
@@ -170,7 +182,7 @@ class _LayoutPass:
             levels.update(dict.fromkeys(nodes[:number], level))
             nodes = nodes[number:]
 
-    def _room(self, node: Node, levels: Mapping[Node, float]) -> tuple[float, float]:
+    def _room(self, node: LayoutNode, levels: Mapping[LayoutNode, float]) -> tuple[float, float]:
         """Return the least and greatest level that a node can have between its neighbours in the column."""
         nodes = self.columns[self._number(node)]
         place = nodes.index(node)
@@ -197,29 +209,29 @@ class _LayoutPass:
             left = right + min(max(rises[number] / 3, _LEAST_BEND), _MOST_BEND)
         return spans
 
-    def _number(self, node: Node) -> int:
+    def _number(self, node: LayoutNode) -> int:
         return self.column[node[0]] if len(node) == 1 else node[2]
 
-    def _width(self, node: Node) -> float:
+    def _width(self, node: LayoutNode) -> float:
         if len(node) == 1:
             return _span(self.boxes[node[0]])
         return self.texts[node[0], node[1]][0] if self.chains[node[0], node[1]][1] == node else 0.0
 
-    def _middle(self, state: int) -> Point:
+    def _middle(self, state: int) -> PicturePoint:
         left, right = self.spans[self.column[state]]
         lane = _LANE if self.column[state] in self.lanes else 0.0
         return (left + right - lane) / 2, self.levels[(state,)]
 
-    def _text(self, ends: Ends, node: Node) -> Point:
+    def _text(self, ends: EdgeEnds, node: LayoutNode) -> PicturePoint:
         left, right = self.spans[node[2]]
         return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
 
-    def _ports(self) -> dict[tuple[Ends, int], Point]:
+    def _ports(self) -> dict[tuple[EdgeEnds, int], PicturePoint]:
         """Return the point at which each edge touches its source and its target, by edge and state.
 
         The edges at one side of a state are sorted by the levels of the nodes that they lead to.
         """
-        sides: dict[tuple[int, bool], list[tuple[float, Ends]]] = {}
+        sides: dict[tuple[int, bool], list[tuple[float, EdgeEnds]]] = {}
         for ends, nodes in self.chains.items():
             for state, beside in ((ends[0], nodes[1]), (ends[1], nodes[-2])):
                 side = state, self._number(beside) > self.column[state]
@@ -232,7 +244,7 @@ class _LayoutPass:
                 ports[ends, state] = x + box.width / 2 * (1 if is_right else -1), y + box.height * share
         return ports
 
-    def _curve(self, ends: Ends) -> Curve:
+    def _curve(self, ends: EdgeEnds) -> Curve:
         """Return the curve of an edge: straight through columns, and bent between them."""
         nodes = self.chains[ends]
         goes_right = self.column[ends[0]] < self.column[ends[1]]
@@ -246,7 +258,7 @@ class _LayoutPass:
             curve = add_line(curve, end if number == len(nodes) - 1 else (leave, level))
         return curve
 
-    def _drops(self) -> dict[Ends, Curve]:
+    def _drops(self) -> dict[EdgeEnds, Curve]:
         """Return the curves of edges to traps; edges to the same trap end side by side."""
         paths_down = {a: self._path_down(a) for a, _ in self.drops}
         curves = {}
@@ -270,14 +282,14 @@ class _LayoutPass:
             curve = add_drop(add_line(curve, (x, under)), (lane, under + _GAP - 8))
         return add_line(curve, (curve[-1][0], self.bottom))
 
-    def _row_below(self, left: float) -> dict[int, Point]:
+    def _row_below(self, left: float) -> dict[int, PicturePoint]:
         """Return the centre of each trap in the row below the columns, near the edges that lead to it."""
         ideal_x = {
             state: mean([self._path_down(a)[-1][0] for a, b in self.drops if b == state], 0.0)
             for state, box in self.boxes.items()
             if box.below
         }
-        places: dict[int, Point] = {}
+        places: dict[int, PicturePoint] = {}
         reach = max((abs(self._path_down(a)[-1][0] - ideal_x[b]) for a, b in self.drops), default=0.0)
         top = self.bottom + min(max(reach / 8, 2 * _GAP), _MOST_BEND)
         for state in sorted(ideal_x, key=lambda state: (ideal_x[state], state)):

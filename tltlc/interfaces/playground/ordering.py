@@ -14,13 +14,13 @@ from typing import Final
 
 _SWEEPS: Final = 12
 
-Ends = tuple[int, int]
+EdgeEnds = tuple[int, int]
 """The numbers of the source and the target of an edge."""
-Node = tuple[int, ...]
+LayoutNode = tuple[int, ...]
 """``(state,)`` for a state, or ``(source, target, column)`` for an edge that passes a column."""
 
 
-def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
+def columns_of(states: Sequence[int], edges: Iterable[EdgeEnds]) -> dict[int, int]:
     """Return the column of each state: the length of the longest path to it along edges that close no cycle."""
     after: dict[int, list[int]] = {state: [] for state in states}
     for a, b in edges:
@@ -33,7 +33,7 @@ def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
     return column
 
 
-def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
+def chain(ends: EdgeEnds, column: Mapping[int, int]) -> list[LayoutNode]:
     """Return an edge as a list of nodes, one for each column that it passes, from source to target."""
     source, target = ends
     a, b = column[source], column[target]
@@ -41,9 +41,9 @@ def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
     return [(source,), *((source, target, number) for number in between), (target,)]
 
 
-def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list[list[Node]]:
+def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[LayoutNode]]) -> list[list[LayoutNode]]:
     """Return the nodes of each column from top to bottom, ordered so that few edges cross."""
-    columns: list[list[Node]] = [[] for _ in range(max(column.values()) + 1)]
+    columns: list[list[LayoutNode]] = [[] for _ in range(max(column.values()) + 1)]
     for state, number in column.items():
         columns[number].append((state,))
     links = [link for nodes in chains for link in pairwise(nodes)]
@@ -66,9 +66,9 @@ def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -
     return best
 
 
-def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
+def neighbours(links: Iterable[tuple[LayoutNode, LayoutNode]]) -> dict[LayoutNode, list[LayoutNode]]:
     """Return, for each node, the nodes at the other ends of its links."""
-    beside: dict[Node, list[Node]] = {}
+    beside: dict[LayoutNode, list[LayoutNode]] = {}
     for node, neighbour in links:
         beside.setdefault(node, []).append(neighbour)
         beside.setdefault(neighbour, []).append(node)
@@ -105,7 +105,7 @@ def _postorder_and_forward_edges(after: Mapping[int, Sequence[int]]) -> tuple[li
     return finished, forward
 
 
-def _crossings(columns: Sequence[Sequence[Node]], links: Iterable[tuple[Node, Node]]) -> int:
+def _crossings(columns: Sequence[Sequence[LayoutNode]], links: Iterable[tuple[LayoutNode, LayoutNode]]) -> int:
     place = {node: (number, index) for number, nodes in enumerate(columns) for index, node in enumerate(nodes)}
     between: dict[int, list[tuple[int, int]]] = {}
     for link in links:

@@ -14,7 +14,7 @@ from tltlc.diagnostics.shortening import shorten
 from tltlc.interfaces.playground.fixes import of_errors
 from tltlc.interfaces.playground.picture import picture
 from tltlc.interfaces.playground.signal_sliders import signal_values
-from tltlc.interfaces.playground.trace import Letter, idle_step, rows, shortest_traces
+from tltlc.interfaces.playground.trace import PageLetter, idle_step, rows, shortest_traces
 from tltlc.io.project import project_for
 from tltlc.io.spec_file import STDIN
 from tltlc.monitor.spec_tests import run_tests
@@ -35,7 +35,9 @@ MOST_MESSAGES: Final = 200
 """The most messages that are shown. If there are more, only the first ones are shown."""
 
 
-def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: Notation = "english") -> dict[str, Any]:
+def view(
+    text: str, spec: str = "", letters: Iterable[PageLetter] = (), notation: Notation = "english"
+) -> dict[str, Any]:
     """Return what the page shows about a text, one of its specs, and a trace of that spec.
 
     ``spec`` is the name of a spec; if none has that name, the first one is shown. ``letters`` are
@@ -90,7 +92,9 @@ def _messages(
     return {"diagnostics": shown, "more": len(messages) - len(shown)}
 
 
-def _spec(fspa: Fspa, source_explanation: Explanation, letters: Iterable[Letter], notation: Notation) -> dict[str, Any]:
+def _spec(
+    fspa: Fspa, source_explanation: Explanation, letters: Iterable[PageLetter], notation: Notation
+) -> dict[str, Any]:
     explanation = json_values(source_explanation)
     svg, note = picture(fspa, notation)
     leads = {row["id"]: row["leads"] for row in explanation["states"]}

@@ -12,9 +12,9 @@ from tltlc.backends.drawing.folding import Drawing, distance_range
 from tltlc.backends.drawing.picture_content import folded_drawing, notes
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
 from tltlc.diagnostics.formats.text import columns
-from tltlc.interfaces.playground.curves import Point, add_bend, svg_path
-from tltlc.interfaces.playground.layout import Size, StateBox, layout
-from tltlc.interfaces.playground.ordering import Ends
+from tltlc.interfaces.playground.curves import PicturePoint, add_bend, svg_path
+from tltlc.interfaces.playground.layout import BoxSize, StateBox, layout
+from tltlc.interfaces.playground.ordering import EdgeEnds
 from tltlc.logic.text.counts import number_range
 
 MOST_STATES: Final = 40
@@ -83,7 +83,7 @@ class _PictureText:
             f'<g class="start">{start}</g>{"".join(edges)}{"".join(states)}</svg>'
         )
 
-    def _lines(self, ends: Ends) -> list[str]:
+    def _lines(self, ends: EdgeEnds) -> list[str]:
         """Return the text of an edge as lines, which are longer for loops and edges to a trap.
 
         These texts are placed over or under a state, where there is more room.
@@ -127,7 +127,7 @@ class _PictureText:
             f"{_text(lines, middle, _LABEL_LINE, 'label')}</g>"
         )
 
-    def _edge(self, ends: Ends) -> str:
+    def _edge(self, ends: EdgeEnds) -> str:
         source, target = (self.fspa.states[end] for end in ends)
         kind = ""
         if source.id != target.id and source.distance is not None:
@@ -138,7 +138,7 @@ class _PictureText:
             f"<title>{title}</title>{self._arrow(ends)}</g>"
         )
 
-    def _arrow(self, ends: Ends) -> str:
+    def _arrow(self, ends: EdgeEnds) -> str:
         """Return the arrow of an edge and the text of its guard, as SVG."""
         lines = self.lines[ends]
         width, height = _size(lines)
@@ -183,7 +183,7 @@ def _shorten(texts: Sequence[str], width: int) -> list[str]:
     return [line if len(line) <= 2 * width else f"{line[: 2 * width - 1]}…" for line in lines]
 
 
-def _size(lines: Sequence[str]) -> Size:
+def _size(lines: Sequence[str]) -> BoxSize:
     return _columns(lines) * _GUARD_CHARACTER, len(lines) * _GUARD_LINE
 
 
@@ -196,7 +196,7 @@ def _rectangle(kind: str, left: float, top: float, right: float, bottom: float, 
     return f'<rect class="{kind}" x="{left:.1f}" y="{top:.1f}" {size} rx="{radius}"/>'
 
 
-def _text(lines: Sequence[str], middle: Point, height: float, kind: str) -> str:
+def _text(lines: Sequence[str], middle: PicturePoint, height: float, kind: str) -> str:
     x, first = middle[0], middle[1] - (len(lines) - 1) * height / 2 + 4
     spans = (f'<tspan x="{x:.1f}" y="{first + i * height:.1f}">{_escape(line)}</tspan>' for i, line in enumerate(lines))
     return f'<text class="{kind}" text-anchor="middle">{"".join(spans)}</text>'

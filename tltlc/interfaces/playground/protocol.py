@@ -13,7 +13,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.interfaces.playground.page_config import start
 from tltlc.interfaces.playground.page_data import diagnostic, view
-from tltlc.interfaces.playground.trace import Letter
+from tltlc.interfaces.playground.trace import PageLetter
 from tltlc.io.json_text import loads
 from tltlc.io.limits import ANSWER, MESSAGE
 
@@ -36,7 +36,7 @@ class Question:
 
     text: str
     spec: str
-    letters: tuple[Letter, ...]
+    letters: tuple[PageLetter, ...]
     notation: Notation
 
 

@@ -15,7 +15,7 @@ from tltlc.tools.witness.samples import SampleFinder
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
-Letter = Union[Sequence[str], Mapping[str, float]]
+PageLetter = Union[Sequence[str], Mapping[str, float]]
 """A step of a trace: the names of the atoms that hold, or the values of the signals by name."""
 
 _MOST_WORK: Final = 200_000
@@ -24,7 +24,7 @@ _LONGEST: Final = 200
 """The most steps of a trace that the page shows in a table."""
 
 
-def rows(fspa: Fspa, letters: Iterable[Letter]) -> list[dict[str, Any]]:
+def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
     """Return a row with the monitor's output for each step of a trace; a letter is the input of a step.
 
     A letter gives the names of the atoms that hold (unknown names are ignored), or the values of

@@ -11,7 +11,7 @@ from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as NamedParam
 from tltlc.expression.tree import SignalValue as NamedSignal
 from tltlc.logic.formula import Formula
-from tltlc.resolve.spec import Atom, Judge, Param, Signal
+from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
 
 
 @record
@@ -41,7 +41,7 @@ def automaton(
     *,
     exclusive: Sequence[Sequence[str]] = (),
     limit: int | None = None,
-    judge: Judge | None = None,
+    judge: JudgeMode | None = None,
     infinite: bool = False,
 ) -> Fspa:
     """Return the automaton of a formula whose atoms have these expressions.

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.logic import formula as f
 from tltlc.logic.formula import Formula
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.traces import lively_trace, random_trace
@@ -17,7 +17,7 @@ _A, _B, _C = f.atom("a"), f.atom("b"), f.atom("c")
 _VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
 """Only a few values, so that values are equal, or 0, at many steps."""
 
-_Shape = tuple[str, Formula, "Judge | None", "int | None", bool]
+_Shape = tuple[str, Formula, "JudgeMode | None", "int | None", bool]
 
 _SHAPES: Final[tuple[_Shape, ...]] = (
     ("next_strong", f.and_(f.next_(f.next_(_A)), f.always(f.or_(_B, _C))), None, None, False),

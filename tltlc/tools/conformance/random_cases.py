@@ -11,7 +11,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY
 from tltlc.expression.tree import Expression
 from tltlc.logic import formula as f
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase, automaton
 from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.expressions import PARAMS, SIGNALS, predicate
@@ -20,7 +20,7 @@ from tltlc.tools.conformance.traces import lively_trace, random_trace
 
 _ATOMS: Final = ("a", "b", "c")
 _VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
-_JUDGES: Final[tuple[Judge, ...]] = ("goal", "limit")
+_JUDGES: Final[tuple[JudgeMode, ...]] = ("goal", "limit")
 _OPEN: Final = ("pending", "holding")
 _STATES: Final = range(2, 10)
 """The accepted numbers of states: smaller automata show little, larger ones compile slowly."""

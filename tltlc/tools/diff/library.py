@@ -15,7 +15,7 @@ from tltlc.resolve.predicates import predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.spec import Param, Signal, ValueType
-from tltlc.resolve.values import Entity, Env, Quantity, Value
+from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue
 from tltlc.tools.diff.values import Meaning, meaning_of
 
 ExportKind = Literal["signal", "param", "predicate", "let", "entity"]
@@ -80,7 +80,7 @@ def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env)
     The argument for a parameter ``p`` is a signal or an entity that is itself called ``p``. The
     result is None if this use does not resolve, for example because of unknown units.
     """
-    local: dict[str, Value] = {}
+    local: dict[str, ResolvedValue] = {}
     signals: list[Signal] = []
     for parameter in open_parameters:
         if parameter.type == "entity":

@@ -17,7 +17,7 @@ from tltlc.automaton.infinite.graphs import components
 from tltlc.automaton.infinite.pairs import RabinComponent, clauses_as_pairs, with_pairs
 from tltlc.automaton.work import Work
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 from tltlc.tools.hoa.checks import is_finite
 from tltlc.tools.hoa.conditions import Acceptance
 from tltlc.tools.hoa.transitions import NO, NOT_ALLOWED, YES, HoaTransitions, Move
@@ -51,7 +51,7 @@ class FiniteAnalysis:
         """Return the verdict of a state."""
         return self._verdicts[state]
 
-    def default_judge(self) -> Judge:
+    def default_judge(self) -> JudgeMode:
         """Return the judge for a file that names none.
 
         It is ``limit`` if the initial state is accepting, else ``goal``.

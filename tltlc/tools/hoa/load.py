@@ -27,7 +27,7 @@ from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import FormulaOf
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 from tltlc.tools.hoa.atoms import vocabulary_of
 from tltlc.tools.hoa.build import automaton_of
 from tltlc.tools.hoa.checks import check, is_finite
@@ -55,7 +55,7 @@ class ImportOptions:
     name: str | None = None
     level: str | None = None
     limit_steps: int | None = None
-    judge: Judge | None = None
+    judge: JudgeMode | None = None
     resolve: ResolveOptions = ResolveOptions()
     state_budget: int = DEFAULT_STATE_BUDGET
     work: int = DEFAULT_WORK

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from tltlc.core.record import record
-from tltlc.resolve.spec import Judge
+from tltlc.resolve.spec import JudgeMode
 from tltlc.tools.hoa.problems import unsupported_error
 from tltlc.tools.hoa.tree import Header, Hoa
 
@@ -19,7 +19,7 @@ class Metadata:
     The fields mean the same as in :class:`~tltlc.resolve.spec.Spec`, but ``formula`` is a text.
     """
 
-    judge: Judge | None = None
+    judge: JudgeMode | None = None
     limit_steps: int | None = None
     level: str | None = None
     formula: str | None = None

@@ -12,7 +12,7 @@ from tltlc.interfaces.cli.outputs import files_of, output_option, target_option,
 from tltlc.interfaces.cli.settings import CompileSettings, parse_assignments, source_options
 
 if TYPE_CHECKING:
-    from tltlc.resolve.spec import Judge
+    from tltlc.resolve.spec import JudgeMode
 
 
 def _name(_: click.Context, __: click.Parameter, name: str | None) -> str | None:
@@ -63,7 +63,7 @@ def command(
     name: str | None,
     level: str | None,
     limit: int | None,
-    judge: Judge | None,
+    judge: JudgeMode | None,
     folder: Path,
     target_lists: tuple[str, ...],
     settings: CompileSettings,

@@ -11,7 +11,7 @@ import click
 
 from tltlc.diagnostics.diagnostic import TltlError
 
-Row = dict[str, str]
+ListRow = dict[str, str]
 
 LISTS = "tltlc.lists"
 """The entry-point group for lists that the compiler cannot make itself, such as the levels.
@@ -54,7 +54,7 @@ def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
     return report.status
 
 
-def show(rows: list[Row]) -> None:
+def show(rows: list[ListRow]) -> None:
     """Print a table if standard output is a terminal, and tab-separated columns otherwise."""
     if sys.stdout.isatty():
         _table(rows)
@@ -62,7 +62,7 @@ def show(rows: list[Row]) -> None:
         _lines(rows)
 
 
-def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
+def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[ListRow]:
     """Yield a row for each predicate of each library, with its signature as declared.
 
     Files that cannot be read or parsed give errors, which are passed to ``add``.
@@ -98,7 +98,7 @@ def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterat
                     }
 
 
-def _targets() -> Iterator[Row]:
+def _targets() -> Iterator[ListRow]:
     from tltlc import backends
 
     for name in backends.targets():
@@ -106,29 +106,29 @@ def _targets() -> Iterator[Row]:
         yield {"name": name, "files": ", ".join(f"NAME{ending}" for ending in target.endings), "doc": target.title}
 
 
-def _codes() -> Iterator[Row]:
+def _codes() -> Iterator[ListRow]:
     from tltlc.diagnostics import code_pages
 
     for code in code_pages.codes():
         yield {"name": code, "doc": code_pages.title(code)}
 
 
-def _levels() -> Iterator[Row]:
+def _levels() -> Iterator[ListRow]:
     """Return a row for each level of the runtime; raise TLT0730 if the runtime is not installed."""
     from tltlc.interfaces.cli import plugins
     from tltlc.interfaces.cli.exits import missing_component
 
     for plugin in plugins.find(LISTS):
         if plugin.name == "levels":
-            list_levels: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
+            list_levels: Callable[[], Iterator[ListRow]] = plugins.load(plugin, "`tltlc list levels`")
             return list_levels()
     raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[game]")
 
 
-_LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
+_LISTS: dict[str, Callable[[], Iterator[ListRow]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
 
 
-def _lines(rows: list[Row]) -> None:
+def _lines(rows: list[ListRow]) -> None:
     """Print each row as a line of tab-separated values.
 
     If a row has a signature, leave out its name, because the signature contains the name.
@@ -137,7 +137,7 @@ def _lines(rows: list[Row]) -> None:
         print("\t".join(value for key, value in row.items() if not (key == "name" and "signature" in row)))
 
 
-def _table(rows: list[Row]) -> None:
+def _table(rows: list[ListRow]) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
