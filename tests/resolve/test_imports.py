@@ -11,7 +11,8 @@ from tests.resolve.helpers import only_spec, resolve_text, valid_program, write
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.io.limits import IMPORTED
-from tltlc.resolve.imports import library_with, standard_library
+from tltlc.resolve.imports import imported_files, library_with, standard_library
+from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import resolve
 from tltlc.resolve.spec import Spec
 
@@ -111,6 +112,23 @@ def test_the_path_of_a_file_may_begin_with_an_angle_bracket(tmp_path: Path, monk
     monkeypatch.chdir(tmp_path)
     _, diagnostics = resolve_text("import own spec s = F x", "<levels>/main.tltl")
     assert diagnostics == ()
+
+
+def test_imported_files_are_where_the_resolution_finds_them(tmp_path: Path) -> None:
+    own, extra = tmp_path / "own", tmp_path / "extra"
+    own.mkdir()
+    extra.mkdir()
+    write(extra, lib="signal b: bool")
+    source = SourceFile(str(own / "main.tltl"), 'import lib import stealth import "../part.tltl" spec s = F (')
+    paths = list(imported_files(source, (extra,)))
+    library = standard_library() / "stealth.tltl"
+    searched = [own / "lib.tltl", extra / "lib.tltl", own / "stealth.tltl", extra / "stealth.tltl", library]
+    assert paths == [*searched, own / "../part.tltl"]
+    write(own, lib="signal a: bool")
+    assert next(imported_files(source, (extra,))) == own / "lib.tltl"
+    module, _ = parse(SourceFile(str(own / "main.tltl"), "import lib"))
+    loaded = resolve(module, ResolveOptions(library_dirs=(extra,))).modules[0].module.source
+    assert Path(loaded.location) == own / "lib.tltl"
 
 
 def test_a_cycle_of_imports_is_named(tmp_path: Path) -> None:

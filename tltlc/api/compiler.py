@@ -2,7 +2,8 @@
 
 ``compile_source`` compiles a source text. ``read_artefact`` and ``decode_artefact`` read an
 automaton that was compiled before. ``emit`` returns the files of a target, such as ``python`` or
-``svg``. ``encode_artefact`` returns an artefact as JSON data.
+``svg``. ``encode_artefact`` returns an artefact as JSON data. ``imported_files`` yields the files
+that a source text imports, even if it does not compile.
 """
 
 from tltlc.backends import Options as BackendOptions
@@ -15,6 +16,7 @@ from tltlc.pipeline import (
     read_artefact,
     unknown_spec,
 )
+from tltlc.resolve.imports import imported_files
 
 __all__ = [
     "BackendOptions",
@@ -23,6 +25,7 @@ __all__ = [
     "decode_artefact",
     "emit",
     "encode_artefact",
+    "imported_files",
     "read_artefact",
     "unknown_spec",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -64,6 +64,20 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModul
             log.add(failure.diagnostic)
             visit.complete = False
     return tuple(order)
+
+
+def imported_files(source: SourceFile, library_dirs: Iterable[Path] = ()) -> Iterator[Path]:
+    """Yield the paths of the files that the imports of a source text lead to, in order.
+
+    The text need not compile. Paths without a file are yielded, too, if a file there would be
+    imported instead of an existing one.
+    """
+    for declaration in _parse_once(source)[0].declarations:
+        if isinstance(declaration, Import):
+            for path in _candidates(declaration, _folder(source), library_dirs):
+                yield path
+                if is_file(path):
+                    break
 
 
 def standard_library() -> Path:
@@ -139,6 +153,14 @@ def _folder(source: SourceFile) -> Path:
     return Path(source.location).parent if source.kind == "file" else Path()
 
 
+def _candidates(declaration: Import, here: Path, library_dirs: Iterable[Path]) -> tuple[Path, ...]:
+    """Return the paths at which an imported file may be, in the order of the search; ``here`` is the own folder."""
+    if declaration.is_path:
+        return (here / declaration.target,)
+    name = declaration.target.replace(".", "/") + ".tltl"
+    return tuple(folder / name for folder in (here, *library_dirs, standard_library()))
+
+
 def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, Path]:
     """Return the absolute path of an imported file, and its path as the user wrote the folder.
 
@@ -149,9 +171,10 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     folders = tuple(
         folder for folder in (here, *options.library_dirs, standard_library()) if not _is_in_deleted_folder(folder)
     )
+    candidates = _candidates(declaration, here, options.library_dirs)
     itself = Path(source.name).name
     if declaration.is_path:
-        file = here / target
+        (file,) = candidates
         if _is_in_deleted_folder(file):
             advice = "the current folder has been deleted: start tltlc in another one"
             raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
@@ -173,11 +196,12 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 fixes=(replacement_fix(source, declaration.target_span, replacement),) if replacement else (),
             )
         return Path(_normalise(file.absolute())), file
-    name = target.replace(".", "/") + ".tltl"
-    for folder in folders:
-        _check_inside(folder / name, declaration, source)
-        if is_file(folder / name):
-            return Path(_normalise((folder / name).absolute())), folder / name
+    for path in candidates:
+        if _is_in_deleted_folder(path):
+            continue
+        _check_inside(path, declaration, source)
+        if is_file(path):
+            return Path(_normalise(path.absolute())), path
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
     suggestion = likely_name(target, known)
     advice = _similar_help(suggestion) or "a library is a file NAME.tltl beside this one or in a --library folder"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from tltlc.api import SourceFile, TltlError, fileio, specs, syntax
+from tltlc.api import SourceFile, TltlError, compiler, fileio
 
 
 def spec_files(spec: Path) -> Iterator[Path]:
@@ -51,11 +51,4 @@ def _imports(spec: Path) -> Iterator[Path]:
         libraries = fileio.project_for(str(spec)).libraries
     except TltlError:
         libraries = ()
-    for declaration in syntax.parse(text)[0].declarations:
-        if not isinstance(declaration, syntax.Import):
-            continue
-        if declaration.is_path:
-            yield spec.parent / declaration.target
-        else:
-            name = declaration.target.replace(".", "/") + ".tltl"
-            yield from up_to_first_file(folder / name for folder in (spec.parent, *libraries, specs.standard_library()))
+    yield from compiler.imported_files(text, libraries)

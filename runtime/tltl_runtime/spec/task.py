@@ -91,7 +91,8 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
     if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
         advice = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
         raise TypeError(f"a spec must be a path, a text or an automaton, not {spec!r:.60}{advice}")
-    if isinstance(spec, str) and _is_text(spec):
+    is_text = isinstance(spec, str) and _is_text(spec)
+    if isinstance(spec, str) and is_text:
         source, path, name = SourceFile("<text>", spec, "text"), "<text>", None
         is_artefact = _is_artefact(spec)
     else:
@@ -102,7 +103,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
         if name not in (None, fspa.name):
             raise TltlError([compiler.unknown_spec(str(name), [fspa.name], path)])
         return fspa, None
-    libraries = () if path == "<text>" else fileio.project_for(path).libraries
+    libraries = () if is_text else fileio.project_for(path).libraries
     compiled = compiler.compile_source(
         source, compiler.CompileOptions(library_dirs=libraries, specs=(name,) if name else ())
     )
