@@ -54,13 +54,14 @@ _IN_TIME: Final = (
     "`require eventually within {time} a`, `require always for {time} a`, `require next after {time} a`"
 )
 _LIMITS: Final = frozenset(
-    (
-        *(f"{word}{joint} N" for word in ("limit", "timeout") for joint in ("", " of", " is", " at")),
+    tuple(phrase.split())
+    for phrase in (
+        *(f"{word} {joint} N" for word in ("limit", "timeout") for joint in ("", "of", "is", "at")),
         *(f"limit {words} N" for words in ("to", "time", "time to", "max", "maximum", "at most", "to at most")),
         *("max time N", "maximum time N", "N limit", "N timeout"),
     )
 )
-"""Phrases with a number ``N`` that can only mean a limit of the episode. Units are left out."""
+"""Phrases, by word, with a number ``N`` that can only mean a limit of the episode. Units are left out."""
 _MARKS: Final = frozenset("-–—*+•·.:)")
 """Bullets that people write before the lines of a list. `!` is not among them: it means `not`."""
 _LONGEST_LIMIT: Final = 7
@@ -339,14 +340,10 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
     unit = UNITS_ELSEWHERE.get(units[0].text.lower(), units[0].text) if units else "steps"
     if unit not in _TIMES:
         return None
-    phrase = " ".join(token.text.lower() for token in tokens if token not in units)
+    phrase = tuple("N" if token in numbers else token.text.lower() for token in tokens if token not in units)
     text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if failure.stop.index else "TLT0107"
-    is_clear = bool(units) or not ("time" in phrase or declares_clock(failure.source))
-    if (
-        is_clear
-        and phrase.replace(numbers[0].text, "N") in _LIMITS
-        and (failure.tokens[0].type == "LIMIT" or _is_own_line(failure))
-    ):
+    is_clear = bool(units) or not (any("time" in word for word in phrase) or declares_clock(failure.source))
+    if is_clear and phrase in _LIMITS and (failure.tokens[0].type == "LIMIT" or _is_own_line(failure)):
         diagnostic = suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title, code=code)
         if diagnostic:
             return diagnostic

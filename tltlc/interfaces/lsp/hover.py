@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import Final
 
 from lsprotocol import types
@@ -57,7 +58,7 @@ def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) ->
         figures = next((entry for entry in analysis.figures if entry.spec == symbol.name), None) if analysis else None
         size_text = f"{figures_text(figures)}." if figures else None
         return spec_markdown(symbol.declaration, spec, document.source, size_text), name.span
-    via = None if symbol.source.name == document.source.name else symbol.source.name.rpartition("/")[2]
+    via = None if symbol.source.name == document.source.name else PurePath(symbol.source.location).name
     return symbol_markdown(symbol, document.resolution.env, via), name.span
 
 
