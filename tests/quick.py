@@ -44,7 +44,7 @@ LARGE = (
     "interfaces/lsp/test_fuzz.py",
     "interfaces/lsp/test_references.py",
     "logic/test_english.py",
-    "resolve/test_checks.py",
+    "resolve/test_predicate_checks.py",
     "resolve/test_deep_arithmetic.py",
     "resolve/test_formulas.py",
     "tools/fmt/test_command.py",

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from tltlc.artefact.checks import RECOMPILE, Origin, check_arithmetic, check_consistency, check_format
+from tltlc.artefact.document_checks import RECOMPILE, Origin, check_arithmetic, check_consistency, check_format
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Pair, State, Text
 from tltlc.core.names import split_name
 from tltlc.core.source import SourceFile, Span

@@ -11,7 +11,7 @@ from typing import Final
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar import checks, lalr, nesting
+from tltlc.grammar import lalr, nesting, tree_checks
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import MAX_TOKENS, Tokens, tokenize
 from tltlc.grammar.tables import load
@@ -57,7 +57,7 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
     depth_error = nesting.expression_depth_error(source, formula)
     if depth_error:
         return None, (depth_error,)
-    return formula, (*builder.diagnostics, *checks.check_formula(source, formula))
+    return formula, (*builder.diagnostics, *tree_checks.check_formula(source, formula))
 
 
 def is_too_large(source: SourceFile) -> bool:
@@ -85,7 +85,7 @@ def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration,
             pass
         else:
             shallow, errors = nesting.drop_deep_declarations(source, declarations)
-            return shallow, (*builder.diagnostics, *errors, *checks.check(source, shallow))
+            return shallow, (*builder.diagnostics, *errors, *tree_checks.check(source, shallow))
     from tltlc.grammar.mistakes.recovery import recover
 
     return recover(source, lexed)

@@ -12,11 +12,11 @@ from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
 from tltlc.resolve import formulas, predicates
-from tltlc.resolve.checks import check_predicates
 from tltlc.resolve.context import Context
 from tltlc.resolve.declarations import declare
 from tltlc.resolve.imports import LoadedModule, load
 from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.predicate_checks import check_predicates
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
 from tltlc.resolve.spec import ResolvedFile, Spec, Vocabulary

@@ -7,7 +7,7 @@ from typing import Any, Final
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar import checks, lalr, nesting, tree
+from tltlc.grammar import lalr, nesting, tree, tree_checks
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import CLAUSES, TEST_ITEMS
 from tltlc.grammar.lexer import END, Token, Tokens
@@ -52,9 +52,9 @@ class _Reader:
         self.diagnostics += errors
         self.declarations += kept
         if len(self.diagnostics) == before:
-            self.diagnostics += checks.check(self._source, kept)
+            self.diagnostics += tree_checks.check(self._source, kept)
         else:
-            self.diagnostics += checks.check_clauses(self._source, kept)
+            self.diagnostics += tree_checks.check_clauses(self._source, kept)
 
     def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
         """Parse a spec or a test in braces: its head, then each line of its body separately.

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar import checks, lalr
+from tltlc.grammar import lalr, tree_checks
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.keywords import OPERATORS
 from tltlc.grammar.lexer import END, Token, tokenize
@@ -116,7 +116,7 @@ def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> boo
     except lalr.UnexpectedTokenError:
         return False
     if isinstance(node, Clause):
-        return not [*builder.diagnostics, *checks.check_clause(source, node)]
+        return not [*builder.diagnostics, *tree_checks.check_clause(source, node)]
     if failure.start == "declaration":
-        return not [*builder.diagnostics, *checks.check(source, (node,))]
-    return not builder.diagnostics and (failure.start != "expression" or not [*checks.check_formula(source, node)])
+        return not [*builder.diagnostics, *tree_checks.check(source, (node,))]
+    return not builder.diagnostics and (failure.start != "expression" or not [*tree_checks.check_formula(source, node)])

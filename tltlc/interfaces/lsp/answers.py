@@ -26,7 +26,7 @@ from tltlc.interfaces.lsp import (
 )
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import text_edit
-from tltlc.interfaces.lsp.names import Occurrence, Symbol
+from tltlc.interfaces.lsp.occurrences import Occurrence, Symbol
 from tltlc.interfaces.lsp.paths import location_at
 from tltlc.interfaces.lsp.positions import offset, range_of
 from tltlc.interfaces.lsp.session import EditorSession

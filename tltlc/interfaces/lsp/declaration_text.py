@@ -19,7 +19,7 @@ from tltlc.grammar.tree import (
     SignalDecl,
     SpecDecl,
 )
-from tltlc.interfaces.lsp.names import Symbol
+from tltlc.interfaces.lsp.occurrences import Symbol
 from tltlc.logic.text.english import english_text
 from tltlc.resolve import formulas, units
 from tltlc.resolve.context import Context

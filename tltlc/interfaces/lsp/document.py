@@ -14,7 +14,7 @@ from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.tree import Module
 from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
-from tltlc.interfaces.lsp.names import Occurrence, occurrences
+from tltlc.interfaces.lsp.occurrences import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import location_of
 from tltlc.io.access_log import Stamp, access_log, stamp
 from tltlc.io.files import unsaved_texts

@@ -14,7 +14,7 @@ from tltlc.grammar.tables import load
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.edits import apply_edits
 from tltlc.interfaces.lsp.file_renames import may_import
-from tltlc.interfaces.lsp.names import MERGED, Occurrence, Symbol
+from tltlc.interfaces.lsp.occurrences import MERGED, Occurrence, Symbol
 from tltlc.interfaces.lsp.paths import location_of
 from tltlc.interfaces.lsp.workspace import Workspace
 from tltlc.resolve.scope import FUNCTIONS

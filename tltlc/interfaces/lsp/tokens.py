@@ -7,7 +7,7 @@ from typing import Final
 from lsprotocol import types
 
 from tltlc.interfaces.lsp.document import Document
-from tltlc.interfaces.lsp.names import Occurrence
+from tltlc.interfaces.lsp.occurrences import Occurrence
 from tltlc.interfaces.lsp.positions import position
 
 _TYPES: Final = {
