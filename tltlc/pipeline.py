@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
 from tltlc.automaton.verdict_warnings import verdict_warnings
 from tltlc.core.record import EMPTY, record, replace
-from tltlc.core.source import SourceFile
+from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.parser import parse
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.grammar.tree import Module
     from tltlc.resolve.spec import ResolvedFile, Spec
+
+_TEXT_NAME: Final = "<text>"
+"""The name, in messages, of a text that has no name."""
 
 
 @record
@@ -210,7 +213,7 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
     return Diagnostic("TLT0720", f"`{file}` has no spec `{name}`", help=suggestion)
 
 
-def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
+def compile_text(text: str, name: str = _TEXT_NAME, options: CompileOptions | None = None) -> tuple[Fspa, ...]:
     """Return the automata of the specs of a text, in order.
 
     ``name`` is the name of the text in messages. If it is a path, imported files are searched for
@@ -229,7 +232,8 @@ def compile_text(text: str, name: str = "<text>", options: CompileOptions | None
     ...
     tltlc.diagnostics.diagnostic.TltlError: TLT0201: no predicate `seem` here
     """
-    return compile_source(SourceFile(name, text), options).automata
+    kind: SourceKind = "text" if name == _TEXT_NAME else "file"
+    return compile_source(SourceFile(name, text, kind), options).automata
 
 
 def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = None) -> tuple[Fspa, ...]:

@@ -107,7 +107,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
     compiled = compiler.compile_source(
         source, compiler.CompileOptions(library_dirs=libraries, specs=(name,) if name else ())
     )
-    fspa = _only_automaton(compiled.automata, path)
+    fspa = _only_automaton(compiled.automata, path, is_text=is_text)
     return fspa, next(candidate for candidate in compiled.program.specs if candidate.name == fspa.name)
 
 
@@ -123,7 +123,7 @@ def _is_artefact(text: str) -> bool:
     return text.lstrip().startswith("{")
 
 
-def _only_automaton(automata: tuple[Fspa, ...], file: str) -> Fspa:
+def _only_automaton(automata: tuple[Fspa, ...], file: str, *, is_text: bool) -> Fspa:
     if len(automata) == 1:
         return automata[0]
     names = [fspa.name for fspa in automata]
@@ -132,5 +132,5 @@ def _only_automaton(automata: tuple[Fspa, ...], file: str) -> Fspa:
     else:
         listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
         title = f"`{file}` contains {len(names)} specs, but an environment needs one: {listed}"
-        advice = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
+        advice = "give a text with one spec" if is_text else f"name one of them, e.g. `{file}:{names[0]}`"
     raise TltlError([Diagnostic("TLT0721", title, help=advice)])
