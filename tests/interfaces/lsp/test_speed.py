@@ -17,7 +17,7 @@ from tests.waiting import printed
 from tltlc.core.source import SourceFile
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import EntityDecl
-from tltlc.interfaces.lsp import names, symbols
+from tltlc.interfaces.lsp import occurrences, symbols
 from tltlc.interfaces.lsp.diagnostics import protocol_diagnostic
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.paths import uri_of
@@ -141,8 +141,8 @@ def test_the_label_of_a_state_is_parsed_on_its_own(monkeypatch: pytest.MonkeyPat
         sizes.append(len(source.text))
         return parse_formula(source)
 
-    parse_formula = vars(names)["parse_formula"]
-    monkeypatch.setattr(names, "parse_formula", recording)
+    parse_formula = vars(occurrences)["parse_formula"]
+    monkeypatch.setattr(occurrences, "parse_formula", recording)
     label = 'step a\n    expect state "F a"\n'
     document, _, _ = open_text(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
     spans = [occurrence.span for occurrence in document.names if occurrence.symbol.name == "a"]
