@@ -147,21 +147,21 @@ class TraceLines:
             raise self._bad_line(line, "it contains a NUL", text.index("\0"), "save it as text, in UTF-8")
         return text
 
-    def _bad_line(self, line: bytes, remark: str, column: int, help: str) -> TltlError:  # noqa: A002
+    def _bad_line(self, line: bytes, message: str, column: int, help: str) -> TltlError:  # noqa: A002
         """Return the error TLT0622 about ``line``, the line read last; a row may have begun before it."""
         self._first, self.text = self._read, line.decode(errors="replace")
-        return self.error(remark, (column, column + 1), help)
+        return self.error(message, (column, column + 1), help)
 
-    def error(self, remark: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
+    def error(self, message: str, columns: tuple[int, int] | None = None, help: str | None = None) -> TltlError:  # noqa: A002
         """Return the error TLT0622 about the current row, with a label on the first line of the row.
 
-        ``remark`` is the message of the label. ``columns`` are the start and the end of the part of
+        ``message`` is the message of the label. ``columns`` are the start and the end of the part of
         the line to mark, in characters from 0; by default the whole line.
         """
         title = f"line {self._first} of the trace cannot be read"
-        return TltlError([Diagnostic("TLT0622", title, (self.label(remark, columns),), help)])
+        return TltlError([Diagnostic("TLT0622", title, (self.label(message, columns),), help)])
 
-    def label(self, remark: str, columns: tuple[int, int] | None = None) -> Label:
+    def label(self, message: str, columns: tuple[int, int] | None = None) -> Label:
         """Return a label on the first line of the current row.
 
         ``columns`` are the start and the end of the part of the line to mark, in characters from 0;
@@ -172,7 +172,7 @@ class TraceLines:
         # Earlier lines are no longer in memory. Empty lines in their place make the number of this line right. A CR
         # inside the line would count as a line end.
         source = SourceFile(self.name, "\n" * offset + self.text.replace("\r", " "), self._kind)
-        return Label(source, Span(offset + start, offset + max(start, end)), remark)
+        return Label(source, Span(offset + start, offset + max(start, end)), message)
 
 
 def _lines(lines: TraceLines) -> Iterator[str]:
@@ -187,8 +187,8 @@ def _rows(lines: TraceLines, count: int) -> Iterator[list[str]]:
     for line in _lines(lines):
         cells = _cells(line, lines)
         if len(cells) != count:
-            remark = f"{_count_text(len(cells), 'value')} for {_count_text(count, 'column')}"
-            raise lines.error(remark, help="give each column one value; put a value that contains a comma in quotes")
+            message = f"{_count_text(len(cells), 'value')} for {_count_text(count, 'column')}"
+            raise lines.error(message, help="give each column one value; put a value that contains a comma in quotes")
         yield cells
 
 

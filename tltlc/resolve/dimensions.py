@@ -73,10 +73,13 @@ def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
     return False
 
 
-def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
+def mismatch(
+    expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str, *, help_is_in_why: bool = False
+) -> ResolutionError:
     """Return the error for the expression ``at``, which has the wrong dimension.
 
-    ``why`` says in the message where the expected dimension comes from.
+    ``why`` says in the message where the expected dimension comes from. If it also says what to do
+    (``help_is_in_why``), the error gets no help to divide by a unit.
     """
     while isinstance(at, GroupExpr):
         at = at.inner
@@ -94,7 +97,7 @@ def mismatch(expected: Dimension, actual: Dimension, at: Expr, env: Env, why: st
             replacement = ""
     elif unit:
         advice = f"write {units.dimension_text(expected)} here, e.g. `3 {unit}`"
-    elif expected == units.PLAIN and "divide" not in why:
+    elif expected == units.PLAIN and not help_is_in_why:
         advice = f"divide it by {units.dimension_text(actual)} to get a number"
     title = f"expected {units.dimension_text(expected)}, found {units.dimension_text(actual)}"
     fixes = (replacement_fix(env.scope.source, at.span, replacement),) if replacement else ()

@@ -39,7 +39,7 @@ def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimensi
     if call.name in ("exp", "tanh"):
         if first.dimension not in (None, units.PLAIN):
             why = f"`{call.name}` takes a number; divide by a quantity of the same kind"
-            raise mismatch(units.PLAIN, first.dimension, call.arguments[0].value, env, why)
+            raise mismatch(units.PLAIN, first.dimension, call.arguments[0].value, env, why, help_is_in_why=True)
         return units.PLAIN
     if call.name == "sqrt":
         return units.power(first.dimension, 0.5)

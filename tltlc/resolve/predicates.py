@@ -252,7 +252,9 @@ def _body(
         context.expanding.pop(id(declaration), None)
     if body.dimension not in (None, units.PLAIN):
         why = "divide it by a quantity of the same kind: a predicate is a number in [-1, 1]"
-        raise mismatch(units.PLAIN, body.dimension, declaration.body, env.inside(scope, values), why)
+        raise mismatch(
+            units.PLAIN, body.dimension, declaration.body, env.inside(scope, values), why, help_is_in_why=True
+        )
     return body
 
 

@@ -18,7 +18,7 @@ from tltlc.tools.witness.search import AtomGroup, SignalPoint, atom_groups
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
-    from tltlc.monitor.traces import Sample
+    from tltlc.monitor.traces import TraceSample
 
 
 @record
@@ -52,13 +52,13 @@ class SampleFinder:
         self._fspa = fspa
         self._samples = Samples(fspa, None, [])
         self._groups = atom_groups(fspa)
-        self._cache: dict[Implicant, Sample | UnsatisfiedLiterals] = {}
+        self._cache: dict[Implicant, TraceSample | UnsatisfiedLiterals] = {}
 
-    def sample_for_letter(self, letter: Letter) -> Sample | UnsatisfiedLiterals:
+    def sample_for_letter(self, letter: Letter) -> TraceSample | UnsatisfiedLiterals:
         """Return a sample at which exactly the atoms of a letter hold, or why none was found."""
         return self.sample_for_literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
-    def sample_for_literals(self, literals: Implicant) -> Sample | UnsatisfiedLiterals:
+    def sample_for_literals(self, literals: Implicant) -> TraceSample | UnsatisfiedLiterals:
         """Return a sample at which the literals are true, or why none was found.
 
         If possible, no other atom holds at the sample.
@@ -88,9 +88,9 @@ class SampleFinder:
     def _letter(self, values: tuple[float, ...]) -> Letter:
         return frozenset(atom.name for atom, value in zip(self._fspa.atoms, values, strict=True) if value > 0.0)
 
-    def _search(self, literals: Implicant) -> Sample | UnsatisfiedLiterals:
+    def _search(self, literals: Implicant) -> TraceSample | UnsatisfiedLiterals:
         polarity = dict(literals)
-        sample: Sample = {}
+        sample: TraceSample = {}
         for group in self._groups:
             point = _point(group, polarity)
             if isinstance(point, UnsatisfiedLiterals):
@@ -103,10 +103,10 @@ class SampleFinder:
         return {signal.name: sample[signal.name] for signal in self._fspa.signals}
 
 
-def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | MissingSample:
+def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[TraceSample, ...] | MissingSample:
     """Return a sample for each letter of a trace, or the first step for which none was found."""
     finder = SampleFinder(fspa)
-    trace_samples: list[Sample] = []
+    trace_samples: list[TraceSample] = []
     for step, letter in enumerate(letters, start=1):
         sample = finder.sample_for_letter(letter)
         if isinstance(sample, UnsatisfiedLiterals):
@@ -115,7 +115,7 @@ def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[Sample, ...] | Missi
     return tuple(trace_samples)
 
 
-def csv_text(fspa: Fspa, samples: Iterable[Sample]) -> str:
+def csv_text(fspa: Fspa, samples: Iterable[TraceSample]) -> str:
     """Return samples as CSV, with a column for each signal and its name in the first row.
 
     ``tltlc monitor`` and generated monitors read this format.

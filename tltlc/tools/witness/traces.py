@@ -12,7 +12,7 @@ from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
-    from tltlc.monitor.traces import Sample
+    from tltlc.monitor.traces import TraceSample
 
 WitnessKind = Literal["accepting", "rejecting", "cover"]
 
@@ -37,7 +37,7 @@ class Witness:
         return tuple(move.letter for move in self.moves)
 
     @property
-    def samples(self) -> tuple[Sample, ...]:
+    def samples(self) -> tuple[TraceSample, ...]:
         """The samples of the moves, with one round of the cycle."""
         return tuple(move.sample for move in self.moves)
 

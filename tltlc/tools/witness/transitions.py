@@ -13,7 +13,7 @@ from tltlc.tools.witness.samples import SampleFinder, UnsatisfiedLiterals
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
-    from tltlc.monitor.traces import Sample
+    from tltlc.monitor.traces import TraceSample
 
 _MOST_PRIMES = 500
 """The most prime implicants of a guard that are tried."""
@@ -29,7 +29,7 @@ class SampledEdge:
     edge: int
     prime: Implicant
     letter: Letter
-    sample: Sample
+    sample: TraceSample
 
 
 class Moves:
