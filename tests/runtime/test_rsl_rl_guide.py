@@ -30,7 +30,7 @@ def errand(tmp_path: Path) -> dict[str, Any]:
 
 
 def test_the_program_prints_lines_of_the_form_shown(tmp_path: Path) -> None:
-    short = PROGRAM.text.replace("train(4096, 8, DEVICE)", "train(4096, 2, DEVICE)").replace("learn(15)", "learn(1)")
+    short = PROGRAM.text.replace("train(4096, 8, DEVICE)", "train(256, 2, DEVICE)").replace("learn(15)", "learn(1)")
     assert short != PROGRAM.text
     (tmp_path / "errand.py").write_text(short, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
