@@ -73,8 +73,8 @@ envs.close()
 def test_the_game_reads_levels_and_recordings(recording: Path) -> None:
     program = f"""
 from pathlib import Path
-from tltl_runtime.game.registry import registered_game
-game = registered_game()
+from tltl_runtime.game.registry import STEALTH, game_named
+game = game_named(STEALTH)
 level, episode = game.load_level("navigation"), game.read_episode(Path({str(recording)!r}))
 print(game.branches, game.level_hash(level) == game.level_hash(episode.level), game.summary(episode).steps)
 """

@@ -12,7 +12,7 @@ from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, Played
 from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.level_name import Variant, parse_variant
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
@@ -70,8 +70,9 @@ def set_up(
             spec needs; the errors of :func:`~tltl_runtime.policies.compatibility.check_policy`; TLT0851, the
             spec has no limit.
     """
-    game, card = registered_game(), policy.card
+    card = policy.card
     name = level or card.level
+    game = game_of(name)
     variant = variant or (card.variant if level is None else "v0")
     if isinstance(variant, str):
         variant = parse_variant(variant)
@@ -112,7 +113,10 @@ def results(
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
-        yield from local_results(partial(PolicyPlayer, setup), requests, workers, setup.seed, replay_command)
+        modules = game_of(setup.level).modules
+        yield from local_results(
+            partial(PolicyPlayer, setup), requests, workers, setup.seed, replay_command, modules=modules
+        )
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
@@ -126,11 +130,13 @@ def local_results(
     workers: int,
     seed: int,
     replay_command: ReplayCommand | None = None,
+    *,
+    modules: Sequence[str] = (),
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
     Each process calls ``make`` once, which returns its player of episodes. If there are worker
-    processes, ``make`` must be picklable.
+    processes, ``make`` must be picklable, and ``modules`` are the modules that its players need.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
@@ -145,7 +151,7 @@ def local_results(
     if workers < 0:
         raise ValueError(f"the number of workers must be at least 0, not {workers}")
     with ExitStack() as stack:
-        team = [WorkerProcess(make) for _ in range(min(workers or cores(), len(requests)))]
+        team = [WorkerProcess(make, modules) for _ in range(min(workers or cores(), len(requests)))]
         for worker in team:
             stack.callback(worker.close)
         yield from play_all(team, requests, seed, replay_command)

@@ -11,7 +11,7 @@ from tltl_runtime.evaluation.play import play
 from tltl_runtime.game.episode import Trajectory, trajectory
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.blas_threads import blas_threads
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -124,7 +124,7 @@ class PolicyPlayer:
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
         card = setup.policy.card
-        self._game = registered_game()
+        self._game = game_of(setup.level)
         self._env: gymnasium.Env[Any, Any] = self._game.make_env(
             setup.level,
             setup.variant,

@@ -6,15 +6,13 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.context import BaseContext
 from typing import Final
 
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.scheduler import WorkerLostError
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.support.child_processes import worker_context
 from tltlc.api import fileio
 
@@ -24,11 +22,12 @@ class WorkerProcess:
 
     Each worker has an executor of its own. So if the process ends, it is known which episode was
     lost. The process calls ``make``, which returns its player of episodes; ``make`` must be
-    picklable.
+    picklable. ``modules`` are the modules that a player needs; a fork server imports them once.
     """
 
-    def __init__(self, make: Callable[[], EpisodePlayer]) -> None:
-        self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
+    def __init__(self, make: Callable[[], EpisodePlayer], modules: Sequence[str] = ()) -> None:
+        context = worker_context(["tltl_runtime.evaluation.player", *modules])
+        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(make,))
 
     def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
@@ -48,10 +47,6 @@ class WorkerProcess:
         """Wait until the process has played its current episode, then end the process."""
         # Wait: an executor that is still shutting down when Python exits may fail or hang.
         self._executor.shutdown(wait=True, cancel_futures=True)
-
-
-def _context() -> BaseContext:
-    return worker_context(["tltl_runtime.evaluation.player", *registered_game().modules])
 
 
 _PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"

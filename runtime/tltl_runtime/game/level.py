@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.game.sensors import Sensors
 from tltlc.api import Diagnostic, TltlError, record
+
+if TYPE_CHECKING:
+    from tltl_runtime.game.game import Game
 
 
 @record
@@ -36,6 +39,10 @@ def parse_level_spec(text: str) -> LevelSpec | None:
 
 class Level(Protocol):
     """One variant of a level."""
+
+    @property
+    def game(self) -> Game[Any, Any]:
+        """The game that the level belongs to."""
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""The game that the runtime plays."""
+"""The games that the runtime plays, by name, and the game that a level belongs to."""
 
 from __future__ import annotations
 
@@ -7,17 +7,34 @@ from typing import Any, Final
 
 from tltl_runtime.game.game import Game
 
-_MODULE: Final = "tltl_runtime.stealth.stealth_game"
-"""The module whose ``GAME`` is the game.
+STEALTH: Final = "stealth"
 
-It is imported by its name, so that evaluation, training and regression tests need not import a
-particular game. To put another game in its place, write a module with a ``GAME`` and name it here.
-The commands in ``tltl_runtime.cli``, and the maps of ``regression.report.page.stealth``, still
-import the stealth game themselves.
+_MODULES: Final = {STEALTH: "tltl_runtime.stealth.stealth_game"}
+"""The modules of the games. The ``GAME`` in a module is the game.
+
+They are imported by their names, so that evaluation, training and regression tests need not import
+a particular game. The commands in ``tltl_runtime.cli``, and the maps of
+``regression.report.page.stealth``, still import the stealth game themselves.
 """
 
 
-def registered_game() -> Game[Any, Any]:
-    """Return the game. Its levels and recordings can be read even if its physics engine is not installed."""
-    game: Game[Any, Any] = import_module(_MODULE).GAME
+def game_named(name: str) -> Game[Any, Any]:
+    """Return the game with this name.
+
+    The levels and recordings of the stealth game can be read even if its physics engine is not
+    installed.
+
+    Raises:
+        KeyError: there is no such game.
+    """
+    game: Game[Any, Any] = import_module(_MODULES[name]).GAME
     return game
+
+
+def game_of(level: str) -> Game[Any, Any]:
+    """Return the game that a level belongs to; ``level`` is its name or the path of its file.
+
+    The level need not exist.
+    """
+    del level  # All levels are of the stealth game.
+    return game_named(STEALTH)

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.support.number_text import short_list
@@ -30,7 +29,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         age = "a newer" if card.observation > OBSERVATION else "an older"
         suggestion = "use that tltlc, or train a policy with this one"
         raise _unfit_error(f"the policy was trained with {age} tltlc, whose agents observe other things", suggestion)
-    game = registered_game()
+    game = level.game
     if card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
         raise _unfit_error(f"the policy chooses among {own} actions, and the game has {sizes}")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import STEALTH, game_named
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.actor import weight_shapes
 from tltl_runtime.policies.card import Card
@@ -92,7 +92,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
     """
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
-    observation, branches = _observation_shapes(fspa, sensors), registered_game().branches
+    observation, branches = _observation_shapes(fspa, sensors), game_named(STEALTH).branches
     try:
         shapes = weight_shapes(network, observation, branches)
     except ValueError as error:

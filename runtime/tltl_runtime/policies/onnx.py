@@ -14,7 +14,7 @@ from onnx import ModelProto
 from onnx.helper import set_model_props
 from torch import Tensor, nn
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import STEALTH, game_named
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
@@ -69,7 +69,7 @@ class _PolicyModule(nn.Module):
 
 def _metadata(card: Card) -> dict[str, str]:
     """Return the metadata of the model. All values but ``spec_hash`` are JSON."""
-    game = registered_game()
+    game = game_named(STEALTH)
     names = list(game.choices.items()) if card.branches == game.branches else []
     texts = {
         "inputs": _input_names(card),

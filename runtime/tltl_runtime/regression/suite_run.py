@@ -12,7 +12,6 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.game.recording_path import SUFFIX
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.report.trace_report import report_on_broken_traces, report_on_traces
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
@@ -78,7 +77,7 @@ class FinishedCase:
             return None
         if prepared.outdated:
             return "it was trained for another spec"
-        if registered_game().is_infeasible(prepared.level, prepared.setup.fspa):
+        if prepared.level.game.is_infeasible(prepared.level, prepared.setup.fspa):
             return f"nobody can do what `{prepared.setup.fspa.name}` asks, as reported above"
         return None
 
@@ -221,7 +220,7 @@ def _judge(
         report = report_on_edited if _EDITED in codes else report_on_broken
         return FinishedCase(report(case, fault), is_cached=False)
     except RuntimeError as problem:
-        level_fault = registered_game().level_fault(problem)
+        level_fault = prepared.level.game.level_fault(problem)
         if level_fault is None:
             raise
         return FinishedCase(report_on_broken(case, level_fault), is_cached=False)

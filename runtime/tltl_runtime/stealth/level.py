@@ -8,15 +8,19 @@ axes. No code depends on the name of a level.
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from tltl_runtime.game.geometry import Box as Box
 from tltl_runtime.game.geometry import Point as Point
 from tltl_runtime.game.geometry import Region as Region
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.game.registry import STEALTH, game_named
 from tltl_runtime.game.sensors import MapSensor as MapSensor
 from tltl_runtime.game.sensors import Sensors as Sensors
 from tltlc.api import record
+
+if TYPE_CHECKING:
+    from tltl_runtime.game.game import Game
 
 
 @record
@@ -181,6 +185,11 @@ class StealthLevel:
     """
     regions: tuple[Region, ...] = ()
     """The regions that the level names, then a region for each part (``[[use]]``) in it."""
+
+    @property
+    def game(self) -> Game[Any, Any]:
+        """The stealth game."""
+        return game_named(STEALTH)
 
 
 def entity_names(level: StealthLevel) -> tuple[str, ...]:

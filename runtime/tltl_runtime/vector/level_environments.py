@@ -11,7 +11,7 @@ import gymnasium
 
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import Variant, parse_variant
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -46,7 +46,7 @@ def make_vec(
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, use 'rgb_array' and call render()")
-    game = registered_game()
+    game = game_of(level)
     if isinstance(variant, str):
         variant = parse_variant(variant)
     loaded_level = game.load_level(level, variant)

@@ -7,12 +7,13 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Final, cast, get_args
+from typing import Any, Final, cast, get_args
 
 from tltl_runtime.evaluation.versions import judging_versions, versions
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.game import Game
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
@@ -163,7 +164,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         )
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
-    episodes = _episodes(case, case_folder(suite, case.report.name, folder / CASES))
+    episodes = _episodes(case.report, case.prepared.level.game, case_folder(suite, case.report.name, folder / CASES))
     return ReportedCase(
         report=case.report,
         level=case.prepared.level,
@@ -192,11 +193,10 @@ def _curve(case: FinishedCase, folder: Path) -> bytes:
     return b""
 
 
-def _episodes(case: FinishedCase, folder: Path) -> dict[int, RecordedEpisode]:
+def _episodes(report: CaseReport, game: Game[Any, Any], folder: Path) -> dict[int, RecordedEpisode]:
     """Read the recorded episodes of a case; return them by index. Damaged recordings are left out."""
-    game = registered_game()
     episodes: dict[int, RecordedEpisode] = {}
-    for index, name in case.report.recordings:
+    for index, name in report.recordings:
         with suppress(TltlError):
             episodes[index] = game.read_episode(folder / name)
     return episodes

@@ -8,7 +8,6 @@ from typing import Final
 
 from tltl_runtime.game.episode import EndKind, RecordedEpisode
 from tltl_runtime.game.geometry import Point
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
 from tltl_runtime.regression.explain.stages import distance_column, target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -97,7 +96,7 @@ def summaries_of(episodes: Iterable[ExplainedEpisode]) -> list[EpisodeSummary]:
 
 def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> ExplainedEpisode:
     """Explain the result of a recorded ``episode``, whose summary is ``summary``."""
-    game, positions = registered_game(), _positions(episode)
+    game, positions = episode.level.game, _positions(episode)
     cause = game.cause(episode)
     return ExplainedEpisode(
         # Verdicts, reports and the files of baselines do not contain these fields.

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
 from tltl_runtime.regression.explain.mentions import Phrase, phrase, things_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
@@ -77,7 +76,7 @@ def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
     :func:`~tltl_runtime.regression.explain.stages.near_enough` gives no distance.
     """
     atoms = {atom.name: row for row, atom in enumerate(fspa.atoms)}
-    return near_enough(fspa, atoms[name], registered_game().params(level)) if name in atoms else None
+    return near_enough(fspa, atoms[name], level.game.params(level)) if name in atoms else None
 
 
 def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:

@@ -9,7 +9,6 @@ from typing import Final
 
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.mentions import Mentions, Phrase, phrase, region_text, things_phrase
 
 _NEAR_M: Final = 2.5
@@ -39,7 +38,7 @@ def place_phrase(level: Level, point: Point) -> Phrase:
 
 def nearest_entity(level: Level, point: Point) -> str | None:
     """Return the nearest switch, exit or barrier; None if none is within 2.5 m."""
-    positions = registered_game().landmarks(level)
+    positions = level.game.landmarks(level)
     near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in positions.items()]
     distance, name = min(near, default=(2 * _NEAR_M, ""))
     return name if distance <= _NEAR_M else None
@@ -53,8 +52,7 @@ def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]
     hidden behind a nearer one do not count either. ``players`` has for each player the position of
     the feet, and the names of the barriers that were closed then.
     """
-    game = registered_game()
-    solids, barriers = game.solids(level), game.barriers(level)
+    solids, barriers = level.game.solids(level), level.game.barriers(level)
     touched: dict[str, list[float]] = {}
     for feet, closed in players:
         boxes = solids | {name: barriers[name] for name in closed if name in barriers}

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Suite, SuiteCase
@@ -46,7 +46,7 @@ def _file_to_annotate(suite: Suite, case: SuiteCase, report: CaseReport) -> Path
     if isinstance(case, TraceCase):
         return Path(fileio.split_spec_name(case.spec)[0])
     if report.played is None:
-        return registered_game().level_files.path(case.level)
+        return game_of(case.level).level_files.path(case.level)
     before = dict(report.reference.files) if report.reference else {}
     # `files` begins with the level. Prefer overlays, which come later: they are more specific.
     changed = [name for name, sha256 in reversed(report.played.files) if before.get(name) != sha256]

@@ -7,7 +7,6 @@ from statistics import fmean
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_files import file_kind
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.mentions import Mentions, Phrase
 from tltl_runtime.regression.suite.changed_keys import ChangedKeys, changed_keys
 from tltl_runtime.regression.suite.thresholds import Thresholds
@@ -85,7 +84,7 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
 
     If several entities cannot be reached for the same reason, describe only the first.
     """
-    entities = registered_game().unreachable_entities(level, fspa)
+    entities = level.game.unreachable_entities(level, fspa)
     first_entities = {entity.diagnostic.help: entity for entity in reversed(entities)}
     for entity in first_entities.values():
         text = f"{entity.diagnostic.title}: {entity.diagnostic.help}"

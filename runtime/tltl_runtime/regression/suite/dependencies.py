@@ -15,7 +15,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.regression.suite.named_files import policy_file
 from tltl_runtime.regression.suite.suite import Suite, SuiteCase
 from tltl_runtime.regression.suite.trace_case import TraceCase
@@ -79,7 +79,7 @@ def dependencies(suite: Suite, case: SuiteCase) -> tuple[Path, ...]:
         files = [suite.path, *map(Path, (*named, *traces.find_traces(named).traces))]
     else:
         files = [suite.path, suite.baseline, policy_file(case.policy)]
-        files += registered_game().level_files.dependencies(case.level, case.variant)
+        files += game_of(case.level).level_files.dependencies(case.level, case.variant)
     if case.spec is not None:
         files += spec_files(Path(fileio.split_spec_name(case.spec)[0]))
     return tuple(

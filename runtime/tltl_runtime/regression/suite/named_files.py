@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.spec.task import read_spec
@@ -75,7 +75,7 @@ def similar_level(name: str, folder: Path) -> str | None:
     with suppress(OSError, ValueError):
         files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
         names = [(Path(name).parent / path.name).as_posix() for path in files]
-    matches = get_close_matches(name, (*names, *registered_game().level_files.names()), n=1)
+    matches = get_close_matches(name, (*names, *game_of(name).level_files.names()), n=1)
     return f"did you mean `{matches[0]}`?" if matches else None
 
 
@@ -95,7 +95,7 @@ def level_with_fitting_policy(level: str) -> str | None:
     Their specs have the same name and file name, so ``level`` may be a copy of the level of the
     package.
     """
-    game = registered_game()
+    game = game_of(level)
     with suppress(TltlError):
         levels_by_spec = {_spec_names(game.load_level(name)): name for name in shipped_policies()}
         first_variant = game.level_files.variants(level)[0]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level_name import Variant, parse_variant, split_level
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import (
@@ -209,7 +209,7 @@ def _case(
         if value and value not in variant_names:
             title = f"the level `{level}` has no variant `{value}`"
             table.log.append(Diagnostic("TLT0800", title, (table.label_of(key),), suggestion(value, variant_names)))
-    overlay_names = registered_game().level_files.overlays(level)
+    overlay_names = game_of(level).level_files.overlays(level)
     for overlay in overlays:
         if not overlay.endswith(".toml") and overlay not in overlay_names:
             title = f"there is no overlay `{overlay}`"
@@ -233,7 +233,7 @@ def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[s
     """
     if level not in known_variants:
         try:
-            known_variants[level] = registered_game().level_files.variants(level)
+            known_variants[level] = game_of(level).level_files.variants(level)
         except TltlError:
             known_variants[level] = ()
     named_variants = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
@@ -253,7 +253,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
             help_ = similar_level(level, folder) or "paths are relative to the suite"
             table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.label_of("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
-    level_files = registered_game().level_files
+    level_files = game_of(level).level_files
     try:
         level_files.path(level)
     except TltlError as error:

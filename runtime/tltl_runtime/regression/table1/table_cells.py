@@ -17,7 +17,7 @@ from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.game.level import default_spec
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.table1.paper_table import CellFigures, Model
@@ -69,7 +69,7 @@ def cell_episodes(
 
 def _inputs(level: str, variant: str, policy: Path | None) -> str:
     """Return the hash of everything on which the episodes of a table's cell depend, for the cache."""
-    game = registered_game()
+    game = game_of(level)
     loaded_level = game.load_level(level, variant)
     spec = load_task(default_spec(loaded_level), offered=game.params(loaded_level)).fspa
     player_hash = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
@@ -77,7 +77,7 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
 
 
 def _policy_episodes(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[EpisodeSummary]:
-    spec = default_spec(registered_game().load_level(level, variant))
+    spec = default_spec(game_of(level).load_level(level, variant))
     yield from evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec)
 
 
@@ -89,7 +89,8 @@ def _expert_episodes(level: str, variant: str, pool: Pool) -> Generator[EpisodeS
     def replay_command(request: EpisodeRequest) -> str:
         return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, request.index)}"
 
-    for result in local_results(partial(_ExpertPlayer, level, variant), requests, workers, SEED, replay_command):
+    make, modules = partial(_ExpertPlayer, level, variant), game_of(level).modules
+    for result in local_results(make, requests, workers, SEED, replay_command, modules=modules):
         yield result.summary
 
 
@@ -100,7 +101,7 @@ class _ExpertPlayer:
     """
 
     def __init__(self, level: str, variant: str) -> None:
-        self._game = registered_game()
+        self._game = game_of(level)
         self._env = self._game.recorder(self._game.make_env(level, variant))
         self._seeds: deque[int] = deque()
         """The seeds of the next episodes. :meth:`play` appends one, and the expert takes it.

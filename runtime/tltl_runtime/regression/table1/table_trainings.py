@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level import default_spec
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.regression.table1.paper_table import Model
@@ -86,7 +86,7 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
         TltlError: the level or its spec cannot be read.
     """
     settings = replace(read_settings(), method="imitation" if model == "imitation" else "automaton")
-    game = registered_game()
+    game = game_of(level)
     loaded_level = game.load_level(level, "v0")
     task = load_task(default_spec(loaded_level), offered=game.params(loaded_level))
     parts = [

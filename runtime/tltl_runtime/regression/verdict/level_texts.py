@@ -8,7 +8,7 @@ from typing import Final
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
 
@@ -28,7 +28,7 @@ def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
     ``files`` are pairs of a name and a SHA-256. A file that has another hash now is left out: it
     was edited meanwhile.
     """
-    level_files = registered_game().level_files
+    level_files = game_of(name_or_path).level_files
     texts = []
     for name, sha256 in files:
         candidates = (_text(place) for place in level_files.candidates(name_or_path, variant, name))
@@ -40,7 +40,7 @@ def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
 
 def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
     """Return the current text of a level's file called ``name``; None if it cannot be read."""
-    level_files = registered_game().level_files
+    level_files = game_of(name_or_path).level_files
     candidates = level_files.candidates(name_or_path, variant, name)
     return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))
 
@@ -63,7 +63,7 @@ def baseline_level(reference: Reference) -> Level | None:
     with fileio.temporary_folder() as folder:
         try:
             fileio.unpack(folder, files, _BASELINE)
-            level: Level = registered_game().load_level(str(folder / name), played.variant)
+            level: Level = game_of(name).load_level(str(folder / name), played.variant)
             return level
         except TltlError:
             return None

@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.player import EpisodeRequest, Setup
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import differences
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.identity import spec_hash
@@ -78,7 +78,7 @@ def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> Prepa
     data = fileio.read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
-    game = registered_game()
+    game = game_of(setup.level)
     level, changes = game.level_files.load_with_changes(setup.level, setup.variant)
     sha256 = hashlib.sha256(data).hexdigest()
     played = Identity(
@@ -110,7 +110,7 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
             # a missing one: counting them would favour fast episodes.
             if result.summary.index != count:
                 continue
-            episode = registered_game().episode_from_bytes(result.recording, _PLAYER)
+            episode = prepared.level.game.episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
             _check_unedited(prepared, episode.level)
             yield CaseEpisode(explain_episode(result.summary, episode), result.recording)
@@ -133,7 +133,7 @@ def check_unedited(prepared: PreparedCase) -> None:
     Raises:
         TltlError: TLT0905, the level was edited; or the errors of the edited level.
     """
-    _check_unedited(prepared, registered_game().load_level(prepared.setup.level, prepared.setup.variant))
+    _check_unedited(prepared, game_of(prepared.setup.level).load_level(prepared.setup.level, prepared.setup.variant))
 
 
 def judge_case(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, SuiteCase
 from tltl_runtime.regression.suite.trace_case import TraceCase
@@ -36,7 +36,7 @@ def unnamed_changes(
 
 def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
     """Yield the names of a case's level files whose SHA-256 differs from that in the baseline."""
-    identity = (registered_game().level_files.path(case.level).stem, case.reference, case.place)
+    identity = (game_of(case.level).level_files.path(case.level).stem, case.reference, case.place)
     files = next((reference.played.files for reference in references if _identity(reference) == identity), ())
     # Files that only the reference variant uses are no dependencies of the case.
     paths = dependencies(suite, case)

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import STEALTH, game_named
 from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodeStart
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
@@ -246,7 +246,7 @@ def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     for field in ("seeds", "ends", "lengths"):
         _check_array(f"{name}_{field}", arrays, np.int64, (count,))
     lengths = arrays[f"{name}_lengths"]
-    actions, branches = sum(lengths.tolist()), registered_game().branches
+    actions, branches = sum(lengths.tolist()), game_named(STEALTH).branches
     _check_array(f"{name}_actions", arrays, np.int8, (actions, len(branches)) if actions else (0,))
     if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any():
         raise ValueError(f"`{name}_lengths` or `{name}_seeds` contains a number that is too small")

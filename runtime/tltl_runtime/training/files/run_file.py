@@ -13,7 +13,7 @@ from shlex import quote
 from typing import Any, Final
 
 from tltl_runtime.game.level_name import Variant, parse_variant
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import spec_hash
@@ -224,7 +224,7 @@ def identity(run: TrainingRun) -> dict[str, str]:
 
 def current_level_hash(run: TrainingRun) -> str:
     """Return the hash of the level of a training; the level is read from its file as it is now."""
-    game = registered_game()
+    game = game_of(run.level)
     return game.level_hash(game.load_level(run.level, run.variant))
 
 

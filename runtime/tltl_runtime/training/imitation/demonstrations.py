@@ -14,7 +14,6 @@ from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import Task
 from tltlc.api import Diagnostic, TltlError, fileio, record
@@ -70,7 +69,7 @@ class Demonstrations:
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
         self.folder = folder
-        self._game = registered_game()
+        self._game = level.game
         self._level, self._spec = self._game.level_hash(level), spec_hash(task.fspa)
         self._params = dict(task.params)
         self._players_and_seeds: list[tuple[str, int]] = []
@@ -148,7 +147,7 @@ def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: in
     failures = 0
     if store.count >= number:
         return
-    for episode in registered_game().expert_episodes(env, count(max(played, default=seed - 1) + 1)):
+    for episode in env.get_wrapper_attr("level").game.expert_episodes(env, count(max(played, default=seed - 1) + 1)):
         yield (attempt := store.add(episode))
         failures = 0 if attempt.path else failures + 1
         if store.count >= number:

@@ -13,7 +13,6 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.imitation.demonstrations import (
     PLAYER,
@@ -71,7 +70,8 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
     ``make`` makes the environment. ``report`` is called with each attempt. Raises the errors of
     :func:`~tltl_runtime.training.imitation.demonstrations.expert_attempts`.
     """
-    env = registered_game().recorder(make(), PLAYER)
+    env = make()
+    env = env.get_wrapper_attr("level").game.recorder(env, PLAYER)
     try:
         demonstrations = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
         for attempt in expert_attempts(env, demonstrations, number):
@@ -89,7 +89,8 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationD
     Raises:
         TltlError: TLT0921, no demonstration remains.
     """
-    game, env = registered_game(), make()
+    env = make()
+    game = env.get_wrapper_attr("level").game
     observed: list[_Observation] = []
     actions: list[NDArray[np.uint8]] = []
     players: set[str] = set()
@@ -145,8 +146,8 @@ def _replayed_observations(env: TltlEnv, episode: RecordedEpisode) -> list[_Obse
 
     If the episode does not count as a demonstration, return the reason instead.
     """
-    level_hash = registered_game().level_hash
-    if level_hash(episode.level) != level_hash(env.get_wrapper_attr("level")):
+    level = env.get_wrapper_attr("level")
+    if episode.level.game is not level.game or level.game.level_hash(episode.level) != level.game.level_hash(level):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)
     observed: list[_Observation] = []

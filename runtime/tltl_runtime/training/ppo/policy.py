@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from torch import Tensor
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.policies.torch_actor import arrays
@@ -22,7 +22,7 @@ def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
     The card's field ``training`` is empty until the training ends. The level is read from its file
     as it is now.
     """
-    game = registered_game()
+    game = game_of(run.level)
     level = game.load_level(run.level, run.variant)
     return Card(
         level=level.name,

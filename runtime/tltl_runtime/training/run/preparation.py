@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.game.registry import registered_game
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
@@ -200,7 +200,7 @@ def _curriculum(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | 
 def _env_of(run: TrainingRun) -> Callable[[], TltlEnv]:
     """Return a function that makes an environment of the training."""
     return partial(
-        registered_game().make_env,
+        game_of(run.level).make_env,
         run.level,
         run.variant,
         run.fspa,

@@ -9,7 +9,6 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltl_runtime.game.registry import registered_game
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.trace_charts import anchor
@@ -69,6 +68,6 @@ def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) 
 
 
 def _link(index: int, episode: RecordedEpisode, slug: str) -> _Link:
-    before_end = round(_BEFORE_END_S / registered_game().clock_s)
+    before_end = round(_BEFORE_END_S / episode.level.game.clock_s)
     step = 0 if episode.success else max(0, len(episode.actions) - before_end)
     return _Link(str(index), episode_link(slug, index, step), f"play {'the end of ' * (step > 0)}episode {index}")
