@@ -131,6 +131,6 @@ def _only_automaton(automata: tuple[Fspa, ...], file: str, *, is_text: bool) -> 
         title, advice = f"`{file}` contains no spec", "declare one: `spec NAME { … }`"
     else:
         listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
-        title = f"`{file}` contains {len(names)} specs, but an environment needs one: {listed}"
+        title = f"`{file}` contains {len(names)} specs, and only one can be used: {listed}"
         advice = "give a text with one spec" if is_text else f"name one of them, e.g. `{file}:{names[0]}`"
     raise TltlError([Diagnostic("TLT0721", title, help=advice)])
