@@ -11,7 +11,7 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.fixtures import cover_and_hide
 from tests.fuzzing import times
 from tltlc import compile_text
-from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Notation
+from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Notation, Text
 from tltlc.automaton.text import label_range_text, label_text
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
@@ -203,6 +203,19 @@ def test_the_label_of_a_run_is_that_of_its_ends_with_ranges_of_counts(fspa: Fspa
     for run in fold_runs(fspa).folded.values():
         first, last = (label_text(fspa, state.id, notation) for state in (run[0], run[-1]))
         assert label_range_text(fspa, run[0].id, run[-1].id, notation) == with_ranges(first, last)
+
+
+@pytest.mark.parametrize("notation", NOTATIONS)
+def test_labels_of_an_imported_automaton_become_ranges_too(notation: Notation) -> None:
+    fspa = automaton("F[0,40] a")
+    states = [
+        replace(state, label=Text(f"wait {state.id}", f"wait {state.id}", f"wait {state.id}")) for state in fspa.states
+    ]
+    imported = replace(fspa, states=tuple(states))
+    assert label_range_text(imported, 5, 2, notation) == "wait 5…2"
+    assert label_range_text(replace(imported, states=(states[0], fspa.states[1])), 0, 1, notation).startswith(
+        "wait 0 … "
+    )
 
 
 def with_ranges(first: str, last: str) -> str:

@@ -6,7 +6,7 @@ import pytest
 
 from tltlc import compile_text
 from tltlc.logic.formula import Formula
-from tltlc.logic.text.counts import CountPrinter, range_text
+from tltlc.logic.text.counts import CountPrinter, foreign_range_text, range_text
 from tltlc.logic.text.printer import ascii_text, english_text
 
 
@@ -44,3 +44,18 @@ def test_counts_that_differ_become_ranges(first: str, last: str, ascii: str | No
     formulas = formula(first), formula(last)
     assert range_text(*formulas, ascii_text) == ascii
     assert range_text(*formulas, english) == in_english
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "text"),
+    [
+        ("wait 6", "wait 2", "wait 6…2"),
+        ("wait 6", "wait 6", "wait 6"),
+        ("2 of 9 keys", "2 of 10 keys", "2 of 9…10 keys"),
+        ("1", "12", "1…12"),
+        ("wait 6", "go 6", None),
+        ("wait 6", "wait", None),
+    ],
+)
+def test_numbers_that_differ_in_other_texts_become_ranges(first: str, last: str, text: str | None) -> None:
+    assert foreign_range_text(first, last) == text

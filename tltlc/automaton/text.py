@@ -7,7 +7,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.text.counts import NUMBERS, CountPrinter, range_text
+from tltlc.logic.text.counts import NUMBERS, CountPrinter, foreign_range_text, range_text
 from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, words_text
 
 _LONGEST_IN_ENGLISH: Final = 2_000
@@ -53,9 +53,9 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
         text = range_text(
             first_label, last_label, lambda formula, counts: _write(formula, notation, counts, endless=endless)
         )
-        if text is not None:
-            return text
-    return " … ".join(texts)
+    else:
+        text = foreign_range_text(*texts)
+    return " … ".join(texts) if text is None else text
 
 
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:

@@ -88,6 +88,16 @@ def test_every_history_gives_the_results_of_a_new_workspace(main: int, steps: li
         assert published == {uri: diagnostics_of(fresh, uri) for uri in texts}
 
 
+def test_a_virtual_document_with_the_name_of_a_project_file_affects_no_other_document(tmp_path: Path) -> None:
+    workspace, uri = Workspace(), (tmp_path / "main.tltl").as_uri()
+    workspace.put(uri, None, "signal seen: bool\n")
+    diagnostics_of(workspace, uri)
+    virtual = "vscode-vfs://github/games/rules/tltl.toml"
+    assert workspace.put(virtual, None, TEXTS["tltl.toml"][1]) == [virtual]
+    real = (tmp_path / "tltl.toml").as_uri()
+    assert workspace.put(real, None, TEXTS["tltl.toml"][1]) == [real, uri]
+
+
 def test_pipes_in_the_folders_of_the_workspace_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "main.tltl").write_text("signal seen: bool\n")
     pipes.put_beside(tmp_path / "pipe.tltl")

@@ -115,6 +115,13 @@ def test_entities_of_the_traces_are_declared() -> None:
     assert vocabulary.library.text.startswith(text)
 
 
+@pytest.mark.parametrize("column", ["touch(s1,s2)", "touch (s1, s2)", " touch( s1 , s2 ) "])
+def test_blanks_in_a_column_do_not_hide_its_entities(column: str) -> None:
+    library = "signal health in [0, 1]\npredicate hurt(x: entity) = 0.5 - health\n"
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", library), {"health", column}, ResolveOptions())
+    assert vocabulary.entities == ("s1", "s2")
+
+
 def test_a_library_with_errors_is_reported() -> None:
     with pytest.raises(TltlError) as raised:
         names("import nonsense\n", {"a"})

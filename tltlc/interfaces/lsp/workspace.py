@@ -218,4 +218,4 @@ def _too_large(content: str) -> TltlError:
 
 
 def _is_project(location: str) -> bool:
-    return os.path.basename(location) == "tltl.toml"  # noqa: PTH119
+    return os.path.isabs(location) and os.path.basename(location) == "tltl.toml"  # noqa: PTH117, PTH119

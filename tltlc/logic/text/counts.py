@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Final
 
@@ -69,3 +70,15 @@ def range_text(first: Formula, last: Formula, write: Callable[[Formula, CountPri
     if write(first, collectors[0]) != write(last, collectors[1]):
         return None
     return write(first, _RangePrinter(collectors[1].counts))
+
+
+def foreign_range_text(first: str, last: str) -> str | None:
+    """Return one text for two texts that are not formulas: ``wait 5…2`` for ``wait 5`` and ``wait 2``.
+
+    The labels of imported automata may be such texts. Returns None if the texts differ in more than
+    numbers.
+    """
+    parts, last_parts = re.split(r"(\d+)", first), re.split(r"(\d+)", last)
+    if parts[::2] != last_parts[::2]:
+        return None
+    return "".join(one if one == other else f"{one}…{other}" for one, other in zip(parts, last_parts, strict=True))

@@ -28,6 +28,7 @@ from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.mine.column_diagnostics import first_names
 
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
+_BRACKETS_AND_COMMAS: Final = re.compile(r"\s*([(),])\s*")
 _MOST: Final = WORK["mined columns"]
 _MOST_INSTANCES: Final = WORK["mined instances"]
 
@@ -272,8 +273,11 @@ def _entities(columns: Iterable[str]) -> list[str]:
 
 
 def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
-    """Return the name and the arguments of `near(s1)`, or None if a column does not have that form."""
-    name, arguments = split_name(column)
+    """Return the name and the arguments of `near(s1)`, or None if a column does not have that form.
+
+    Blanks around brackets and commas do not matter.
+    """
+    name, arguments = split_name(_BRACKETS_AND_COMMAS.sub(r"\1", column.strip()).replace(",", ", "))
     return (name, arguments) if arguments and all(map(_WORD.match, (name, *arguments))) else None
 
 

@@ -35,7 +35,7 @@ def read_default_spec(table: CheckedTable, level: Path) -> LevelSpec | None:
     if not str(spec.file).endswith(".tltl") or not spec.name:
         table.log.append(wrong_value(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
         return None
-    label, file = table.label_of("spec"), spec.file.as_posix()
+    label, file = table.label_of("spec"), text.rpartition(":")[0]
     path = next((folder / spec.file for folder in (level.parent, *SPECS) if fileio.is_file(folder / spec.file)), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
