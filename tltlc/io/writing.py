@@ -39,14 +39,19 @@ def write_files(
     already renamed get their old content back, and new folders are removed. Text is written as
     UTF-8 with line feeds.
 
-    Errors: TLT0005 if the system refuses; TLT0700 if a file that the command has read would change,
-    unless ``over_inputs`` is true. ``advice`` is the help of both errors: where else to write.
+    A device or a pipe, and the file to which standard output or standard error is redirected, are
+    not replaced: the content is written into them at once, and cannot be taken back.
 
-    With ``durable``, each file is complete even after a loss of power, and it is on the disk as soon
-    as this function has returned.
+    With ``durable``, a file that replaces another is on the disk when this function returns, and is
+    complete even after a loss of power. The entry of a new folder may still be lost.
 
     If the process is killed, temporary files may remain, until the next process that writes into
     the same folder removes them. Some files may then be new and some old, but none is half written.
+
+    Raises:
+        TltlError: TLT0005 if the system refuses; TLT0700 if a file that the command has read would
+            change, unless ``over_inputs`` is true. The help of both is ``advice``: where else to
+            write. If too many files are open, the help is to allow more.
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
@@ -61,9 +66,7 @@ def write_file(
 ) -> None:
     """Write one file into a folder that exists.
 
-    ``content``, the options and the errors are those of :func:`write_files`. A device, a pipe, or
-    the file to which standard output or standard error is redirected is not replaced: the content
-    is written into it.
+    ``content``, the options and the errors are those of :func:`write_files`.
     """
     _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
 

@@ -121,8 +121,8 @@ ProgramExpression = Union[Real, Int, Bool, ProgramVariable, Negate, BinaryNumber
 class Declare:
     """The declaration of a variable.
 
-    If ``value`` is None, each path through the program assigns a value later. ``changes`` is true
-    if the variable gets another value after its first one.
+    If ``value`` is None, each path through the program assigns a value later. ``changes`` says
+    whether the program may assign to the variable again after its first value.
     """
 
     name: str

@@ -144,7 +144,10 @@ class Frames:
             self._frames.append(Fault(f"a message without a header `Content-Length` is skipped: {skipped[:60]!r}"))
 
     def _drop_long_line(self) -> None:
-        """Keep only the end of a line that is too long; the next header may start there."""
+        """Drop the start of an unfinished line that is too long, and record a fault.
+
+        The last ``_OVERLAP`` bytes remain, because the next header may start there.
+        """
         self._searched = len(self._buffer)
         if len(self._buffer) > MESSAGE_HEAD.size:
             self._pass_over(bytes(self._buffer[:-_OVERLAP]), is_long=True)

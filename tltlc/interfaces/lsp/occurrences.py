@@ -51,10 +51,9 @@ class Symbol:
 
 @record
 class Occurrence:
-    """A use or declaration of a name.
+    """A place in a module where a name stands: in its declaration, or where it is used.
 
-    ``span`` covers the name as declared, without the alias of its import (``lib.`` in
-    ``lib.name``).
+    ``span`` covers the name alone: of ``lib.near``, where ``lib`` is an import, it covers ``near``.
     """
 
     span: Span

@@ -45,8 +45,9 @@ class TensorWriter:
 
     A line uses ``columns``, ``constants`` and earlier names.
 
-    ``columns[i]`` is the column of the i-th signal. Equal right-hand sides are written once.
-    ``constants`` are numbers, by the names of the zero-dimensional tensors for them.
+    ``columns[i]`` is the column of the i-th signal: its values in the N environments. Equal
+    right-hand sides are written once. ``constants`` are numbers, by the names of the
+    zero-dimensional tensors for them.
     """
 
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
@@ -62,7 +63,10 @@ class TensorWriter:
         return tuple(self._lines.values())
 
     def constant_column(self, constant: float) -> str:
-        """Write a line that makes a column filled with a constant, and return the column's name."""
+        """Write a line that makes a column in which each environment has the value ``constant``.
+
+        Return the column's name.
+        """
         return self._line("columns.new_full((columns.shape[1],), {}.item())", self._constant_tensor(constant))
 
     def number(self, node: expressions.Expression) -> TensorTerm:

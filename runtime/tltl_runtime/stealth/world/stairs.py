@@ -1,7 +1,7 @@
-"""Lift the player up stairs.
+"""Compute how far to lift the player, so that the player walks up stairs.
 
-Bullet alone would stop the player at the edge of the first stair, because the velocity is set only
-once per decision.
+The physics engine, Bullet, does not lift the player: the velocity, which is set once per decision,
+is horizontal, so the player would stop at the edge of a high stair.
 """
 
 from __future__ import annotations

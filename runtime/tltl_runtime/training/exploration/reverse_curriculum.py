@@ -241,15 +241,19 @@ def _check_array(
 
 
 def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for arrays that :func:`_arrays` cannot have returned."""
+    """Raise ValueError if the arrays of episodes have a wrong type, shape or value.
+
+    Seeds, ends and states must not be negative, episodes must not be empty, and actions must be
+    actions of the game.
+    """
     count = arrays[f"{name}_seeds"].size if f"{name}_seeds" in arrays else 0
     for field in ("seeds", "ends", "lengths"):
         _check_array(f"{name}_{field}", arrays, np.int64, (count,))
     lengths = arrays[f"{name}_lengths"]
     actions, branches = sum(lengths.tolist()), game_named(STEALTH).branches
     _check_array(f"{name}_actions", arrays, np.int8, (actions, len(branches)) if actions else (0,))
-    if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any():
-        raise ValueError(f"`{name}_lengths` or `{name}_seeds` contains a number that is too small")
+    if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any() or (arrays[f"{name}_ends"] < 0).any():
+        raise ValueError(f"`{name}_lengths`, `{name}_seeds` or `{name}_ends` contains a number that is too small")
     choices = arrays[f"{name}_actions"].reshape(-1, len(branches))
     if (choices < 0).any() or (choices >= np.array(branches)).any():
         raise ValueError(f"`{name}_actions` contains a value that is not an action")
