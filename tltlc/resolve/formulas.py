@@ -104,7 +104,10 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
 
 
 def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
-    """Resolve a call or comparison, once for each combination of values of its local names."""
+    """Resolve a call or comparison; use an earlier result if its names had the same values then.
+
+    Its names are the parameters and quantified variables in it.
+    """
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:

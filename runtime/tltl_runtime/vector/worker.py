@@ -122,7 +122,7 @@ class Share:
         return [attribute(*args, **kwargs) if callable(attribute) else attribute for attribute in attributes]
 
     def set_attr(self, name: str, values: Sequence[Any]) -> tuple[()]:
-        """Set an attribute of each environment."""
+        """Set an attribute of each environment; ``values`` has a value for each of them, in order."""
         for env, value in zip(self._envs, values, strict=True):
             env.set_wrapper_attr(name, value)
         return ()

@@ -24,11 +24,15 @@ def actions(
     uri_of: Callable[[SourceFile], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
 ) -> list[types.CodeAction]:
-    """Return the fixes for diagnostics that touch a span, as quick-fix actions.
+    """Return quick-fix actions for the diagnostics and lint findings that touch a span of a document.
 
-    ``findings`` are the linter's findings in ``document``. ``encoding`` is the unit of columns.
-    ``uri_of`` returns the URI of a source. ``edit_of`` converts the edits of each URI to a
-    workspace edit.
+    The diagnostics are those of the compiler. A fix of one is offered only if the document then has
+    fewer errors. A fix of a finding must not change what comments such as ``// tltlc: allow TLT0420`` apply
+    to. Safe fixes are marked as preferred.
+
+    ``findings`` are the linter's findings in ``document``. ``encoding`` says in which units columns
+    count, such as ``utf-16``. ``uri_of`` returns the URI of a source. ``edit_of`` makes a workspace
+    edit from the text edits of each URI.
     """
     uri = uri_of(document.source)
 

@@ -1,7 +1,8 @@
-"""Cache the answers that need sympy, so that sympy is imported only for new questions.
+"""Cache the results of proofs about the ranges of predicates, because importing sympy is slow.
 
-Answers are stored in ``$TLTLC_CACHE_DIR`` (nowhere if it is set but empty) or in the system's cache
-folder. A file that cannot be read or written is ignored.
+Sympy is imported only for a proof whose result is not in the cache. The cache is a file in the
+folder ``$TLTLC_CACHE_DIR``; if this is not set, in the user's cache folder; if it is empty, there is
+no cache. A file that cannot be read or written is ignored.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Find the differences between two automata other than the traces that they accept."""
+"""Compare the settings, atoms, signals and params of two automata. Their traces are compared elsewhere."""
 
 from __future__ import annotations
 

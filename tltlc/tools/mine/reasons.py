@@ -57,7 +57,7 @@ def _separation(proposal: Proposal, *, made_up: bool) -> str:
 
 
 def _additions(clauses: Conjunction, bits: Bits) -> list[str]:
-    """Return a sentence for each clause: how many counterexamples no other clause rejects.
+    """Return a sentence for each clause: how many counterexamples only this clause rejects.
 
     The list is empty if the spec has only one clause.
     """

@@ -1,4 +1,4 @@
-"""Say which extra of tltlc to install if a package is missing that a command needs."""
+"""Say how to install a package that a command needs: by an optional part of tltlc, an extra of pip."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ _EXTRAS: Final = {
 
 @contextmanager
 def name_missing_extra(command: str) -> Iterator[None]:
-    """Raise TltlError, TLT0730, if code in this context imports a missing package of an extra.
+    """Raise TltlError, TLT0730, if the code of a ``with`` block imports a module that is not installed.
 
-    The help of the error says how to install the extra. ``command`` is the command that needs it.
+    The help of the error says which extra installs the module. ``command`` is the command that
+    needs it. Only the modules in ``_EXTRAS`` are reported so; for others, the ModuleNotFoundError
+    is raised as it is.
     """
     try:
         yield

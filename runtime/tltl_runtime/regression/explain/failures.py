@@ -100,7 +100,10 @@ def failures(
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
-    """Return the keys of the largest groups, which get texts of their own (see ``_FEW``), largest first."""
+    """Return the keys of the largest groups, which get texts of their own (see ``_FEW``), largest first.
+
+    ``episode_count`` is the number of all episodes, successes included.
+    """
     largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
     return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episode_count]
 

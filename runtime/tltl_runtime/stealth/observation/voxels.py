@@ -107,7 +107,7 @@ class Voxels:
                 yield "laser" if barrier.kind == "laser" else "barrier", barrier.box
 
     def _point_box(self, position: Point) -> Box:
-        """Return a box for a thing at ``position``, so small that it lies in one cell."""
+        """Return a box for a thing at ``position``: on the map it takes one cell, in each layer that it reaches."""
         x, y, z = position
         return Box((x, y, z), (x + 10 * _TOUCH, y + 10 * _TOUCH, z + _POINT_HEIGHT))
 

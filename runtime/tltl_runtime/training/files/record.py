@@ -151,7 +151,11 @@ def recorded_end(folder: Path) -> StopReason | None:
 
 
 def _read_record(folder: Path) -> dict[str, Any] | None:
-    """Return the content of ``record.json`` in a folder; None if the file is missing or damaged."""
+    """Return the content of ``record.json`` in a folder.
+
+    None if the file cannot be read, or if it does not say how the training ended. Its other fields
+    are not checked.
+    """
     try:
         document = fileio.load_json(folder / RECORD, fileio.limits.REPORT)
         from_json(_EndFields, {name: document[name] for name in ("end", "steps", "seconds")}, RECORD)

@@ -28,10 +28,10 @@ class Ppo:
     """The settings of rsl-rl's PPO.
 
     The default learning rate, entropy, clip, lambda and gamma are those of Gutiérrez-Sánchez et
-    al., IEEE Trans. Games 2024, section VI. As the pass rate rises from one half to 1, the inverse
-    temperature, which is a factor on the actor's logits, rises from 1 to ``sharpening``. A training
-    that begins with a policy has an untrained critic, so only the critic learns in the first
-    ``warm_up`` updates. Otherwise the policy would follow the critic's initial errors.
+    al., IEEE Trans. Games 2024, section VI. The actor's logits are multiplied by a factor. As the
+    pass rate rises from one half to 1, this factor rises from 1 to ``sharpening``. A training may
+    begin with an earlier policy, but its critic is always new. Then only the critic learns in the
+    first ``warm_up`` updates: otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float

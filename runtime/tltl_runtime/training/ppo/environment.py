@@ -141,7 +141,7 @@ class TrainingEnv(VecEnv):
         self._observation = self._tensors(self._episodes.observation)
 
     def pop_finished(self) -> tuple[EpisodeSummary, ...]:
-        """Return the episodes that ended since the last call, in the order of their ends."""
+        """Return and forget the summaries of the episodes that ended since the last call, in order of their ends."""
         summaries, self._finished = tuple(self._finished), []
         return summaries
 

@@ -1,4 +1,4 @@
-"""``tltlc watch``: report errors, likely mistakes and failing tests after each change of a file."""
+"""``tltlc watch``: report errors, likely mistakes and failing tests, now and after each change of a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TLT0420: a spec without a goal and without `judge at limit`."""
+"""TLT0420: a spec with a limit and without a goal, which does not say when it is judged."""
 
 from __future__ import annotations
 
