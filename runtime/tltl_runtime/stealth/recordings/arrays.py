@@ -2,40 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import inf
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.game.recording_archive import Array, Arrays
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
-from tltlc.api import Fspa, record
-
-AxisSize = Literal["n", "n + 1", "signals", "atoms", "enemies", "movers", "switches", "barriers"]
-Arrays = Mapping[str, NDArray[Any]]
-
-
-@record
-class Array:
-    """The format of an array in an episode's file.
-
-    It has NumPy's ``dtype``, a shape, a unit, and the range of its values from ``low`` to ``high``.
-    A shape contains numbers, and names of axes whose lengths depend on the episode. ``doc`` says
-    what the values are.
-    """
-
-    name: str
-    dtype: str
-    shape: tuple[AxisSize | int, ...]
-    unit: str
-    doc: str
-    low: float = -inf
-    high: float = inf
-
+from tltlc.api import Fspa
 
 ARRAYS: Final = (
     Array("time", "<f8", ("n + 1",), "s", "since the reset", low=0.0),
@@ -89,7 +66,7 @@ def to_arrays(episode: Episode, modes: tuple[str, ...]) -> dict[str, NDArray[Any
     }
     known = sizes(episode.level, episode.fspa, len(episode.actions))
     return {
-        array.name: np.asarray(columns[array.name], dtype=array.dtype).reshape(shape_of(array, known))
+        array.name: np.asarray(columns[array.name], dtype=array.dtype).reshape(array.actual_shape(known))
         for array in ARRAYS
     }
 
@@ -121,7 +98,7 @@ def snapshots(arrays: Arrays, modes: tuple[str, ...]) -> tuple[Snapshot, ...]:
     return tuple(Snapshot(time, PlayerState(*state), *remainder) for time, state, remainder in rows)
 
 
-def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[AxisSize, int]:
+def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[str, int]:
     """Return the lengths of the arrays' axes, by name, for an episode of ``count`` time steps."""
     return {
         "n": count,
@@ -133,11 +110,6 @@ def sizes(level: StealthLevel, fspa: Fspa, count: int) -> dict[AxisSize, int]:
         "switches": len(level.switches),
         "barriers": len(level.barriers),
     }
-
-
-def shape_of(array: Array, known: Mapping[AxisSize, int]) -> tuple[int, ...]:
-    """Return the shape of an array, with the lengths in ``known`` in place of the axes' names."""
-    return tuple(size if isinstance(size, int) else known[size] for size in array.shape)
 
 
 def _points(points: list[list[float]]) -> tuple[Point, ...]:

@@ -306,7 +306,7 @@ def test_files_that_are_not_episodes_are_rejected(episode: Episode, make: Callab
 
 
 def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.stealth.recordings.file.MAX_BYTES", 1 << 20)
+    monkeypatch.setattr("tltl_runtime.game.recording_archive.MAX_BYTES", 1 << 20)
     assert "it contains more than 1 MiB" in error_text(bomb(4 << 20))
     assert "it is larger than 1 MiB" in error_text(bytes(2 << 20))
 
