@@ -19,23 +19,22 @@ from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltlc.api import Fspa, RewardOptions, TltlError
+from tltlc.api import EMPTY, Fspa, RewardOptions, TltlError
 
 
 class Game(ABC, Generic[LevelT, EpisodeT]):
     """A game with levels of type ``LevelT`` and recorded episodes of type ``EpisodeT``.
 
-    An instance has no state, so that its methods can be sent to other processes.
+    Methods that are not abstract are what a game may offer besides; their defaults say what a game
+    without it has. An instance has no state, so that its methods can be sent to other processes.
     """
 
-    choices: Mapping[str, tuple[str, ...]]
+    choices: Mapping[str, tuple[str, ...]] = EMPTY
     """The branches of an action, each with the names of its choices.
 
-    An action makes one choice in each branch.
+    An action makes one choice in each branch. By default empty: the actions of the game have no
+    names.
     """
-
-    clock_s: float
-    """The seconds of game time that a decision takes."""
 
     level_files: LevelFiles[LevelT]
     """Finds and reads the files of levels."""
@@ -70,9 +69,10 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def level_hash(self, level: LevelT) -> str:
         """Return the SHA-256, in hexadecimal, of everything in a level that can change an episode."""
 
-    @abstractmethod
     def params(self, level: LevelT) -> dict[str, float]:
-        """Return the values that a level gives to the params of specs, in SI units."""
+        """Return the values that a level gives to the params of specs, in SI units; by default none."""
+        del level
+        return {}
 
     @abstractmethod
     def check_fit(self, level: LevelT, fspa: Fspa, spec: str | Path | Fspa) -> None:
@@ -81,33 +81,49 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
         """
 
-    @abstractmethod
     def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
-        """Yield what ``sensors`` names but the level does not have, for example "the entity `exit`"."""
+        """Yield what ``sensors`` names but the level does not have, for example "the entity `exit`".
 
-    @abstractmethod
+        By default nothing: the level is not asked.
+        """
+        del level, sensors
+        return iter(())
+
     def landmarks(self, level: LevelT) -> dict[str, Point]:
-        """Return the positions of the entities that do not move, by name."""
+        """Return the positions of the entities that do not move, by name; by default none are known."""
+        del level
+        return {}
 
-    @abstractmethod
     def solids(self, level: LevelT) -> dict[str, Box]:
-        """Return the boxes that stop a player and never open, by name."""
+        """Return the boxes that stop a player and never open, by name; by default none are known."""
+        del level
+        return {}
 
-    @abstractmethod
     def barriers(self, level: LevelT) -> dict[str, Box]:
-        """Return the boxes that can open, by name."""
+        """Return the boxes that can open, by name; by default none are known."""
+        del level
+        return {}
 
-    @abstractmethod
     def unreachable_entities(self, level: LevelT, fspa: Fspa) -> list[UnreachableEntity]:
-        """Return each entity of a spec that no player can reach; none if the level is too large to search."""
+        """Return each entity of a spec that no player can reach; none if the level is too large to search.
 
-    @abstractmethod
+        By default none: the game does not search its levels.
+        """
+        del level, fspa
+        return []
+
     def is_infeasible(self, level: LevelT, fspa: Fspa) -> bool:
-        """Return whether no player can meet the spec; False if that is unknown."""
+        """Return whether no player can meet the spec; False, also by default, if that is unknown."""
+        del level, fspa
+        return False
 
-    @abstractmethod
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return the error to report if the level has caused ``error`` in play, else None."""
+        """Return the error to report if the level has caused ``error`` in play, else None.
+
+        By default None: no error of the game is its level's fault.
+        """
+        del error
+        return None
 
     # --- episodes ----------------------------------------------------------------------------------
 
@@ -168,13 +184,18 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def cause(self, episode: EpisodeT) -> Cause:
         """Return the reason why an episode ended."""
 
-    @abstractmethod
     def observers(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
         """Return the enemies that saw the player between two times, in the order of the level.
 
-        The times are in seconds since the reset.
+        The times are in seconds since the reset. By default none: the game has no enemies that see.
         """
+        del episode, begin_s, end_s
+        return ()
 
-    @abstractmethod
     def shut_barriers(self, episode: EpisodeT) -> tuple[str, ...]:
-        """Return the barriers, in the level's order, that were shut at the end and that players cannot pass."""
+        """Return the barriers, in the level's order, that were shut at the end and that players cannot pass.
+
+        By default none: the game has no barriers.
+        """
+        del episode
+        return ()

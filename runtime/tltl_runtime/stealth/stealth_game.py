@@ -36,7 +36,6 @@ from tltl_runtime.stealth.recordings.episode_summary import summary_of
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
 from tltl_runtime.stealth.snapshot import CHOICES
 from tltl_runtime.stealth.world.physics_errors import player_fault
-from tltl_runtime.stealth.world.player import DECISION
 from tltlc.api import Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
@@ -82,7 +81,6 @@ class StealthGame(Game[StealthLevel, Episode]):
     """The stealth game, with the interface that all games of this package have."""
 
     choices = CHOICES
-    clock_s = DECISION
     level_files = StealthLevelFiles()
     modules = (__name__, "tltl_runtime.stealth.episode_recorder")
 

@@ -49,3 +49,10 @@ def test_links_play_successes_from_the_start() -> None:
 
 def test_a_finding_without_recordings_has_no_links() -> None:
     assert episode_links(Finding("fails", (7,)), failed(), "a") is None
+
+
+def test_a_link_begins_at_the_step_nearest_to_four_seconds_before_the_end() -> None:
+    episode = failed()[0]
+    links = episode_links(Finding("fails", (0,)), {0: episode}, "a")
+    before_end = round(4.0 / 0.15)
+    assert links is not None and f'href="#a/0/{len(episode.actions) - before_end}"' in links

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
@@ -68,6 +69,10 @@ def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) 
 
 
 def _link(index: int, episode: RecordedEpisode, slug: str) -> _Link:
-    before_end = round(_BEFORE_END_S / episode.level.game.clock_s)
-    step = 0 if episode.success else max(0, len(episode.actions) - before_end)
+    step = 0 if episode.success else _nearest_step(episode, float(episode.times[-1]) - _BEFORE_END_S)
     return _Link(str(index), episode_link(slug, index, step), f"play {'the end of ' * (step > 0)}episode {index}")
+
+
+def _nearest_step(episode: RecordedEpisode, time: float) -> int:
+    """Return the number of the step, from 0 at the reset, whose time is nearest to ``time``, in seconds."""
+    return int(np.abs(episode.times - time).argmin())
