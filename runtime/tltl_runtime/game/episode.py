@@ -43,9 +43,9 @@ class RecordedEpisode(Protocol):
 
     @property
     def actions(self) -> NDArray[Any]:
-        """The actions, (n, branches): the index, from 0, of the choice in each branch.
+        """The actions, (n, width), as numbers.
 
-        ``Game.choices`` explains branches and choices.
+        In a game with ``Game.choices``, they are the index, from 0, of the choice in each branch.
         """
 
     @property
@@ -53,8 +53,11 @@ class RecordedEpisode(Protocol):
         """The seconds since the reset, (n + 1,): at the reset and after each decision."""
 
     @property
-    def positions(self) -> NDArray[np.float64]:
-        """The positions of the player, (n + 1, 3), in metres: at the reset and after each decision."""
+    def positions(self) -> NDArray[np.float64] | None:
+        """The positions of the player, (n + 1, 3), in metres: at the reset and after each decision.
+
+        None if the game does not say where the player is.
+        """
 
     @property
     def signals(self) -> NDArray[np.float64]:
@@ -98,14 +101,15 @@ class Cause:
     ``kind`` says how it ended, and ``text`` explains the reason to people. ``by`` depends on the
     kind: the enemies and lasers that killed the player, those with the most damage first; the atoms
     that violated the spec; or the entities that cannot be reached. ``time`` is in seconds since the
-    reset. ``place`` is the position of the player's feet at that time. ``broke`` names the atoms
-    that violated the spec, whatever the ``kind``. It is empty if the spec was not violated.
+    reset. ``place`` is the position of the player's feet at that time; None if the game does not say
+    it. ``broke`` names the atoms that violated the spec, whatever the ``kind``. It is empty if the
+    spec was not violated.
     """
 
     kind: EndKind
     by: tuple[str, ...]
     time: float
-    place: Point
+    place: Point | None
     text: str
     broke: tuple[str, ...] = ()
 
@@ -123,6 +127,8 @@ class Trajectory:
     end: End
 
 
-def trajectory(episode: RecordedEpisode) -> Trajectory:
-    """Return the trajectory of an episode."""
+def trajectory(episode: RecordedEpisode) -> Trajectory | None:
+    """Return the trajectory of an episode; None if the game does not say where the player is."""
+    if episode.positions is None:
+        return None
     return Trajectory(episode.positions[:, :2].astype(np.float32), episode.states, episode.end)

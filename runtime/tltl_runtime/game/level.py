@@ -65,8 +65,8 @@ class Level(Protocol):
         """The name and the SHA-256, in hexadecimal, of each file that the level was read from."""
 
     @property
-    def bounds(self) -> Box:
-        """The box that encloses everything in the level."""
+    def bounds(self) -> Box | None:
+        """The box that encloses everything in the level; None if the game does not say."""
 
     @property
     def regions(self) -> tuple[Region, ...]:

@@ -7,6 +7,9 @@ from typing import Any, Generic, TypeVar
 import gymnasium
 
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.spec.episode_summary import End, settled_end
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltlc.api import Step
 
 EpisodeT = TypeVar("EpisodeT", bound=RecordedEpisode)
 
@@ -22,3 +25,20 @@ class EpisodeRecorder(gymnasium.Wrapper[Any, Any, Any, Any], Generic[EpisodeT]):
     def episode(self) -> EpisodeT:
         """A copy of the episode so far; raises RuntimeError before the first reset."""
         raise NotImplementedError
+
+
+def judging_wrapper(env: gymnasium.Env[Any, Any]) -> TltlEnv:
+    """Return the outermost :class:`TltlEnv` in ``env``; raises TypeError if there is none."""
+    layer: gymnasium.Env[Any, Any] = env
+    while not isinstance(layer, TltlEnv):
+        if not isinstance(layer, gymnasium.Wrapper):
+            raise TypeError("a recording needs a spec that judges the episode: wrap the game in TltlEnv first")
+        layer = layer.env
+    return layer
+
+
+def recorded_end(last: Step | None, success: bool) -> End:
+    """Return how an episode ended; ``last`` is its last step, or None if it has no steps."""
+    if last is None or not last.done:
+        return "stopped"
+    return settled_end(success, last.verdict)

@@ -10,8 +10,7 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
-from tltl_runtime.game.recorder import EpisodeRecorder
-from tltl_runtime.spec.episode_summary import End, settled_end
+from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.level import StealthLevel
@@ -41,7 +40,7 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
         gymnasium.Wrapper.__init__(self, env)
         self._game_env = _unwrapped_game(env)
         self._game = self._game_env.game
-        self._judge = _judge(env)
+        self._judge = judging_wrapper(env)
         self._player = player
         self._folder = None if folder is None else writable_folder(Path(folder))
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
@@ -135,17 +134,10 @@ class _EpisodeRows:
             rewards=np.array([step.reward for step in steps], dtype=np.float64),
             verdict=steps[-1].verdict if steps else fspa.states[0].verdict,
             success=self.success,
-            end=_end(steps[-1] if steps else None, self.success),
+            end=recorded_end(steps[-1] if steps else None, self.success),
             reward=judge.task.reward,
             versions=versions(),
         )
-
-
-def _end(last: Step | None, success: bool) -> End:
-    """Return how an episode ended; ``last`` is its last step, or None if it has no steps."""
-    if last is None or not last.done:
-        return "stopped"
-    return settled_end(success, last.verdict)
 
 
 def _unwrapped_game(env: gymnasium.Env[Any, Any]) -> GameEnv:
@@ -153,16 +145,6 @@ def _unwrapped_game(env: gymnasium.Env[Any, Any]) -> GameEnv:
     if not isinstance(inner, GameEnv):
         raise TypeError(f"only the stealth game can be recorded, not {type(inner).__name__}: make_env(LEVEL) makes one")
     return inner
-
-
-def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
-    """Return the outermost :class:`TltlEnv` in ``env``; raises TypeError if there is none."""
-    layer: gymnasium.Env[Any, Any] = env
-    while not isinstance(layer, TltlEnv):
-        if not isinstance(layer, gymnasium.Wrapper):
-            raise TypeError("a recording needs a spec that judges the episode: wrap the game in TltlEnv first")
-        layer = layer.env
-    return layer
 
 
 def _write(folder: Path, episode: Episode) -> None:

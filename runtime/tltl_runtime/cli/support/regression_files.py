@@ -18,7 +18,7 @@ from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
-from tltl_runtime.regression.report.trace_curves import example_curves
+from tltl_runtime.regression.report.trace_curves import episode_curves, example_curves
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
 from tltl_runtime.regression.suite_run import CASES, FinishedCase, case_folder
 from tltl_runtime.regression.verdict.baseline import Reference
@@ -160,19 +160,21 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
             report=case.report,
             fspa=case.traces.fspa,
             before=case.traces.before.episodes,
-            traces=example_curves(case.traces, case.report.explanation),
+            curves=example_curves(case.traces, case.report.explanation),
         )
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
-    episodes = _episodes(case.report, case.prepared.level.game, case_folder(suite, case.report.name, folder / CASES))
+    level = case.prepared.level
+    episodes = _episodes(case.report, level.game, case_folder(suite, case.report.name, folder / CASES))
     return ReportedCase(
         report=case.report,
-        level=case.prepared.level,
+        level=level,
         fspa=case.prepared.setup.fspa,
         episodes=episodes,
         before=case.reference.episodes,
         baseline_level=_baseline_level(case.prepared, case.reference),
         curve=_curve(case, folder),
+        curves={index: episode_curves(index, episodes[index]) for index in episodes} if level.bounds is None else {},
     )
 
 

@@ -21,7 +21,7 @@ _SEEN_WITHIN_S: Final = 3.0
 class Arrival:
     """An entry into a state of the automaton, at a step.
 
-    ``place`` is the position of the player's feet at that step, in metres; None for a recorded trace.
+    ``place`` is the position of the player's feet at that step, in metres; None if it is not known.
     """
 
     state: int
@@ -37,7 +37,7 @@ class NearestMiss:
     to that state do not count.
 
     ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges, and
-    ``place`` is where the player was then; None for a recorded trace. ``atom`` is the atom that
+    ``place`` is where the player was then; None if it is not known. ``atom`` is the atom that
     limited the robustness. It had to be true if ``wanted`` is true, else false.
 
     If the atom had to be true, and approaching an entity makes it true, ``target`` is that entity.
@@ -103,9 +103,9 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
         summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
         cause=cause.kind,
         by=cause.by,
-        place=_rounded(cause.place),
+        place=None if cause.place is None else _rounded(cause.place),
         seen_by=() if summary.success else game.observers(episode, cause.time - _SEEN_WITHIN_S, cause.time),
-        arrivals=_arrivals(episode, positions),
+        arrivals=arrivals_of(episode),
         nearest=None if summary.success else _nearest_miss(episode, summary.unmet, positions),
         way=simplified_trajectory(episode),
         broke=cause.broke,
@@ -114,8 +114,9 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
     )
 
 
-def _arrivals(episode: RecordedEpisode, positions: Sequence[Point]) -> tuple[Arrival, ...]:
-    states = episode.states.tolist()
+def arrivals_of(episode: RecordedEpisode) -> tuple[Arrival, ...]:
+    """Return all entries into states of a recorded episode, in order."""
+    states, positions = episode.states.tolist(), _positions(episode)
     steps = [step for step in range(len(states)) if step == 0 or states[step] != states[step - 1]]
     return tuple(Arrival(states[step], step, positions[step]) for step in steps)
 
@@ -133,7 +134,7 @@ def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> 
     return any(names and names <= {*broke} for names in missing)
 
 
-def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point]) -> NearestMiss | None:
+def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point | None]) -> NearestMiss | None:
     """Return how near an episode came to a step towards acceptance in its last stay in ``state``.
 
     None if no edge leads from the state towards acceptance, or if the episode made no step in it.
@@ -180,8 +181,10 @@ def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int
     return target, round(min(distances), 2)
 
 
-def _positions(episode: RecordedEpisode) -> list[Point]:
-    """Return the positions of the player's feet, in metres, rounded to centimetres."""
+def _positions(episode: RecordedEpisode) -> list[Point | None]:
+    """Return the positions of the player's feet, in metres, rounded to centimetres; None where they are not known."""
+    if episode.positions is None:
+        return [None] * len(episode.states)
     return [_rounded((x, y, z)) for x, y, z in episode.positions.tolist()]
 
 

@@ -37,7 +37,7 @@ class FailureEnd:
 
     ``cause`` and ``by`` are as in
     :class:`~tltl_runtime.regression.explain.explained_episode.ExplainedEpisode`. ``where`` is a phrase,
-    for example ``in the corridor``; it is empty for a recorded trace.
+    for example ``in the corridor``; it is empty if the place is not known.
     """
 
     cause: EndKind
@@ -187,23 +187,24 @@ def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequ
     """
     if level is None:
         return Phrase(trace_end_text(fspa, end.cause, end.by, episodes))
+    place = phrase(" ", end.where) if end.where.text else _NOTHING
     observers, adverb = _majority([[name for name in episode.seen_by if name not in end.by] for episode in episodes])
     saw = phrase(f", {adverb}seen by ", things_phrase(observers)) if observers else _NOTHING
     if end.cause == "killed":
         by = phrase(" by ", things_phrase(end.by)) if end.by else _NOTHING
         atoms, adverb = _majority([episode.broke for episode in episodes])
         broke = f", {adverb}breaking {quoted_names(atoms)}" if atoms else ""
-        return phrase("dies ", end.where, by, broke, saw, "," if atoms or observers else "")
+        return phrase("dies", place, by, broke, saw, "," if atoms or observers else "")
     if end.cause == "violated":
         atom_names = f" ({quoted_names(end.by)})"
-        return phrase("breaks the spec ", end.where, atom_names, saw, "," if observers else "")
+        return phrase("breaks the spec", place, atom_names, saw, "," if observers else "")
     positions = [(episode.place, episode.shut) for episode in episodes if episode.place is not None]
     obstacles = blocking_solids(level, positions)
     mostly = (
         "" if all(set(obstacles) <= set(blocking_solids(level, [position])) for position in positions) else "mostly "
     )
     blocked = phrase(f", {mostly}at ", things_phrase(obstacles), ",") if obstacles else _NOTHING
-    return phrase("runs out of time ", end.where, blocked)
+    return phrase("runs out of time", place, blocked)
 
 
 def _majority(names_by_episode: Sequence[Sequence[str]]) -> tuple[list[str], str]:

@@ -30,8 +30,11 @@ It is less than the distance of a player's centre from a wall, so that no trajec
 def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
     """Return few points that approximate an episode's trajectory to within 0.2 m.
 
-    There is a point at each change of the automaton's state.
+    There is a point at each change of the automaton's state. There are no points if the game does not
+    say where the player is.
     """
+    if episode.positions is None:
+        return ()
     times, places = episode.times, episode.positions[:, :2]
     changes = (np.flatnonzero(np.diff(episode.states)) + 1).tolist()
     rows = {0, *changes, len(times) - 1}

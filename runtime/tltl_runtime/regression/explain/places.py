@@ -27,13 +27,16 @@ _TOUCHING_M: Final = 0.7
 def place_phrase(level: Level, point: Point) -> Phrase:
     """Describe where a point is: by its region, else by an entity near it, else by a direction.
 
-    Examples: ``in the corridor``, ``near `s2```, ``in the north-east``.
+    Examples: ``in the corridor``, ``near `s2```, ``in the north-east``. The phrase is empty if the level
+    has none of these.
     """
     for region in level.regions:
         if _distance(point, region.box) == 0.0:
             return Phrase(f"in the {region_text(region.name)}", Mentions(regions=(region.name,)))
     entity = nearest_entity(level, point)
-    return phrase("near ", things_phrase([entity])) if entity else Phrase(f"in the {_quarter(level.bounds, point)}")
+    if entity:
+        return phrase("near ", things_phrase([entity]))
+    return Phrase("" if level.bounds is None else f"in the {_quarter(level.bounds, point)}")
 
 
 def nearest_entity(level: Level, point: Point) -> str | None:

@@ -1,4 +1,4 @@
-"""The values of atoms over the samples of a recorded trace, read again for a picture."""
+"""The values of atoms over the steps of a recorded trace, read again for a picture, or of a recorded episode."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Final
 
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.explain.explained_episode import Arrival
+from tltl_runtime.regression.explain.explained_episode import Arrival, arrivals_of
 from tltl_runtime.regression.explain.trace_ends import trace_end_text
 from tltl_runtime.regression.verdict.judged_traces import JudgedTraces
 from tltlc.api import Fspa, TltlError, fileio, monitors, record, traces
@@ -19,10 +20,10 @@ _EXAMPLES: Final = 3
 
 @record
 class TraceCurves:
-    """A recorded trace as it is drawn.
+    """A recorded trace or episode as it is drawn.
 
     ``atoms`` has the values of all atoms, in [-1, 1], for each of the ``steps`` samples. ``arrivals``
-    are the entries into states of the automaton. ``ended`` says in words how the trace ended.
+    are the entries into states of the automaton. ``ended`` says in words how it ended.
     """
 
     name: str
@@ -44,6 +45,16 @@ def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[in
     accepted = [trace.summary.index for trace in judged.now.episodes if trace.summary.success]
     wanted = {*(index for finding in findings for index in finding.episodes[:_EXAMPLES]), *accepted[:1]}
     return {index: curves for index in sorted(wanted) for curves in _curves(judged, index)}
+
+
+def episode_curves(index: int, episode: RecordedEpisode) -> TraceCurves:
+    """Return the curves of a recorded episode; ``index`` is its number."""
+    return TraceCurves(
+        name=f"episode {index}",
+        ended=episode.level.game.cause(episode).text,
+        atoms=tuple(map(tuple, episode.atoms.tolist())),
+        arrivals=arrivals_of(episode),
+    )
 
 
 def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:

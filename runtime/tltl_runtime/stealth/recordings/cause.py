@@ -8,6 +8,7 @@ from math import hypot, isfinite
 from typing import Final
 
 from tltl_runtime.game.episode import Cause, EndKind
+from tltl_runtime.game.violation import broken_atoms
 from tltl_runtime.spec.goals import next_goals
 from tltl_runtime.stealth.expert.routes import routes_of, shut_barriers
 from tltl_runtime.stealth.level import StealthLevel
@@ -61,19 +62,10 @@ def _violation_cause(episode: Episode) -> Cause:
 def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
     """Return the atoms that caused a violation, with their truth values.
 
-    The atoms form a prime implicant of the guard of the transition into the violation, one that was
-    true at the last step. If several implicants were true and the player died, one with an atom
-    that reads the health is preferred.
+    If the player died, atoms that read the health are preferred.
     """
-    fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
-    holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
-    primes = [
-        prime for edge in fspa.edges if (edge.source, edge.target) == last_transition for prime in edge.guard.primes
-    ]
-    true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
-    if episode.snapshots[-1].health <= 0.0:
-        true_primes.sort(key=lambda prime: not any(_reads_health(fspa.atoms[atom]) for atom, _ in prime))
-    return [(fspa.atoms[atom].name, expected) for atom, expected in (true_primes[0] if true_primes else ())]
+    is_dead = episode.snapshots[-1].health <= 0.0
+    return broken_atoms(episode, _reads_health if is_dead else lambda atom: False)
 
 
 def _reads_health(atom: Atom) -> bool:

@@ -20,12 +20,13 @@ At this resolution, most differences between successive points are encoded as a 
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
-    """Return the data for the map and the automaton of a case; None if it cannot be played.
+    """Return the data for the map and the automaton of a case; None if it has no map.
 
     ``slug`` is the case's short name in addresses within the page.
     """
     level, fspa = case.level, case.fspa
-    if level is None or fspa is None:
+    bounds = None if level is None else level.bounds
+    if level is None or fspa is None or bounds is None:
         return None
     # Drawing a level needs the packages of the game; a page of traces does not.
     from tltl_runtime.regression.report.page.stealth.level_map import map_data
@@ -35,8 +36,8 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
         "slug": slug,
         "map": map_data(level),
         "states": [label_text(fspa, state.id) for state in fspa.states],
-        "now": _episodes_data(level.bounds, case.report.episodes),
-        "before": _episodes_data((case.baseline_level or level).bounds, case.before),
+        "now": _episodes_data(bounds, case.report.episodes),
+        "before": _episodes_data((case.baseline_level or level).bounds or bounds, case.before),
         "episodes": [recording_data(index, case.episodes[index]) for index in sorted(case.episodes)],
     }
 

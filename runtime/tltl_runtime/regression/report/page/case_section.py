@@ -36,17 +36,18 @@ class _Drawings:
     """The pictures and tables in the section of a case with an automaton.
 
     ``automaton`` is None if its layout failed; ``notes`` say what it does not show. ``maps``
-    are None without a level. ``player`` is the panel that plays recorded episodes, and ``traces`` are
-    the pictures of recorded traces; one of them is None. ``curves`` are the progress of the recorded episodes, or
-    None without recordings. ``distribution`` is the distribution of progress over all episodes.
-    ``table`` says how many episodes visited each state and failed in it.
+    are None if there is no map. ``player`` is the panel that plays recorded episodes on the map, and
+    ``charts`` are pictures of recorded traces, or of recorded episodes without a map; one of them is
+    None. ``curves`` are the progress of the recorded episodes, or None without recordings.
+    ``distribution`` is the distribution of progress over all episodes. ``table`` says how many
+    episodes visited each state and failed in it.
     """
 
     automaton: Markup | None
     notes: tuple[str, ...]
     maps: Markup | None
     player: Markup | None
-    traces: Markup | None
+    charts: Markup | None
     curves: Markup | None
     distribution: Markup
     table: Markup
@@ -70,6 +71,11 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         drawings=_drawings(case, slug, automaton),
         noun="traces" if case.report.traces else "episodes",
     )
+
+
+def has_map(case: ReportedCase) -> bool:
+    """Whether the page shows a map of a case: it has a level, whose game says where things are."""
+    return case.level is not None and case.level.bounds is not None
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
@@ -104,13 +110,15 @@ def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:
-        links = episode_links(finding, case.episodes, slug) or trace_links(finding, case.traces, slug)
+        links = (episode_links(finding, case.episodes, slug) if has_map(case) else None) or trace_links(
+            finding, case.curves, slug
+        )
         yield _Reason(finding.text, links)
     yield from map(_Reason, report.edits)
 
 
 def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> _Drawings | None:
-    level, fspa = case.level, case.fspa
+    fspa, level = case.fspa, case.level if has_map(case) else None
     if fspa is None or automaton is None:
         return None
     noun = "traces" if case.report.traces else "episodes"
@@ -120,7 +128,7 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
         notes=automaton.notes,
         maps=None if level is None else case_maps(case, level),
         player=None if level is None else player_panel(fspa, case.episodes),
-        traces=trace_charts(fspa, case.traces, slug) if case.traces else None,
+        charts=trace_charts(fspa, case.curves, slug) if case.curves else None,
         curves=progress_curves(case.episodes) if case.episodes else None,
         distribution=progress_distribution(case.report.episodes, case.before),
         table=counts_table(fspa, now, before),

@@ -22,8 +22,9 @@ class ReportedCase:
     that the baseline was recorded on, or None if it is unknown. ``curve`` is the plot of the
     retraining as a PNG, or empty without a retraining or its plot.
 
-    A case of recorded traces has no level. ``traces`` are examples of its traces by index; they are
-    empty for other cases.
+    A case of recorded traces has no level. ``curves`` are those of examples of its traces by index, or
+    of the recorded ``episodes`` if the level's game says nothing about places; they are empty for
+    other cases.
     """
 
     report: CaseReport
@@ -33,7 +34,7 @@ class ReportedCase:
     before: tuple[ExplainedEpisode, ...] = ()
     baseline_level: Level | None = None
     curve: bytes = b""
-    traces: Mapping[int, TraceCurves] = EMPTY
+    curves: Mapping[int, TraceCurves] = EMPTY
 
 
 @record

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from tltl_runtime.regression.report.page.automaton import AutomatonPicture, draw_automaton
 from tltl_runtime.regression.report.page.case_data import case_data
-from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
+from tltl_runtime.regression.report.page.case_section import case_section, has_map, not_run_section
 from tltl_runtime.regression.report.page.contents import SuiteReport
 from tltl_runtime.regression.report.page.markup import script_json
 from tltl_runtime.regression.report.page.render import render
@@ -36,7 +36,7 @@ def html_report(suite: SuiteReport) -> str:
     pictures: dict[Fspa | None, AutomatonPicture] = {
         fspa: draw_automaton(fspa) for fspa in automata if fspa is not None
     }
-    has_maps = any(case.level is not None for case in suite.cases)
+    has_maps = any(map(has_map, suite.cases))
     script = "\n".join(_file_text(name) for name in _SCRIPTS)
     return render(
         "report.html",

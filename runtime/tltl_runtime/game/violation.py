@@ -1,0 +1,27 @@
+"""Find the atoms that broke a spec."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tltl_runtime.game.episode import RecordedEpisode
+from tltlc.api import Atom
+
+
+def broken_atoms(
+    episode: RecordedEpisode, preferred: Callable[[Atom], bool] = lambda atom: False
+) -> list[tuple[str, bool]]:
+    """Return the atoms that caused a violation, each with whether it was true.
+
+    ``episode`` ended by a violation. The atoms form a prime implicant of the guard of the transition
+    into the violation, one that was true at the last step. If several implicants were true, one with a
+    ``preferred`` atom is taken. The list is empty if none was true.
+    """
+    fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
+    holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
+    primes = [
+        prime for edge in fspa.edges if (edge.source, edge.target) == last_transition for prime in edge.guard.primes
+    ]
+    true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
+    true_primes.sort(key=lambda prime: not any(preferred(fspa.atoms[atom]) for atom, _ in prime))
+    return [(fspa.atoms[atom].name, expected) for atom, expected in (true_primes[0] if true_primes else ())]
