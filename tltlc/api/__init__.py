@@ -10,7 +10,7 @@ answers a question:
 - ``fileio``: how do I read and write files so that every failure is a diagnostic?
 - ``monitors``: what are the values of the atoms, the progress and the reward of a step?
 - ``ranges``: which values can an expression take?
-- ``specs``: what types do signals have, and where is the standard library?
+- ``specs``: what types do signals have, how is a clock read, and where is the standard library?
 - ``syntax``: what does a ``.tltl`` file declare?
 - ``traces``: is a recorded trace accepted, and why not?
 

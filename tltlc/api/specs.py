@@ -1,11 +1,12 @@
-"""What types do signals have, and where is the standard library?
+"""What types do signals have, how is a clock read, and where is the standard library?
 
-``TYPES`` has the dimension of each type. ``full_name`` returns the name of a signal or predicate
-with its arguments, as it is written in artefacts. ``standard_library`` returns the folder of the
-library.
+``TYPES`` has the dimension of each type. ``clock_from_text`` reads a clock such as ``20 Hz``.
+``full_name`` returns the name of a signal or predicate with its arguments, as it is written in
+artefacts. ``standard_library`` returns the folder of the library.
 """
 
 from tltlc.core.names import full_name
+from tltlc.resolve.clock import clock_from_text
 from tltlc.resolve.imports import standard_library
 from tltlc.resolve.spec import ValueType
 from tltlc.resolve.units import TYPES
@@ -13,6 +14,7 @@ from tltlc.resolve.units import TYPES
 __all__ = [
     "TYPES",
     "ValueType",
+    "clock_from_text",
     "full_name",
     "standard_library",
 ]

@@ -88,13 +88,19 @@ twice counts twice.
 """
 
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
-"""A TOML file: a level, an asset, an overlay, a suite, settings, or ``tltl.toml``."""
+"""A TOML file: a level, an asset, an overlay, a game file, a suite, settings, or ``tltl.toml``."""
 
 LEVEL: Final = Limit(size=1 << 20, values=4_000)
 """A level; ``values`` counts its entities, steps of stairs, and points of paths and routes."""
 
 SUITE: Final = Limit(size=1 << 20, values=2_000)
 """A suite; ``values`` counts cases. Each case names files to read."""
+
+GAME_FILE: Final = Limit(size=1 << 20, values=2_000)
+"""A game file; ``values`` counts the variants of all scenes, and the files that they name."""
+
+SCENE_FILE: Final = Limit(size=1 << 30)
+"""A file that a scene of a game depends on, and a Python file of the game. It is only hashed."""
 
 OVERLAYS: Final = 100
 """The most overlays of one variant of a level."""

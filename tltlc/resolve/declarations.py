@@ -9,6 +9,7 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
 from tltlc.resolve import units
+from tltlc.resolve.clock import LONGEST_S, SHORTEST_S, period_s
 from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
 from tltlc.resolve.options import ResolveOptions
@@ -134,15 +135,11 @@ def _conflict_error(kind: str, name: str, new: Label, old: Label) -> ResolutionE
 
 def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     source, value = env.scope.source, declaration.value
-    in_si = units.in_si(value.value, value.unit)
-    if in_si is not None and value.unit == "Hz" and value.value > 0:
-        period = 1.0 / in_si[0]
-    elif in_si is not None and in_si[1] == units.TYPES["time"] and value.value > 0:
-        period = in_si[0]
-    else:
+    period = period_s(value.value, value.unit)
+    if period is None:
         title = "a clock must be a frequency or a period above zero"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
-    if not 1e-9 <= period <= 1e9:
+    if not SHORTEST_S <= period <= LONGEST_S:
         title = "the time from one step to the next must be between 1e-9 and 1e9 seconds"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     here = Label(source, declaration.span)

@@ -1,0 +1,318 @@
+"""Game files: TOML files that describe a game and its scenes.
+
+``docs/games.md`` describes every key. Reading a game file imports and runs nothing that it names.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.support.checked_table import CheckedTable, wrong_value
+from tltl_runtime.support.path_text import path_text
+from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
+from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, specs
+
+SUFFIX: Final = ".game.toml"
+FIRST_VARIANT: Final = "v0"
+"""The variant of a scene as it stands in its table."""
+
+_HELP: Final = 'write values as in `clock = "10 Hz"` and `options = { size = 6 }`'
+_MODULE: Final = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z", re.ASCII)
+_GAME_KEYS: Final = ("gymnasium", "python", "import", "signals", "clock", "observation")
+_SCENE_KEYS: Final = ("name", "options", "files", "spec", "variants")
+_IN_OTHER_PROCESSES: Final = ("process", "protocol", "connect", "start_s", "step_s")
+
+
+@record
+class FunctionName:
+    """A Python function: ``function`` in ``module``."""
+
+    module: str
+    function: str
+
+    @property
+    def text(self) -> str:
+        """The function as game files name it: ``MODULE:FUNCTION``."""
+        return f"{self.module}:{self.function}"
+
+
+@record
+class SceneVariant:
+    """A variant of a scene.
+
+    ``options`` are the keyword arguments with which the environment is made. ``files`` are the files
+    that the scene depends on. ``spec`` is the spec that the scene is made for; None if there is
+    none. ``label`` is the place of the options in the game file, or else that of the scene.
+    """
+
+    options: Mapping[str, Any]
+    files: tuple[Path, ...]
+    spec: LevelSpec | None
+    label: Label
+
+
+@record
+class Scene:
+    """A scene of a game, with its variants by name; the first one is ``v0``."""
+
+    name: str
+    variants: Mapping[str, SceneVariant]
+
+
+@record
+class GameFile:
+    """A game, as its file at ``path`` describes it.
+
+    The environment is the one with the id ``gymnasium``, or the result of the function ``python``;
+    the other one is None. ``modules`` are imported before, so that they register the id.
+    ``signals`` is a function from an environment to its signals; None if the environment has a
+    method ``tltl_signals``. ``clock_s`` are the seconds of a step; None if the file does not say.
+    ``observation`` are the keys of a Dict observation that agents see; empty for all. ``labels`` are
+    the places of the keys of ``[game]``.
+    """
+
+    path: Path
+    gymnasium: str | None
+    python: FunctionName | None
+    modules: tuple[str, ...]
+    signals: FunctionName | None
+    clock_s: float | None
+    observation: tuple[str, ...]
+    scenes: tuple[Scene, ...]
+    labels: Mapping[str, Label]
+
+    @property
+    def name(self) -> str:
+        """The name of the game: the name of its file without ``.game.toml``."""
+        return self.path.name.removesuffix(SUFFIX)
+
+    @property
+    def folder(self) -> Path:
+        """The folder of the file: paths in the file are relative to it, and modules are searched in it first."""
+        return self.path.parent
+
+
+@fileio.resource_limits()
+def read_game_file(path: Path, *, allow_outside: bool = False) -> GameFile:
+    """Read a game file. Paths in it are relative to its folder.
+
+    Unless ``allow_outside``, they must lead to files in this folder, or in a folder inside it.
+
+    Raises:
+        TltlError: all errors that can be found at once. TLT0001, the file cannot be read; TLT0006,
+            too many variants and files; TLT0801, not TOML; TLT0802, an unknown key; TLT0803, a
+            missing key, or a value of the wrong kind; TLT0804, two scenes of the same name; TLT0805,
+            a file does not exist.
+    """
+    source = fileio.read_source(path, path_text(path), max_bytes=fileio.limits.GAME_FILE.size)
+    log: list[Diagnostic] = []
+    table = CheckedTable(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the game file", log)
+    game = _Reader(path, allow_outside=allow_outside).game(table)
+    if log or game is None:
+        raise TltlError(log)
+    _check_count(game, source)
+    return game
+
+
+class _Reader:
+    """Reads the tables of a game file; errors go to the log of each table."""
+
+    def __init__(self, path: Path, *, allow_outside: bool) -> None:
+        self._path = path
+        self._folder = path.parent
+        self._allow_outside = allow_outside
+
+    def game(self, table: CheckedTable) -> GameFile | None:
+        """Read the whole file; return None if it has no table ``[game]``."""
+        game = table.table("game")
+        scenes = self._scenes(table.tables("scene"), game.label if game else table.label)
+        table.report_unknown_keys({**dict.fromkeys(_GAME_KEYS, "[game]"), **dict.fromkeys(_SCENE_KEYS, "[[scene]]")})
+        if game is None:
+            return None
+        gymnasium, python = _environment(game)
+        _report_other_processes(game)
+        result = GameFile(
+            path=self._path,
+            gymnasium=gymnasium,
+            python=python,
+            modules=_modules(game),
+            signals=_function(game, "signals"),
+            clock_s=_clock_s(game),
+            observation=game.names("observation", ()),
+            scenes=scenes,
+            labels={"game": game.label, **{key: entry.label for key, entry in game.entries.items()}},
+        )
+        game.report_unknown_keys(dict.fromkeys(_SCENE_KEYS, "[[scene]]"))
+        return result
+
+    def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[Scene, ...]:
+        """Read the scenes; if there are none, return one that is named after the file, labelled ``around``."""
+        if not tables:
+            first = SceneVariant({}, (), None, around)
+            return (Scene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}),)
+        scenes: dict[str, Scene] = {}
+        for table in tables:
+            scene = self._scene(table)
+            if scene.name and scene.name in scenes:
+                title = f"two scenes are called `{scene.name}`"
+                table.log.append(Diagnostic("TLT0804", title, (table.label_of("name"),), "rename one of them"))
+            scenes[scene.name] = scene
+        return tuple(scenes.values())
+
+    def _scene(self, table: CheckedTable) -> Scene:
+        name = table.text("name")
+        if name and not fileio.is_plain_name(name):
+            table.log.append(wrong_value(table.entries["name"], "name", "a word of letters, digits and `_`"))
+        first = self._variant(table, SceneVariant({}, (), None, table.label))
+        variants = {FIRST_VARIANT: first}
+        named = table.table("variants", needed=False)
+        for variant in named.entries if named else ():
+            if named is None or (own := named.table(variant)) is None:
+                continue
+            if variant == FIRST_VARIANT or not fileio.is_plain_name(variant):
+                title = f"a variant cannot be called `{variant}`"
+                help_ = "give it another word of letters, digits and `_`; `v0` is the scene as it stands"
+                table.log.append(Diagnostic("TLT0804", title, (own.label,), help_))
+            variants[variant] = self._variant(own, first)
+            own.report_unknown_keys()
+        table.report_unknown_keys(dict.fromkeys(_GAME_KEYS, "[game]"))
+        return Scene(name, variants)
+
+    def _variant(self, table: CheckedTable, base: SceneVariant) -> SceneVariant:
+        """Read the keys of a variant; ``base`` has the values of keys that it does not set.
+
+        Options are merged by name. Files are added to those of ``base``.
+        """
+        options = table.table("options", needed=False)
+        files = [self._inside(table, "files", name) for name in table.names("files", ())]
+        return SceneVariant(
+            options={**base.options, **(_options(options) if options else {})},
+            files=tuple(dict.fromkeys((*base.files, *(file for file in files if file is not None)))),
+            spec=self._spec(table) or base.spec,
+            label=table.label_of("options"),
+        )
+
+    def _spec(self, table: CheckedTable) -> LevelSpec | None:
+        spec = parse_level_spec(table.text("spec", ""))
+        if spec is None:
+            return None
+        if not str(spec.file).endswith((".tltl", ".json")) or (spec.name and not fileio.is_plain_name(spec.name)):
+            table.log.append(wrong_value(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `doorkey.tltl:fetch`"))
+            return None
+        place = self._inside(table, "spec", str(spec.file))
+        return None if place is None else LevelSpec(place, spec.name)
+
+    def _inside(self, table: CheckedTable, key: str, name: str) -> Path | None:
+        """Return the path of a file that ``key`` names; log an error and return None if it cannot be used."""
+        path = self._folder / name
+        try:
+            is_inside = self._allow_outside or path.resolve().is_relative_to(self._folder.resolve())
+            exists = fileio.is_file(path)
+        except (OSError, RuntimeError, ValueError):  # a loop of links, a null character
+            is_inside, exists = True, False
+        if not is_inside:
+            title = f"`{name}` is outside the folder of the game file"
+            help_ = "move it into this folder, or allow it with --allow-outside"
+            table.log.append(Diagnostic("TLT0803", title, (table.label_of(key),), help_))
+            return None
+        if not exists:
+            title, help_ = f"there is no file `{name}`", f"paths are relative to the folder of `{self._path.name}`"
+            table.log.append(Diagnostic("TLT0805", title, (table.label_of(key),), help_))
+            return None
+        return path
+
+
+def _environment(game: CheckedTable) -> tuple[str | None, FunctionName | None]:
+    """Return the values of ``gymnasium`` and ``python``; log an error unless there is exactly one."""
+    gymnasium, python = game.text("gymnasium", ""), _function(game, "python")
+    given = game.entries.keys() & {"gymnasium", "python"}
+    if len(given) == 2:
+        title = "`[game]` has both `gymnasium` and `python`"
+        game.log.append(Diagnostic("TLT0803", title, (game.label_of("python"),), "keep one of them"))
+    elif not given and not game.entries.keys() & {*_IN_OTHER_PROCESSES}:
+        title = "`[game]` does not say how the environment is made"
+        help_ = 'write `gymnasium = "ID"`, or `python = "MODULE:FUNCTION"`'
+        game.log.append(Diagnostic("TLT0803", title, (game.label,), help_))
+    return gymnasium or None, python
+
+
+def _report_other_processes(game: CheckedTable) -> None:
+    """Report the keys of games that run in a process of their own, and take them out of the table."""
+    for key in _IN_OTHER_PROCESSES:
+        entry = game.entries.pop(key, None)
+        if entry is not None:
+            title = f"`{key}` is for games in a process of their own, which tltlc cannot play yet"
+            help_ = 'name a Gymnasium environment: `gymnasium = "ID"`, or `python = "MODULE:FUNCTION"`'
+            game.log.append(Diagnostic("TLT0802", title, (entry.label,), help_))
+
+
+def _modules(game: CheckedTable) -> tuple[str, ...]:
+    modules = game.names("import", ())
+    if not all(map(_MODULE.match, modules)):
+        game.log.append(wrong_value(game.entries["import"], "import", 'a list of Python modules, e.g. ["minigrid"]'))
+    return modules
+
+
+def _function(table: CheckedTable, key: str) -> FunctionName | None:
+    text = table.text(key, "")
+    module, _, function = text.partition(":")
+    if not text:
+        return None
+    if not _MODULE.match(module) or not fileio.is_plain_name(function):
+        table.log.append(wrong_value(table.entries[key], key, "MODULE:FUNCTION, e.g. `doorkey_signals:signals`"))
+        return None
+    return FunctionName(module, function)
+
+
+def _clock_s(table: CheckedTable) -> float | None:
+    """Return the seconds of a step; None if the table has no clock, or a wrong one."""
+    text = table.text("clock", "")
+    clock_s = specs.clock_from_text(text) if text else None
+    if text and clock_s is None:
+        expected = "a frequency or a period, e.g. `10 Hz` or `0.1 s`"
+        table.log.append(wrong_value(table.entries["clock"], "clock", expected))
+    return clock_s
+
+
+def _options(table: CheckedTable) -> dict[str, Any]:
+    """Return the options of a scene as plain values; log an error for each value that JSON does not have."""
+    values = _values(table.entries)
+    for key, value in values.items():
+        if not _is_plain(value):
+            expected = "finite numbers, texts, true, false, and lists and tables of these"
+            table.log.append(wrong_value(table.entries[key], key, expected))
+    return values
+
+
+def _values(tree: Tree) -> dict[str, Any]:
+    return {key: _value(entry.value) for key, entry in tree.items()}
+
+
+def _value(value: Any) -> Any:
+    if isinstance(value, Entry):
+        return _value(value.value)
+    if isinstance(value, dict):
+        return {key: _value(item) for key, item in value.items()}
+    return [_value(item) for item in value] if isinstance(value, list) else value
+
+
+def _is_plain(value: object) -> bool:
+    if isinstance(value, dict):
+        return all(map(_is_plain, value.values()))
+    if isinstance(value, list):
+        return all(map(_is_plain, value))
+    return isinstance(value, (str, int)) or (isinstance(value, float) and math.isfinite(value))
+
+
+def _check_count(game: GameFile, source: SourceFile) -> None:
+    """Raise TltlError, TLT0006, if a game has more variants and files than the limit allows."""
+    variants = [variant for scene in game.scenes for variant in scene.variants.values()]
+    most = fileio.limits.GAME_FILE.values or 0
+    if len(variants) + sum(len(variant.files) for variant in variants) > most:
+        title = f"`{source.name}` has more than {most:,} variants and files of scenes"
+        raise TltlError([Diagnostic("TLT0006", title, (Label(source, Span(0, 0)),), "divide it into several games")])

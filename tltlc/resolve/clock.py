@@ -1,0 +1,36 @@
+"""The time from one sample to the next, as a frequency or a period."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.core.source import SourceFile
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import ClockDecl
+from tltlc.resolve import units
+
+SHORTEST_S: Final = 1e-9
+LONGEST_S: Final = 1e9
+
+
+def period_s(value: float, unit: str | None) -> float | None:
+    """Return the period of a frequency in Hz, or of a time, in seconds; None unless it is above zero."""
+    in_si = units.in_si(value, unit)
+    if in_si is None or value <= 0:
+        return None
+    if unit == "Hz":
+        return 1.0 / in_si[0]
+    return in_si[0] if in_si[1] == units.TYPES["time"] else None
+
+
+def clock_from_text(text: str) -> float | None:
+    """Return the seconds of a clock that is written as after the word ``clock``: ``20 Hz``, ``0.05 s``.
+
+    Return None for any other text, and for a period outside [1e-9, 1e9] seconds.
+    """
+    module, errors = parse(SourceFile("<clock>", f"clock {text}", "text"))
+    if errors or module.comments or len(module.declarations) != 1:
+        return None
+    (clock,) = module.declarations
+    period = period_s(clock.value.value, clock.value.unit) if isinstance(clock, ClockDecl) else None
+    return period if period is not None and SHORTEST_S <= period <= LONGEST_S else None
