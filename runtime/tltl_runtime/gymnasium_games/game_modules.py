@@ -1,0 +1,125 @@
+"""Import the Python modules that a game file names.
+
+The folder of the game file comes first in the search for modules. A folder stays at the end of
+``sys.path``, so that modules which a game imports later are found, too.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Final
+
+from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, guarded
+from tltl_runtime.gymnasium_games.game_file import FunctionName, GameFile
+from tltl_runtime.support.suggestion import suggestion
+from tltlc.api import Diagnostic, Label, TltlError
+
+_PACKAGES: Final = {"PIL": "pillow", "cv2": "opencv-python", "yaml": "pyyaml", "skimage": "scikit-image"}
+"""The packages of the index whose modules have another name, by module."""
+
+_folders: Final[set[Path]] = set()
+"""The folders of the games that this process has imported modules from."""
+
+
+@contextmanager
+def folder_first(game: GameFile) -> Iterator[None]:
+    """Search for modules in the folder of a game first.
+
+    Modules of other games are forgotten if this game has modules of the same names.
+
+    Raises:
+        TltlError: TLT0780, a module of the game has the name of a module that is imported already.
+    """
+    folder = game.folder.resolve()
+    own = _top_names(folder)
+    for name, module in list(sys.modules.items()):
+        if name.partition(".")[0] in own and not _is_from(module, folder):
+            if not any(_is_from(module, other) for other in _folders):
+                continue
+            del sys.modules[name]
+    _folders.add(folder)
+    entry = str(folder)
+    sys.path.insert(0, entry)
+    importlib.invalidate_caches()
+    try:
+        yield
+    finally:
+        sys.path.remove(entry)
+        if entry not in sys.path:
+            sys.path.append(entry)
+
+
+def import_module(game: GameFile, name: str, key: str) -> ModuleType:
+    """Import a module that the ``key`` of a game file names, within :func:`folder_first`.
+
+    Raises:
+        TltlError: TLT0730, a package is not installed; TLT0780, there is no such module, or it
+            raises an exception.
+    """
+    label, folder = game.labels[key], game.folder.resolve()
+    top = name.partition(".")[0]
+    if top in _top_names(folder) and top in sys.modules and not _is_from(sys.modules[top], folder):
+        title = f"the game's module `{top}` has the name of another module, which tltlc or Python uses"
+        raise TltlError([Diagnostic(CANNOT_START, title, (label,), "give the file another name")])
+    with guarded(game, CANNOT_START, f"the module `{name}`", label):
+        try:
+            return importlib.import_module(name)
+        except ModuleNotFoundError as error:
+            raise TltlError([_not_found(game, name, error, label)]) from error
+
+
+def import_function(game: GameFile, name: FunctionName, key: str) -> Callable[..., Any]:
+    """Import a function that the ``key`` of a game file names.
+
+    Raises:
+        TltlError: the errors of :func:`import_module`; TLT0780, the module has no such function.
+    """
+    module = import_module(game, name.module, key)
+    function = getattr(module, name.function, None)
+    if callable(function):
+        return function  # type: ignore[no-any-return]
+    known = [key for key, value in vars(module).items() if callable(value) and not key.startswith("_")]
+    title = f"the module `{name.module}` has no function `{name.function}`"
+    raise TltlError([Diagnostic(CANNOT_START, title, (game.labels[key],), suggestion(name.function, known))])
+
+
+def _not_found(game: GameFile, name: str, error: ModuleNotFoundError, label: Label) -> Diagnostic:
+    """Return the diagnostic for a module that does not exist, or that imports one that does not exist."""
+    missing = error.name or name
+    package = missing.partition(".")[0]
+    own = _top_names(game.folder.resolve())
+    if package in own:  # the package exists, but not this part of it
+        title = f"there is no module `{missing}`"
+        return Diagnostic(CANNOT_START, title, (label,), f"look for it in `{package}`, beside the game file")
+    title = f"the module `{package}` is not installed, and the game needs it"
+    if name != missing and not name.startswith(f"{missing}."):
+        title = f"the module `{package}` is not installed, and `{name}` needs it"
+    help_ = f"install it: `pip install {_PACKAGES.get(package, package)}`"
+    close = suggestion(package, own)
+    if close.startswith("did you mean"):
+        help_ += f"; or {close}"
+    return Diagnostic("TLT0730", title, (label,), help_)
+
+
+def _top_names(folder: Path) -> set[str]:
+    """Return the names of the modules and packages in a folder."""
+    try:
+        entries = list(folder.iterdir())
+    except OSError:
+        return set()
+    return {
+        entry.stem if entry.suffix == ".py" else entry.name
+        for entry in entries
+        if (entry.suffix == ".py" or (entry.is_dir() and "." not in entry.name and entry.name != "__pycache__"))
+    }
+
+
+def _is_from(module: ModuleType, folder: Path) -> bool:
+    """Whether a module was imported from a file in a folder."""
+    paths = [getattr(module, "__file__", None), *getattr(module, "__path__", ())]
+    return any(path and Path(path).resolve().is_relative_to(folder) for path in paths)

@@ -1,0 +1,261 @@
+"""Gymnasium environments of the scenes of a game file."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final, SupportsFloat
+
+import gymnasium
+from gymnasium import spaces
+
+from tltl_runtime.gymnasium_games.game_argument import variant_of
+from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guarded
+from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, SceneVariant, read_game_file
+from tltl_runtime.gymnasium_games.game_modules import folder_first, import_function, import_module
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.support.suggestion import suggestion
+from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
+
+_OWN_OPTIONS: Final = ("max_episode_steps", "disable_env_checker", "render_mode")
+"""Options of ``gymnasium.make`` itself, which the environment need not know."""
+
+
+class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """The environment of a scene without a spec.
+
+    It has the method ``tltl_signals``, the ``tltl_clock_s`` of the game file, and only the keys of
+    the observation that the game file keeps. An exception of the game becomes a TltlError, TLT0781.
+
+    Raises:
+        TltlError: TLT0803, the observation has no such key; TLT0780, the environment says no
+            signals, or its observation has a key that the spec adds.
+    """
+
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], game: GameFile, signals: Callable[..., Any] | None, scene_label: Label
+    ) -> None:
+        super().__init__(env)
+        self._game = game
+        self._label = scene_label
+        if signals is None and not env.has_wrapper_attr("tltl_signals"):
+            title = "the environment does not say its signals"
+            help_ = 'write `signals = "MODULE:FUNCTION"`, or give the environment a method `tltl_signals()`'
+            raise TltlError([Diagnostic(CANNOT_START, title, (game.labels["game"],), help_)])
+        self._signals = signals
+        if game.clock_s is not None:
+            self.tltl_clock_s = game.clock_s
+        self._keys = _kept_keys(game, env.observation_space)
+        if self._keys:
+            self.observation_space = spaces.Dict({key: env.observation_space[key] for key in self._keys})  # type: ignore[index]
+        _check_keys(self.observation_space, scene_label)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Reset the game; raises TltlError, TLT0781, if the game raises an exception."""
+        with guarded(self._game, RAISES, "the game's `reset`", self._label):
+            observation, info = self.env.reset(seed=seed, options=options)
+            return self._kept(observation), info
+
+    def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
+        """Take a step in the game; raises TltlError, TLT0781, if the game raises an exception."""
+        with guarded(self._game, RAISES, "the game's `step`", self._label):
+            observation, reward, terminated, truncated, info = self.env.step(action)
+            return self._kept(observation), reward, terminated, truncated, info
+
+    def tltl_signals(self) -> Mapping[str, SupportsFloat]:
+        """Return the signals of the current state; raises TltlError, TLT0781, if the game does not give them."""
+        label = self._game.labels.get("signals", self._label)
+        name = f"`{self._game.signals.text}`" if self._game.signals else "the game's `tltl_signals`"
+        with guarded(self._game, RAISES, name, label):
+            sample = self.env.get_wrapper_attr("tltl_signals")() if self._signals is None else self._signals(self.env)
+        if not isinstance(sample, Mapping):
+            title = f"{name} returns {_type_text(sample)}, not a mapping"
+            help_ = "return the value of each signal by its name: `{'has_key': True}`"
+            raise TltlError([Diagnostic(RAISES, title, (label,), help_)])
+        return sample
+
+    def _kept(self, observation: Any) -> Any:
+        return {key: observation[key] for key in self._keys} if self._keys else observation
+
+
+def make_scene_env(
+    game_file: Path,
+    scene: str,
+    variant: str = FIRST_VARIANT,
+    spec: str | Path | Fspa | None = None,
+    *,
+    reward: RewardOptions | None = None,
+    params: Mapping[str, float] | None = None,
+    render_mode: str | None = None,
+    allow_outside: bool = False,
+) -> TltlEnv:
+    """Make an environment of a scene with a spec, by default the spec that the scene is made for.
+
+    ``reward`` and ``params`` are those of :class:`TltlEnv`. The Python modules that the game file
+    names are imported. For worker processes, use ``functools.partial(make_scene_env, …)``.
+
+    Raises:
+        TltlError: the errors of :func:`read_game_file`, :func:`make_base_env` and ``TltlEnv``;
+            TLT0800, there is no such scene or variant; TLT0721, there is no spec.
+    """
+    game = read_game_file(game_file, allow_outside=allow_outside)
+    env = make_base_env(game, scene, variant, render_mode=render_mode)
+    try:
+        return TltlEnv(env, scene_spec(game, scene, variant) if spec is None else spec, reward=reward, params=params)
+    except BaseException:
+        env.close()
+        raise
+
+
+def scene_spec(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
+    """Return the spec that a scene is made for, as the argument ``FILE.tltl:NAME``.
+
+    Raises:
+        TltlError: TLT0721, the scene is made for no spec.
+    """
+    own = variant_of(game, scene, variant)
+    if own.spec is None:
+        title = f"the scene `{scene}` does not name a spec"
+        help_ = 'name one in the command, or in the scene: `spec = "FILE.tltl:NAME"`'
+        raise TltlError([Diagnostic("TLT0721", title, (own.label,), help_)])
+    return own.spec.text
+
+
+def make_base_env(
+    game: GameFile, scene: str, variant: str = FIRST_VARIANT, *, render_mode: str | None = None
+) -> SceneEnv:
+    """Make an environment of a scene without a spec.
+
+    Raises:
+        TltlError: TLT0800, there is no such scene or variant; TLT0730, a package is not installed;
+            TLT0780, the environment cannot be made; TLT0803, the observation has no such key.
+    """
+    own = variant_of(game, scene, variant)
+    options = dict(own.options) if render_mode is None else {**own.options, "render_mode": render_mode}
+    with folder_first(game):
+        for module in game.modules:
+            import_module(game, module, "import")
+        if game.python is not None:
+            env = _from_function(game, import_function(game, game.python, "python"), scene, options, own)
+        else:
+            env = _from_id(game, game.gymnasium or "", options, own)
+        try:
+            signals = import_function(game, game.signals, "signals") if game.signals else None
+            _check_params(game, env, own)
+            return SceneEnv(env, game, signals, own.label)
+        except BaseException:
+            env.close()
+            raise
+
+
+def _from_function(
+    game: GameFile, function: Callable[..., Any], scene: str, options: dict[str, Any], own: SceneVariant
+) -> gymnasium.Env[Any, Any]:
+    assert game.python is not None
+    name = f"`{game.python.text}`"
+    _check_options(name, function, 1, options, own)
+    with guarded(game, CANNOT_START, name, own.label):
+        env = function(scene, **options)
+    if not isinstance(env, gymnasium.Env):
+        title = f"{name} returns {_type_text(env)}, not a gymnasium.Env"
+        help_ = "return an environment of the package `gymnasium`"
+        raise TltlError([Diagnostic(CANNOT_START, title, (game.labels["python"],), help_)])
+    return env
+
+
+def _from_id(game: GameFile, id_: str, options: dict[str, Any], own: SceneVariant) -> gymnasium.Env[Any, Any]:
+    label = game.labels["gymnasium"]
+    module, colon, name = id_.partition(":")
+    if colon:
+        import_module(game, module, "gymnasium")
+    entry = name if colon else id_
+    registered = gymnasium.registry.get(entry)
+    if registered is None:
+        title = f"no environment is registered as `{entry}`"
+        close = suggestion(entry, gymnasium.registry, "")
+        help_ = close if close.startswith("did you") else 'name the module that registers it: `import = ["MODULE"]`'
+        raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
+    with guarded(game, CANNOT_START, f"the environment `{entry}`", own.label):
+        try:
+            creator: Any = registered.entry_point
+            if isinstance(creator, str):
+                creator = gymnasium.envs.registration.load_env_creator(creator)
+            known = {key: value for key, value in options.items() if key not in _OWN_OPTIONS}
+            if creator is not None:
+                _check_options(f"the environment `{entry}`", creator, 0, known, own)
+            return gymnasium.make(entry, **{"disable_env_checker": True, **options})
+        except ModuleNotFoundError as error:
+            missing = (error.name or "").partition(".")[0]
+            title = f"the module `{missing}` is not installed, and the environment `{entry}` needs it"
+            raise TltlError([Diagnostic("TLT0730", title, (label,), f"install it: `pip install {missing}`")]) from error
+        except gymnasium.error.DependencyNotInstalled as error:
+            title = f"the environment `{entry}` needs a package that is not installed"
+            raise TltlError([Diagnostic("TLT0730", title, (label,), str(error))]) from error
+
+
+def _check_options(
+    what: str, function: Callable[..., Any], positional: int, options: Mapping[str, Any], own: SceneVariant
+) -> None:
+    """Raise TltlError, TLT0780, if a function does not take one of the ``options``.
+
+    ``positional`` is the number of arguments that it gets before them.
+    """
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):  # a function of C code
+        return
+    if any(parameter.kind == parameter.VAR_KEYWORD for parameter in parameters):
+        return
+    by_name = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    names = [parameter.name for parameter in parameters[positional:] if parameter.kind in by_name]
+    unknown = [key for key in options if key not in names]
+    if unknown:
+        title = f"{what} takes no option `{unknown[0]}`"
+        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), suggestion(unknown[0], names))])
+
+
+def _check_params(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVariant) -> None:
+    """Raise TltlError, TLT0780, unless ``tltl_params`` gives numbers by name, where there is such a method."""
+    if not env.has_wrapper_attr("tltl_params"):
+        return
+    name = "the game's `tltl_params`"
+    with guarded(game, CANNOT_START, name, own.label):
+        params = env.get_wrapper_attr("tltl_params")()
+        if not isinstance(params, Mapping):
+            raise TypeError(f"it returns {_type_text(params)}, not a mapping from names to numbers")
+        for value in params.values():
+            float(value)
+
+
+def _kept_keys(game: GameFile, space: spaces.Space[Any]) -> tuple[str, ...]:
+    """Return the keys of the observation that the game file keeps; empty for all.
+
+    Raises:
+        TltlError: TLT0803, the observation has no such key.
+    """
+    if not game.observation:
+        return ()
+    label = game.labels["observation"]
+    if not isinstance(space, spaces.Dict):
+        title = f"the observation is a {type(space).__name__}, which has no keys"
+        raise TltlError([Diagnostic("TLT0803", title, (label,), "leave out `observation`: it is for Dict spaces")])
+    unknown = [key for key in game.observation if key not in space.spaces]
+    if unknown:
+        title = f"the observation has no key `{unknown[0]}`"
+        raise TltlError([Diagnostic("TLT0803", title, (label,), suggestion(unknown[0], space.spaces))])
+    return tuple(dict.fromkeys(game.observation))
+
+
+def _check_keys(space: spaces.Space[Any], label: Label) -> None:
+    """Raise TltlError, TLT0780, if a Dict observation has a key that a spec adds to it."""
+    conflicts = {"automaton", "progress"} & (space.spaces.keys() if isinstance(space, spaces.Dict) else set())
+    if conflicts:
+        title = f"the observation has the key `{min(conflicts)}`, which the spec adds to it"
+        help_ = 'rename it in the game, or name the keys to keep: `observation = ["KEY"]` in `[game]`'
+        raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
+
+
+def _type_text(value: object) -> str:
+    name = type(value).__name__
+    return "None" if value is None else f"an {name}" if name[0].lower() in "aeiou" else f"a {name}"
