@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.sensors import SensorChoice
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.capabilities.capabilities import check_capabilities
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import params as level_params
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import load_level

@@ -11,10 +11,10 @@ from gymnasium import spaces
 
 from tltl_runtime.cli.support.sensor_options import sensor_options
 from tltl_runtime.game.level_name import split_level
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.capabilities import check_capabilities, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.observation.observation import Observer

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import inf, isclose
 from typing import Final
 
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import AvailableSignal, available_signals, params
 from tltl_runtime.stealth.level import StealthLevel, entity_names
 from tltl_runtime.stealth.levels.default_spec import is_packaged

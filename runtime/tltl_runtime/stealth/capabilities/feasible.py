@@ -7,10 +7,10 @@ from math import inf
 from typing import Final
 
 from tltl_runtime.game.level import UnreachableEntity
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.capabilities import params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.reach import Reach, compute_reach, highest_jump, highest_lift
 from tltl_runtime.stealth.capabilities.space import Budget, SpaceBudgetError
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.vocabulary import available_signals
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.world.player import PlayerKind

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
 from tltlc.api import Signal
 
 _SPEC = """\
