@@ -1,0 +1,119 @@
+"""Convert observations to arrays by key, and flat actions to the values of a space and back.
+
+``count`` is the number of environments of a batch; None means one environment without a batch axis.
+A batch of a Dict or Tuple space is a mapping or tuple of batches, as in Gymnasium.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from tltl_runtime.policies.spaces.action_layout import ActionLayout, ActionPart
+from tltl_runtime.policies.spaces.observation_layout import ObservationPart
+
+
+def observation_arrays(
+    layout: Sequence[ObservationPart], observation: Any, count: int | None = None
+) -> dict[str, NDArray[Any]]:
+    """Return the parts of an observation as arrays by key, of the shapes [count, *part.shape].
+
+    Images and grids of bytes are uint8, everything else is float32. Categories count from 0.
+    """
+    return {part.key: _array(part, _at(observation, part.path), count) for part in layout}
+
+
+def action_value(layout: ActionLayout, space: spaces.Space[Any], flat: NDArray[Any], count: int | None = None) -> Any:
+    """Return the value of an action space for flat actions [count, width]."""
+    choices, numbers = np.split(flat, [len(layout.sizes)], axis=-1)
+    values: dict[tuple[str, ...], Any] = {}
+    for part in layout.parts:
+        size = len(part.sizes) + len(part.low)
+        if part.kind == "numbers":
+            taken, numbers = np.split(numbers, [size], axis=-1)
+        else:
+            taken, choices = np.split(choices, [size], axis=-1)
+        values[part.path] = _value(part, taken, count)
+    return _nested(space, values, ())
+
+
+def flat_action(layout: ActionLayout, action: Any, count: int | None = None) -> NDArray[np.float64]:
+    """Return the flat actions [count, width] for a value of the space, in float64."""
+    rows = () if count is None else (count,)
+    choices: list[NDArray[np.float64]] = []
+    numbers: list[NDArray[np.float64]] = []
+    for part in layout.parts:
+        array = np.asarray(_at(action, part.path)).astype(np.float64).reshape(*rows, -1)
+        if part.kind == "numbers":
+            numbers.append(array)
+        else:
+            choices.append(array - np.array(part.starts))
+    return np.concatenate([*choices, *numbers], axis=-1)
+
+
+def squashed(layout: ActionLayout, outputs: NDArray[Any]) -> NDArray[np.float64]:
+    """Return flat actions [..., width] for a policy's outputs: choices, and numbers before squashing.
+
+    A number with two bounds is the hyperbolic tangent, scaled to the bounds. Any other number is
+    cut to the bound that it has.
+    """
+    flat: NDArray[np.float64] = np.array(outputs, np.float64)
+    first = len(layout.sizes)
+    for column, (low, high) in enumerate(layout.bounds, start=first):
+        if low is not None and high is not None:
+            flat[..., column] = low + (high - low) * (np.tanh(flat[..., column]) + 1) / 2
+        flat[..., column] = np.clip(flat[..., column], low, high)
+    return flat
+
+
+def _array(part: ObservationPart, value: Any, count: int | None) -> NDArray[Any]:
+    array = np.asarray(value).reshape(part.shape if count is None else (count, *part.shape))
+    if part.starts:
+        array = array - np.array(part.starts)
+    keeps_bytes = part.kind == "grid" or (part.kind == "image" and array.dtype in (np.uint8, np.bool_))
+    return array.astype(np.uint8 if keeps_bytes else np.float32)
+
+
+def _at(value: Any, path: Sequence[str]) -> Any:
+    for key in path:
+        value = value[key] if isinstance(value, Mapping) else value[int(key)]
+    return value
+
+
+def _value(part: ActionPart, flat: NDArray[Any], count: int | None) -> Any:
+    """Return the value of a part for its share of flat actions."""
+    dtype = np.dtype(part.dtype)
+    if part.kind == "numbers":
+        array = _in_type(part, flat, dtype)
+    else:
+        array = (flat.astype(np.int64) + np.array(part.starts, np.int64)).astype(dtype)
+    if count is not None:
+        return array.reshape(count, *part.shape)
+    return array.reshape(part.shape)[()] if part.kind == "choice" else array.reshape(part.shape)
+
+
+def _in_type(part: ActionPart, numbers: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Return numbers in the type of their Box; rounding takes none of them out of the bounds."""
+    info = np.finfo(dtype) if dtype.kind == "f" else np.iinfo(dtype)
+    if dtype.kind != "f":
+        numbers = np.rint(numbers)
+    low, high = np.full(len(part.low), info.min, dtype), np.full(len(part.high), info.max, dtype)
+    for column, (least, most) in enumerate(zip(part.low, part.high, strict=True)):
+        low[column] = low[column] if least is None else dtype.type(least)
+        high[column] = high[column] if most is None else dtype.type(most)
+    # The greatest number of a type of 64 bits is not exact in float64, and would overflow.
+    most_in_type = np.nextafter(float(info.max), 0) if dtype.itemsize == 8 else float(info.max)
+    in_type: NDArray[Any] = np.clip(numbers, float(info.min), most_in_type).astype(dtype)
+    return in_type.clip(low, high)
+
+
+def _nested(space: spaces.Space[Any], values: Mapping[tuple[str, ...], Any], path: tuple[str, ...]) -> Any:
+    if isinstance(space, spaces.Dict):
+        return {key: _nested(inner, values, (*path, str(key))) for key, inner in space.spaces.items()}
+    if isinstance(space, spaces.Tuple):
+        return tuple(_nested(inner, values, (*path, str(index))) for index, inner in enumerate(space.spaces))
+    return values[path]
