@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltlc.api import Fspa, RewardOptions, record
 
 OBSERVATION: Final = 1
@@ -24,7 +25,8 @@ class Card:
     ``branches`` has the number of choices of each. ``versions`` are the versions of Python and of
     the packages that trained the policy, by name. ``training`` is the record of the training as
     JSON data. ``observation`` is the version of the observations (:data:`OBSERVATION`) that the
-    policy was trained with.
+    policy was trained with. ``spaces`` are the layouts of observation and action if the network does
+    not take and give their values as they are; ``branches`` is then empty.
     """
 
     level: str
@@ -40,3 +42,4 @@ class Card:
     versions: Mapping[str, str]
     training: Mapping[str, Any]
     observation: int = OBSERVATION
+    spaces: SpaceLayouts | None = None

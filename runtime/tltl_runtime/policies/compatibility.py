@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
+from gymnasium import spaces
+
 from tltl_runtime.game.level import Level
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
+from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import Diagnostic, Fspa, TltlError, label_text
 
 _MOST: Final = 3
 """A message names at most this many differences."""
+
+_OWN_GAME: Final = "let it play its own game, or train a policy for this one"
 
 
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
@@ -30,7 +36,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         suggestion = "use that tltlc, or train a policy with this one"
         raise _unfit_error(f"the policy was trained with {age} tltlc, whose agents observe other things", suggestion)
     game = level.game
-    if card.branches != game.branches:
+    if card.spaces is None and card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
         raise _unfit_error(f"the policy chooses among {own} actions, and the game has {sizes}")
     missing = [*game.missing_sensors(level, card.sensors)]
@@ -43,6 +49,34 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
         raise _unfit_error(title, "let it play its own spec, or train one for this spec")
+
+
+def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Space[Any]) -> None:
+    """Check that a policy can play in an environment with these spaces.
+
+    Raises:
+        TltlError: TLT0843, the spaces are not those of the policy; the message names what differs.
+            TLT0844, no policy can have the spaces.
+    """
+    layouts = space_layouts(observation, action)
+    if layouts is None and card.spaces is None:
+        assert isinstance(observation, spaces.Dict)
+        assert isinstance(action, spaces.MultiDiscrete)
+        own = {key: space.shape for key, space in observation.items()}, action.nvec.tolist()
+        if own == (dict(card.shapes), list(card.branches)):
+            return
+    if layouts is None or card.spaces is None:
+        title = "the policy was trained for another game, whose observations or actions are of other kinds"
+        raise _unfit_error(title, _OWN_GAME)
+    before, after = _parts_by_key(card.spaces), _parts_by_key(layouts)
+    wrong = [f"another observation `{key}`" for key in {**before, **after} if before.get(key) != after.get(key)]
+    wrong += ["another action"] if card.spaces.action != layouts.action else []
+    if wrong:
+        raise _unfit_error(f"the policy was trained for another game: {short_list(wrong, _MOST)}", _OWN_GAME)
+
+
+def _parts_by_key(layouts: SpaceLayouts) -> dict[str, ObservationPart]:
+    return {part.key: part for part in layouts.observation}
 
 
 def differences(own: Fspa, fspa: Fspa) -> str:

@@ -23,7 +23,9 @@ from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.actor import weight_shapes
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.policy import Policy, weight_dtype
+from tltl_runtime.policies.spaces.encoder_plan import NORMALIZER, space_weight_shapes
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
@@ -37,6 +39,8 @@ _RECORD_BYTES: Final = 1 << 20
 """The number of bytes that :func:`check_size` assumes for the card without its artefact."""
 
 _PREFIX: Final = "actor."
+_DEVIATION: Final = f"{_PREFIX}{NORMALIZER}deviation"
+_DTYPES: Final = {np.float16: "F16", np.float32: "F32"}
 _KEY: Final = "card"
 """The only metadata key of a file.
 
@@ -84,21 +88,25 @@ def to_bytes(policy: Policy) -> bytes:
     return data
 
 
-def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
+def check_size(network: Network, fspa: Fspa, sensors: Sensors, spaces: SpaceLayouts | None = None) -> None:
     """Raise TltlError, TLT0862, if a policy with this network cannot be used or stored.
 
     It cannot be used if its convolutions do not fit the map of ``sensors``. It cannot be stored if
-    it is too large for a file.
+    it is too large for a file. With ``spaces``, these describe the observation, and ``sensors`` are
+    not used.
     """
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
-    observation, branches = _observation_shapes(fspa, sensors), game_named(STEALTH).branches
     try:
-        shapes = weight_shapes(network, observation, branches)
+        if spaces is not None:
+            shapes = space_weight_shapes(network, spaces)
+        else:
+            shapes = weight_shapes(network, _observation_shapes(fspa, sensors), game_named(STEALTH).branches)
     except ValueError as error:
         help_ = "give a smaller `stride` or a larger `kernel`"
         raise TltlError([Diagnostic("TLT0862", f"`network`: {error}", help=help_)]) from None
-    size = 2 * sum(map(prod, shapes.values())) + len(text.encode()) + _RECORD_BYTES
+    size = sum(prod(shape) * np.dtype(weight_dtype(name)).itemsize for name, shape in shapes.items())
+    size += len(text.encode()) + _RECORD_BYTES
     if size > MAX_BYTES:
         raise _too_large(size)
 
@@ -106,8 +114,19 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
 def card_json(card: Card) -> dict[str, Any]:
     """Return the card as JSON data, with the artefact of the spec in place of ``fspa``."""
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
-    document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
+    absent = {"fspa"} if card.spaces else {"fspa", "spaces"}
+    document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name not in absent}
     return document | {"artefact": compiler.encode_artefact(card.fspa)}
+
+
+def card_weight_shapes(card: Card) -> dict[str, tuple[int, ...]]:
+    """Return the shapes of the weights of the network that a card describes, by name.
+
+    Raises ValueError if the convolutions do not fit a map.
+    """
+    if card.spaces is not None:
+        return space_weight_shapes(card.network, card.spaces)
+    return weight_shapes(card.network, dict(card.shapes), card.branches)
 
 
 def from_bytes(data: bytes, name: str) -> Policy:
@@ -171,13 +190,26 @@ def _card(header: dict[str, Any], name: str) -> Card:
 
 def _fault(card: Card) -> str | None:
     """Return what is wrong with a card whose fields have the right types; None if it is valid."""
+    if not _HASH.match(card.level_hash):
+        return "`card.level_hash` is not a hash"
+    if card.spaces is not None:
+        return _spaces_fault(card, card.spaces)
     shapes = dict(card.shapes)
     expected = _observation_shapes(card.fspa, card.sensors)
     if len(shapes) < len(card.shapes) or shapes != expected or not _are_sizes(shapes.values()):
         return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
         return "`card.branches` are not the branches of an action"
-    return None if _HASH.match(card.level_hash) else "`card.level_hash` is not a hash"
+    return None
+
+
+def _spaces_fault(card: Card, spaces: SpaceLayouts) -> str | None:
+    """Return what is wrong with a card that has ``spaces``; None if it is valid."""
+    if card.shapes != tuple(spaces.shapes.items()):
+        return "`card.shapes` are not those of `card.spaces`"
+    if card.branches:
+        return "`card.branches` contradicts `card.spaces`"
+    return None
 
 
 def _are_sizes(shapes: Collection[tuple[int, ...]]) -> bool:
@@ -203,7 +235,7 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     This check comes before any weights are loaded.
     """
     try:
-        shapes = weight_shapes(card.network, dict(card.shapes), card.branches)
+        shapes = card_weight_shapes(card)
     except ValueError as error:
         raise _ERRORS.broken_error(name, f"its card does not describe a network: {error}") from None
     expected = {f"{_PREFIX}{key}": list(shape) for key, shape in shapes.items()}
@@ -214,12 +246,13 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
         if key not in expected:
             raise _ERRORS.broken_error(name, f"its network does not use the tensor `{key:.60}`")
         entry = stored[key] if isinstance(stored[key], dict) else {}
-        if entry.get("dtype") != "F16" or entry.get("shape") != expected[key]:
+        dtype = _DTYPES[weight_dtype(key.removeprefix(_PREFIX))]
+        if entry.get("dtype") != dtype or entry.get("shape") != expected[key]:
             is_ = f"{entry.get('dtype')!s:.20} of shape {entry.get('shape')!s:.40}"
-            raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not F16 of shape {expected[key]}")
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` is {is_}, not {dtype} of shape {expected[key]}")
 
 
-def _weights(data: bytes, name: str) -> dict[str, NDArray[np.float16]]:
+def _weights(data: bytes, name: str) -> dict[str, NDArray[Any]]:
     try:
         weights = load(data)
     except (SafetensorError, ValueError):
@@ -227,4 +260,6 @@ def _weights(data: bytes, name: str) -> dict[str, NDArray[np.float16]]:
     for key, weight in weights.items():
         if not np.isfinite(weight).all():
             raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are not finite numbers")
+        if key == _DEVIATION and not (weight > 0).all():
+            raise _ERRORS.broken_error(name, f"the tensor `{key}` has values that are not above 0")
     return {key.removeprefix(_PREFIX): weight for key, weight in weights.items()}

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from tltl_runtime.policies.actor import Actor
 from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.spaces.encoder_plan import NORMALIZER
+from tltl_runtime.policies.spaces.space_actor import SpaceActor
+from tltl_runtime.policies.spaces.values import action_value, observation_arrays
 
 
 class NotFiniteError(ValueError):
@@ -32,49 +35,81 @@ class Policy:
     def __init__(self, card: Card, weights: Mapping[str, NDArray[Any]]) -> None:
         with np.errstate(over="ignore"):  # A weight that is too large becomes infinite.
             # In one memory layout: with another one, NumPy would add in another order.
-            rounded = {name: np.array(weight, np.float16, order="C") for name, weight in weights.items()}
+            rounded = {name: np.array(weight, weight_dtype(name), order="C") for name, weight in weights.items()}
         if not all(np.isfinite(weight).all() for weight in rounded.values()):
             raise NotFiniteError(
                 "a weight of the actor is not a finite number in half precision: its training has diverged"
             )
         self.card = card
         self._weights = rounded
-        self._actor = Actor(card.network, dict(card.shapes), card.branches, rounded)
+        self._actor = (
+            Actor(card.network, dict(card.shapes), card.branches, rounded)
+            if card.spaces is None
+            else SpaceActor(card.network, card.spaces, rounded)
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The weights in half precision make the network again, and take a third of the space of both.
         return Policy, (self.card, self._weights)
 
-    def weights(self) -> dict[str, NDArray[np.float16]]:
-        """Return copies of the weights by name, in half precision, as in the policy's file."""
+    def weights(self) -> dict[str, NDArray[Any]]:
+        """Return copies of the weights by name, in half precision, as in the policy's file.
+
+        What scales the numbers of an observation is in single precision.
+        """
         return {name: weight.copy() for name, weight in self._weights.items()}
 
     def weight_count(self) -> int:
         """Return how many numbers the weights have."""
         return sum(weight.size for weight in self._weights.values())
 
-    def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
-        """Return the logits [sum(branches)] for the observation of one environment."""
+    def logits(self, observation: Any) -> NDArray[np.float32]:
+        """Return the logits of all choices for the observation of one environment.
+
+        The means of the action's numbers follow, before they are squashed to their bounds.
+        """
+        if isinstance(self._actor, SpaceActor):
+            return self._actor.outputs(self._arrays(observation))
         return self._actor.logits(observation)
 
-    def choose(
-        self, observation: Mapping[str, NDArray[Any]], generator: np.random.Generator | None = None
-    ) -> NDArray[np.int64]:
-        """Return an action [branches]: sampled with ``generator``, or the likeliest without one.
+    def choose(self, observation: Any, generator: np.random.Generator | None = None) -> Any:
+        """Return an action: sampled with ``generator``, or the likeliest without one.
 
-        On ties, the first choice is taken.
+        On ties, the first choice is taken. The action is an int64 array [branches], or with a card
+        that has ``spaces``, a value of the action space. ``observation`` is that of one environment.
 
         Raises:
             NotFiniteError: the observation or the output of the network is not finite.
         """
-        logits = self.logits(observation).astype(np.float64)
+        logits = self.logits(observation)
         if not np.isfinite(logits).all():
-            raise NotFiniteError(_not_finite_message(observation))
+            raise NotFiniteError(_not_finite_message(self._arrays(observation)))
+        if isinstance(self._actor, SpaceActor):
+            assert self.card.spaces is not None
+            return action_value(self.card.spaces.action, self._actor.choose(logits, generator))
+        return self._branch_choices(logits.astype(np.float64), generator)
+
+    def _branch_choices(self, logits: NDArray[np.float64], generator: np.random.Generator | None) -> NDArray[np.int64]:
         if generator is not None:
             # The Gumbel-max trick: the argmax of logits plus Gumbel noise is a sample of their softmax.
             logits += generator.gumbel(size=len(logits))
         ends = np.cumsum(self.card.branches)
         return np.array([logits[end - size : end].argmax() for size, end in zip(self.card.branches, ends, strict=True)])
+
+    def _arrays(self, observation: Any) -> Mapping[str, NDArray[Any]]:
+        """Return the parts of an observation by key."""
+        if self.card.spaces is None:
+            parts: Mapping[str, NDArray[Any]] = observation
+            return parts
+        return observation_arrays(self.card.spaces.observation, observation)
+
+
+def weight_dtype(name: str) -> type[np.floating[Any]]:
+    """Return the type in which a policy stores the weight with this name.
+
+    What scales the numbers of an observation may be too large or too exact for half precision.
+    """
+    return np.float32 if name.startswith(NORMALIZER) else np.float16
 
 
 def _not_finite_message(observation: Mapping[str, NDArray[Any]]) -> str:

@@ -15,6 +15,7 @@ from torch import Tensor
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import model_config
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.spaces.torch_model import space_model_config
 
 
 def new_actor(card: Card) -> MLPModel:
@@ -22,10 +23,17 @@ def new_actor(card: Card) -> MLPModel:
 
     Raises ValueError if the card describes no network.
     """
-    model, arguments = resolve_class(model_config(card.network, dict(card.shapes), card.branches))
+    model, arguments = resolve_class(_config(card))
     blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in card.shapes}, batch_size=[1])
-    actor: MLPModel = model(blank, {"actor": [key for key, _ in card.shapes]}, "actor", len(card.branches), **arguments)
+    width = len(card.branches) if card.spaces is None else card.spaces.action.width
+    actor: MLPModel = model(blank, {"actor": [key for key, _ in card.shapes]}, "actor", width, **arguments)
     return actor
+
+
+def _config(card: Card) -> dict[str, Any]:
+    if card.spaces is None:
+        return model_config(card.network, dict(card.shapes), card.branches)
+    return space_model_config(card.network, card.spaces, is_actor=True)
 
 
 def torch_actor(policy: Policy) -> MLPModel:

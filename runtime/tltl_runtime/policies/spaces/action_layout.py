@@ -71,13 +71,19 @@ class ActionPart:
 class ActionLayout:
     """The parts of an action, in order.
 
+    An action is nested as the paths of its parts say; ``tuples`` are the paths of its tuples, and
+    all other inner nodes are mappings.
+
     Raises:
-        ValueError: there are no parts, or there are too many choices or numbers.
+        ValueError: there are no parts, there are too many choices or numbers, or the paths cannot be
+            those of one action.
     """
 
     parts: tuple[ActionPart, ...]
+    tuples: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
+        check_paths([part.path for part in self.parts], self.tuples)
         if not self.parts or sum(self.sizes) > MAX_CHOICES or self.number_count > MAX_ELEMENTS:
             raise ValueError("an action needs choices or numbers, but not too many")
 
@@ -107,6 +113,18 @@ class ActionLayout:
         return sum(self.sizes) + self.number_count
 
 
+def check_paths(paths: Sequence[tuple[str, ...]], tuples: Sequence[tuple[str, ...]]) -> None:
+    """Raise ValueError unless parts with these paths can be in one action, in which ``tuples`` are tuples."""
+    children: dict[tuple[str, ...], set[str]] = {}
+    for path in paths:
+        for length in range(len(path)):
+            children.setdefault(path[:length], set()).add(path[length])
+    if len(set(paths)) < len(paths) or any(path in children for path in paths):
+        raise ValueError("two parts of an action have the same path")
+    if any(children.get(path) != set(map(str, range(len(children.get(path, ()))))) for path in tuples):
+        raise ValueError("a tuple of an action has other indices than 0, 1, and so on")
+
+
 def action_layout(space: spaces.Space[Any]) -> ActionLayout:
     """Return the layout of an action space.
 
@@ -119,13 +137,24 @@ def action_layout(space: spaces.Space[Any]) -> ActionLayout:
         refusals += _total_refusals(parts)
     if refusals:
         raise action_error(refusals)
-    return ActionLayout(parts)
+    return ActionLayout(parts, tuple(_tuples(space, ())))
+
+
+def _tuples(space: spaces.Space[Any], path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Yield the paths of all Tuple spaces in a space."""
+    if isinstance(space, spaces.Tuple):
+        yield path
+    if isinstance(space, (spaces.Dict, spaces.Tuple)):
+        for key, inner in space.spaces.items() if isinstance(space, spaces.Dict) else enumerate(space.spaces):
+            yield from _tuples(inner, (*path, str(key)))
 
 
 def _parts(space: spaces.Space[Any], path: tuple[str, ...], refusals: list[SpaceRefusedError]) -> Iterator[ActionPart]:
     """Yield the parts of a space; append the refused ones to ``refusals``."""
     if isinstance(space, (spaces.Dict, spaces.Tuple)):
         items = space.spaces.items() if isinstance(space, spaces.Dict) else enumerate(space.spaces)
+        if not space.spaces:
+            refusals.append(SpaceRefusedError(path, "is empty"))
         for key, inner in items:
             if isinstance(space, spaces.Dict) and not isinstance(key, str):
                 refusals.append(SpaceRefusedError((*path, str(key)), "has a key that is not a text"))
@@ -174,5 +203,3 @@ def _total_refusals(parts: Sequence[ActionPart]) -> Iterator[SpaceRefusedError]:
         yield SpaceRefusedError((), f"has {choices:,} choices, and at most {MAX_CHOICES:,} are possible")
     if numbers > MAX_ELEMENTS:
         yield SpaceRefusedError((), f"has {numbers:,} numbers, and at most {MAX_ELEMENTS:,} are possible")
-    if choices + numbers == 0:
-        yield SpaceRefusedError((), "is empty")

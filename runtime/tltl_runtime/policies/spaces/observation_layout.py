@@ -134,8 +134,7 @@ def _part(space: spaces.Space[Any], path: tuple[str, ...]) -> ObservationPart:
         sizes, starts = (tuple(int(value) for value in array.ravel()) for array in (space.nvec, space.start))
         return _categories(key, path, sizes, starts)
     if isinstance(space, spaces.MultiBinary):
-        shape: tuple[int, ...] = tuple(space.shape)
-        _check_count(path, count := prod(shape), MAX_NUMBERS)
+        _check_count(path, count := int(np.prod(space.shape)), MAX_NUMBERS)
         return ObservationPart(key, path, "numbers", (count,), low=(0.0,) * count, high=(1.0,) * count)
     if isinstance(space, spaces.Box):
         return _box(space, key, path)
@@ -148,12 +147,12 @@ def _categories(key: str, path: tuple[str, ...], sizes: tuple[int, ...], starts:
 
 
 def _box(space: spaces.Box, key: str, path: tuple[str, ...]) -> ObservationPart:
-    shape = tuple(space.shape)
+    shape: tuple[int, ...] = tuple(space.shape)
     is_whole = space.dtype is not None and np.issubdtype(space.dtype, np.integer)
     lows, highs = space.low.astype(np.float64), space.high.astype(np.float64)
     low, high = float(lows.min(initial=np.inf)), float(highs.max(initial=-np.inf))
     is_plane = len(shape) == 3 or (len(shape) == 2 and is_whole and min(shape) > 1)
-    if is_plane and prod(shape) and 0 < high - low <= _WIDEST:
+    if is_plane and min(shape) > 0 and 0 < high - low <= _WIDEST:
         _check_count(path, prod(shape), MAX_CELLS)
         is_map = is_whole and (low, high) == (0.0, 1.0) and len(shape) == 3
         planes_first = len(shape) == 3 and (is_map or shape[0] <= _LEADING_PLANES < shape[2])

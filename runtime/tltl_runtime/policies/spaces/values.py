@@ -6,11 +6,10 @@ A batch of a Dict or Tuple space is a mapping or tuple of batches, as in Gymnasi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
-from gymnasium import spaces
 from numpy.typing import NDArray
 
 from tltl_runtime.policies.spaces.action_layout import ActionLayout, ActionPart
@@ -27,18 +26,24 @@ def observation_arrays(
     return {part.key: _array(part, _at(observation, part.path), count) for part in layout}
 
 
-def action_value(layout: ActionLayout, space: spaces.Space[Any], flat: NDArray[Any], count: int | None = None) -> Any:
-    """Return the value of an action space for flat actions [count, width]."""
+def action_value(layout: ActionLayout, flat: NDArray[Any], count: int | None = None) -> Any:
+    """Return the value of the action space for flat actions [count, width]."""
     choices, numbers = np.split(flat, [len(layout.sizes)], axis=-1)
-    values: dict[tuple[str, ...], Any] = {}
+    nested: dict[str, Any] = {}
     for part in layout.parts:
         size = len(part.sizes) + len(part.low)
         if part.kind == "numbers":
             taken, numbers = np.split(numbers, [size], axis=-1)
         else:
             taken, choices = np.split(choices, [size], axis=-1)
-        values[part.path] = _value(part, taken, count)
-    return _nested(space, values, ())
+        value = _value(part, taken, count)
+        if not part.path:
+            return value
+        node = nested
+        for key in part.path[:-1]:
+            node = node.setdefault(key, {})
+        node[part.path[-1]] = value
+    return _with_tuples(nested, (), set(layout.tuples))
 
 
 def flat_action(layout: ActionLayout, action: Any, count: int | None = None) -> NDArray[np.float64]:
@@ -111,9 +116,9 @@ def _in_type(part: ActionPart, numbers: NDArray[Any], dtype: np.dtype[Any]) -> N
     return in_type.clip(low, high)
 
 
-def _nested(space: spaces.Space[Any], values: Mapping[tuple[str, ...], Any], path: tuple[str, ...]) -> Any:
-    if isinstance(space, spaces.Dict):
-        return {key: _nested(inner, values, (*path, str(key))) for key, inner in space.spaces.items()}
-    if isinstance(space, spaces.Tuple):
-        return tuple(_nested(inner, values, (*path, str(index))) for index, inner in enumerate(space.spaces))
-    return values[path]
+def _with_tuples(node: Any, path: tuple[str, ...], tuples: Set[tuple[str, ...]]) -> Any:
+    """Return nested mappings with those at the paths ``tuples`` replaced by tuples."""
+    if not isinstance(node, dict):
+        return node
+    inner = {key: _with_tuples(value, (*path, key), tuples) for key, value in node.items()}
+    return tuple(inner[str(index)] for index in range(len(inner))) if path in tuples else inner

@@ -173,7 +173,8 @@ def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | Non
 
     def play(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
         try:
-            return policy.choose(observation, generator)
+            choices: NDArray[np.int64] = policy.choose(observation, generator)
+            return choices
         except NotFiniteError as error:
             title = f"the policy that the training in `{run.folder}` begins with: {error}"
             help_ = "begin with another policy, or train without --from"

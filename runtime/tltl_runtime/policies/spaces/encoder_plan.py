@@ -1,0 +1,126 @@
+"""The encoders that a network puts before its fully connected layers, as data.
+
+Numbers are scaled, categories become one-hot vectors, and each image or grid goes through
+convolutions. A number is scaled to [-1, 1] by its bounds; without bounds, by a running mean and
+deviation. An image is scaled to [0, 1]. A cell of a grid holds categories, whose numbers have no
+order, so each becomes its eight bits: the network can tell any two categories apart, and needs no
+list of those that the game has.
+
+The first convolution of a grid has no stride, because neighbouring cells mean different things. To
+both grids and images, convolutions with the network's stride are added until the result is at most
+ten cells long: otherwise the first fully connected layer would have most of the weights.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import prod
+from typing import Final
+
+from tltl_runtime.policies.network import MAX_LAYERS, Network
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.policies.spaces.observation_layout import ObservationPart
+from tltlc.api import record
+
+BITS: Final = 8
+"""The planes of a category in a grid."""
+NORMALIZER: Final = "normalizer."
+"""The prefix of the names of the tensors that scale numbers. They are float32 in a policy."""
+DEVIATIONS: Final = "distribution.log_deviation"
+"""The name of the logarithms of the standard deviations of an action's numbers."""
+
+_LONGEST: Final = 10
+"""Convolutions are added until the result is at most this long, in cells."""
+
+
+@record
+class Convolution:
+    """A convolution from ``inputs`` to ``outputs`` planes; it pads a map with ``kernel // 2`` zeros on each side."""
+
+    inputs: int
+    outputs: int
+    kernel: int
+    stride: int
+
+    @property
+    def padding(self) -> int:
+        """The zeros on each side."""
+        return self.kernel // 2
+
+    def output_sides(self, sides: Sequence[int]) -> tuple[int, ...]:
+        """Return the height and width of the result for a map with these ``sides``."""
+        return tuple((side + 2 * self.padding - self.kernel) // self.stride + 1 for side in sides)
+
+
+def convolutions(part: ObservationPart, network: Network) -> tuple[Convolution, ...]:
+    """Return the convolutions of an image or grid."""
+    planes, sides = part.planes * (BITS if part.kind == "grid" else 1), tuple(part.sides)
+    layers: list[Convolution] = []
+    while len(layers) < len(network.channels) or (
+        max(sides) > _LONGEST and network.stride > 1 and len(layers) < MAX_LAYERS
+    ):
+        outputs = network.channels[min(len(layers), len(network.channels) - 1)]
+        has_stride = max(sides) > _LONGEST and (layers or part.kind == "image")
+        layers.append(Convolution(planes, outputs, network.kernel, network.stride if has_stride else 1))
+        planes, sides = outputs, layers[-1].output_sides(sides)
+    return tuple(layers)
+
+
+def map_parts(layouts: SpaceLayouts) -> list[tuple[int, ObservationPart]]:
+    """Return the images and grids, each with its index among the parts of an observation."""
+    return [(index, part) for index, part in enumerate(layouts.observation) if part.kind in ("image", "grid")]
+
+
+def number_count(layouts: SpaceLayouts) -> int:
+    """Return how many numbers the vectors of an observation have."""
+    return sum(prod(part.shape) for part in layouts.observation if part.kind == "numbers")
+
+
+def initial_scale(layouts: SpaceLayouts) -> tuple[list[float], list[float]]:
+    """Return what is subtracted from each number, and by what the difference is then divided.
+
+    The values scale the bounds of a number to [-1, 1]. Without bounds they are 0 and 1.
+    """
+    bounds = [pair for part in layouts.observation if part.kind == "numbers" for pair in part.bounds]
+    pairs = [
+        (0.0, 1.0) if low is None or high is None else ((low + high) / 2, (high - low) / 2) for low, high in bounds
+    ]
+    return [middle for middle, _ in pairs], [half for _, half in pairs]
+
+
+def unbounded(layouts: SpaceLayouts) -> list[bool]:
+    """Return for each number whether a running mean and deviation scale it."""
+    bounds = [pair for part in layouts.observation if part.kind == "numbers" for pair in part.bounds]
+    return [low is None or high is None for low, high in bounds]
+
+
+def encoded_width(layouts: SpaceLayouts, network: Network) -> int:
+    """Return how many numbers the fully connected layers get."""
+    width = number_count(layouts) + sum(sum(part.sizes) for part in layouts.observation)
+    for _, part in map_parts(layouts):
+        sides: tuple[int, ...] = tuple(part.sides)
+        layers = convolutions(part, network)
+        for layer in layers:
+            sides = layer.output_sides(sides)
+        width += layers[-1].outputs * prod(sides)
+    return width
+
+
+def space_weight_shapes(network: Network, layouts: SpaceLayouts) -> dict[str, tuple[int, ...]]:
+    """Return the shapes of the weights of a policy's network for these layouts, by name."""
+    weights: dict[str, tuple[int, ...]] = {}
+    if numbers := number_count(layouts):
+        weights |= {f"{NORMALIZER}mean": (numbers,), f"{NORMALIZER}deviation": (numbers,), f"{NORMALIZER}count": (1,)}
+    for index, part in map_parts(layouts):
+        for layer, convolution in enumerate(convolutions(part, network)):
+            name = f"encoders.{index}.{2 * layer}"
+            kernel = (convolution.kernel, convolution.kernel)
+            weights |= {f"{name}.weight": (convolution.outputs, convolution.inputs, *kernel)}
+            weights |= {f"{name}.bias": (convolution.outputs,)}
+    width = encoded_width(layouts, network)
+    for index, outputs in enumerate((*network.hidden, layouts.action.output_width)):
+        weights |= {f"mlp.{2 * index}.weight": (outputs, width), f"mlp.{2 * index}.bias": (outputs,)}
+        width = outputs
+    if layouts.action.number_count:
+        weights[DEVIATIONS] = (layouts.action.number_count,)
+    return weights

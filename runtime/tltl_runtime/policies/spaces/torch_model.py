@@ -1,0 +1,164 @@
+"""The network of a policy for any observation and action, as a model of rsl-rl."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from rsl_rl.models import MLPModel
+from rsl_rl.utils import resolve_nn_activation
+from torch import Tensor, distributed, nn
+
+from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.spaces.encoder_plan import (
+    BITS,
+    convolutions,
+    encoded_width,
+    initial_scale,
+    map_parts,
+    number_count,
+    unbounded,
+)
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.policies.spaces.observation_layout import ObservationPart
+from tltl_runtime.policies.spaces.space_actor import FARTHEST
+
+
+def space_model_config(network: Network, layouts: SpaceLayouts, *, is_actor: bool) -> dict[str, Any]:
+    """Return rsl-rl's configuration of an actor, or of a critic, for these layouts."""
+    config: dict[str, Any] = {
+        "class_name": "tltl_runtime.policies.spaces.torch_model:SpaceModel",
+        "network": network,
+        "layouts": layouts,
+    }
+    if is_actor:
+        distribution = "tltl_runtime.policies.spaces.distribution:IndependentParts"
+        config["distribution_cfg"] = {"class_name": distribution, "layout": layouts.action}
+    return config
+
+
+class SpaceModel(MLPModel):
+    """An actor or critic whose inputs are the parts of an observation, as in ``layouts``.
+
+    Its weights have the names of
+    :func:`~tltl_runtime.policies.spaces.encoder_plan.space_weight_shapes`.
+    """
+
+    def __init__(
+        self,
+        obs: Mapping[str, Tensor],
+        obs_groups: dict[str, list[str]],
+        obs_set: str,
+        output_dim: int,
+        network: Network,
+        layouts: SpaceLayouts,
+        distribution_cfg: dict[str, Any] | None = None,
+    ) -> None:
+        self._network, self._layouts = network, layouts
+        super().__init__(
+            obs, obs_groups, obs_set, output_dim, list(network.hidden), network.activation, False, distribution_cfg
+        )
+        self.normalizer = Normalizer(layouts) if number_count(layouts) else None
+        self.encoders = nn.ModuleDict({str(index): _encoder(part, network) for index, part in map_parts(layouts)})
+
+    def get_latent(self, obs: Mapping[str, Tensor], masks: Any = None, hidden_state: Any = None) -> Tensor:
+        """Return what the fully connected layers get [batch, width]."""
+        parts = self._layouts.observation
+        latent = [self.normalizer(_numbers(parts, obs))] if self.normalizer is not None else []
+        latent += [_one_hot(part, obs[part.key]) for part in parts if part.kind == "categories"]
+        for index, part in map_parts(self._layouts):
+            latent.append(self.encoders[str(index)](_planes(part, obs[part.key])).flatten(1))
+        return torch.cat(latent, -1)
+
+    def update_normalization(self, obs: Mapping[str, Tensor]) -> None:
+        """Update the running mean and deviation of numbers without bounds from a batch of observations.
+
+        With several processes, all must call this method, and the batches of all count.
+        """
+        if self.normalizer is not None:
+            self.normalizer.update(_numbers(self._layouts.observation, obs))
+
+    def _get_obs_dim(
+        self, obs: Mapping[str, Tensor], obs_groups: dict[str, list[str]], obs_set: str
+    ) -> tuple[list[str], int]:
+        return obs_groups[obs_set], encoded_width(self._layouts, self._network)
+
+
+class Normalizer(nn.Module):
+    """Scales numbers [batch, numbers]: by their bounds, or by a running mean and deviation.
+
+    The deviation is at least 1e-2, so that a number that has hardly changed is not blown up when it
+    changes. ``count`` is how many observations the running values are of.
+    """
+
+    mean: Tensor
+    deviation: Tensor
+    count: Tensor
+    _running: Tensor
+
+    def __init__(self, layouts: SpaceLayouts) -> None:
+        super().__init__()
+        middle, half = initial_scale(layouts)
+        self.register_buffer("mean", torch.tensor(middle))
+        self.register_buffer("deviation", torch.tensor(half))
+        self.register_buffer("count", torch.zeros(1))
+        self.register_buffer("_running", torch.tensor(unbounded(layouts)), persistent=False)
+
+    def forward(self, numbers: Tensor) -> Tensor:
+        """Return scaled numbers."""
+        return ((numbers - self.mean) / self.deviation).clamp(-FARTHEST, FARTHEST)
+
+    def update(self, numbers: Tensor) -> None:
+        """Add a batch [batch, numbers] to the running values (Chan, Golub and LeVeque, 1979)."""
+        if not self._running.any():
+            return
+        batch = numbers.double()
+        added = torch.stack([torch.full_like(batch[0], len(batch)), batch.sum(0), batch.square().sum(0)]).cpu()
+        if distributed.is_initialized():
+            distributed.all_reduce(added)
+        added = added.to(numbers.device)
+        count, mean = added[0, :1], added[1] / added[0]
+        variance = (added[2] / added[0] - mean.square()).clamp(min=0)
+        total = self.count.double() + count
+        share, delta = count / total, mean - self.mean.double()
+        old = torch.where(self.count > 0, self.deviation.double().square(), torch.zeros_like(variance))
+        mixed = (
+            (1 - share) * old + share * variance + share * (1 - share) * torch.where(self.count > 0, delta, 0).square()
+        )
+        new_mean = torch.where(self.count > 0, self.mean.double() + share * delta, mean)
+        self.mean.copy_(torch.where(self._running, new_mean, self.mean.double()))
+        self.deviation.copy_(torch.where(self._running, mixed.sqrt().clamp(min=1e-2), self.deviation.double()))
+        self.count.copy_(total)
+
+
+def _encoder(part: ObservationPart, network: Network) -> nn.Sequential:
+    layers: list[nn.Module] = []
+    for plan in convolutions(part, network):
+        layers.append(nn.Conv2d(plan.inputs, plan.outputs, plan.kernel, plan.stride, plan.padding))
+        layers.append(resolve_nn_activation(network.activation))
+    return nn.Sequential(*layers)
+
+
+def _numbers(parts: tuple[ObservationPart, ...], obs: Mapping[str, Tensor]) -> Tensor:
+    return torch.cat([obs[part.key].float() for part in parts if part.kind == "numbers"], -1)
+
+
+def _one_hot(part: ObservationPart, indices: Tensor) -> Tensor:
+    """Return the one-hot vectors [batch, sum(sizes)] of categories [batch, indices]."""
+    columns = [column for column, size in enumerate(part.sizes) for _ in range(size)]
+    values = [value for size in part.sizes for value in range(size)]
+    taken = indices.float()[:, torch.tensor(columns, device=indices.device)]
+    return (taken == torch.tensor(values, dtype=torch.float32, device=indices.device)).float()
+
+
+def _planes(part: ObservationPart, array: Tensor) -> Tensor:
+    """Return the planes [batch, planes, height, width] of images or grids: scaled to [0, 1], or bits."""
+    cells = array.float() if part.planes_first else array.float().permute(0, 3, 1, 2)
+    if part.kind == "grid":
+        powers = 2.0 ** torch.arange(BITS, device=array.device).reshape(-1, 1, 1)
+        return torch.remainder(torch.floor(cells.unsqueeze(2) / powers), 2.0).flatten(1, 2)
+    (low, high) = part.bounds[0]
+    assert low is not None
+    assert high is not None
+    return (cells - low) / (high - low)
