@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Final, cast
 
+import numpy as np
 import torch
 from onnx import ModelProto
 from onnx.helper import set_model_props
@@ -19,6 +21,10 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.spaces.action_layout import ActionLayout
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.policies.spaces.refusals import name_of
+from tltl_runtime.policies.spaces.space_actor import deviations
 from tltl_runtime.policies.torch_actor import torch_actor
 from tltlc.api import label_text, replace
 
@@ -33,25 +39,50 @@ def to_onnx(policy: Policy) -> bytes:
     The inputs are the parts of an observation, named by their keys, float32 [batch, ...]. The
     outputs are ``logits``, float32 [batch, sum(branches)], the first branch first; and ``action``,
     int64 [batch, branches], the likeliest choice of each branch, the first one on ties.
-    ``docs/policy-file.md`` describes the metadata.
+
+    With a card that has ``spaces``, these two are outputs only if an action has choices, which count
+    from 0. If an action has numbers, there are also ``means``, float32 [batch, numbers], before they
+    are squashed to the bounds, and ``numbers``, the same after. An input whose key is the name of an
+    output has ``observation/`` before its key. ``docs/policy-file.md`` describes the metadata.
     """
-    keys = [key for key, _ in policy.card.shapes]
+    card = policy.card
+    shapes = [shape for _, shape in card.shapes]
+    outputs = _output_names(card)
     batch = torch.export.Dim("batch", min=1)
     with _silence_exporter():
         program = torch.onnx.export(
-            _PolicyModule(policy).eval(),
-            tuple(torch.zeros(2, *shape) for _, shape in policy.card.shapes),
+            (_PolicyModule(policy) if card.spaces is None else _SpacePolicyModule(policy, card.spaces)).eval(),
+            tuple(torch.zeros(2, *shape) for shape in shapes),
             dynamo=True,
             verbose=False,
             opset_version=_OPSET,
-            input_names=keys,
-            output_names=["logits", "action"],
-            dynamic_shapes=(tuple({0: batch} for _ in keys),),
+            input_names=_model_inputs(card),
+            output_names=outputs,
+            dynamic_shapes=(tuple({0: batch} for _ in shapes),),
         )
     model = cast(Any, program).model_proto
     _forget_source(model)
-    set_model_props(model, _metadata(policy.card))
+    set_model_props(model, _metadata(policy))
     return bytes(model.SerializeToString(deterministic=True))
+
+
+def _output_names(card: Card) -> list[str]:
+    if card.spaces is None:
+        return ["logits", "action"]
+    action = card.spaces.action
+    return ["logits", "action"] * bool(action.sizes) + ["means", "numbers"] * bool(action.number_count)
+
+
+def _model_inputs(card: Card) -> list[str]:
+    """Return the names of the inputs, in the order of the card's shapes."""
+    taken = {*_output_names(card), *(key for key, _ in card.shapes)}
+    names = []
+    for key, _ in card.shapes:
+        name = key
+        while name in _output_names(card) or (name != key and name in taken):
+            name = f"observation/{name}"
+        names.append(name)
+    return names
 
 
 class _PolicyModule(nn.Module):
@@ -67,35 +98,95 @@ class _PolicyModule(nn.Module):
         return logits, self.actor.distribution.deterministic_output(logits).long()
 
 
-def _metadata(card: Card) -> dict[str, str]:
+class _SpacePolicyModule(nn.Module):
+    """A policy of any spaces as a module: its outputs are those of :func:`_output_names`."""
+
+    def __init__(self, policy: Policy, layouts: SpaceLayouts) -> None:
+        super().__init__()
+        self.keys = [key for key, _ in policy.card.shapes]
+        self.actor = torch_actor(policy)
+        self.sizes, self.number_count = list(layouts.action.sizes), layouts.action.number_count
+        bounds = [(low, high) for low, high in layouts.action.bounds]
+        self.low = torch.tensor([-math.inf if low is None else low for low, _ in bounds])
+        self.high = torch.tensor([math.inf if high is None else high for _, high in bounds])
+        self.is_bounded = torch.tensor([low is not None and high is not None for low, high in bounds])
+
+    def forward(self, *parts: Tensor) -> tuple[Tensor, ...]:
+        outputs = self.actor.mlp(self.actor.get_latent(dict(zip(self.keys, parts, strict=True))))
+        logits, means = outputs.split([sum(self.sizes), self.number_count], dim=-1)
+        results: tuple[Tensor, ...] = ()
+        if self.sizes:
+            results += (logits, torch.stack([part.argmax(-1) for part in logits.split(self.sizes, dim=-1)], -1))
+        return (*results, means, self._squashed(means)) if self.number_count else results
+
+    def _squashed(self, means: Tensor) -> Tensor:
+        """Return what :func:`~tltl_runtime.policies.spaces.values.squashed` returns for numbers."""
+        zero = torch.zeros(())
+        low, high = (torch.where(self.is_bounded, bound, zero) for bound in (self.low, self.high))
+        numbers = torch.where(self.is_bounded, low + (high - low) * (means.tanh() + 1) / 2, means)
+        return numbers.maximum(self.low).minimum(self.high)
+
+
+def _metadata(policy: Policy) -> dict[str, str]:
     """Return the metadata of the model. All values but ``spec_hash`` are JSON."""
-    game = game_named(STEALTH)
-    names = list(game.choices.items()) if card.branches == game.branches else []
+    card = policy.card
     texts = {
-        "inputs": _input_names(card),
-        "actions": [{"name": name, "choices": choices} for name, choices in names],
+        "inputs": dict(zip(_model_inputs(card), _entry_names(card), strict=True)),
+        "actions": _choices(card) if card.spaces is None else [*_action_entries(card.spaces.action)],
         "states": [
             {"label": str(state.label), "english": label_text(card.fspa, state.id)} for state in card.fspa.states
         ],
         # The record of the training stays in the policy file: an engine has no use for it.
         "card": card_json(replace(card, training={})),
     }
+    if card.spaces is not None and card.spaces.action.number_count:
+        texts["deviations"] = deviations(policy.weights()).tolist()
     return {"spec_hash": spec_hash(card.fspa)} | {
         key: json.dumps(text, ensure_ascii=False, allow_nan=False) for key, text in texts.items()
     }
 
 
-def _input_names(card: Card) -> dict[str, list[str]]:
-    """Return, for each input of the model, the names of its entries along the axis after the batch."""
+def _choices(card: Card) -> list[dict[str, Any]]:
+    """Return the names of the branches of an action, each with those of its choices."""
+    game = game_named(STEALTH)
+    names = game.choices.items() if card.branches == game.branches else ()
+    return [{"name": name, "choices": choices} for name, choices in names]
+
+
+def _action_entries(layout: ActionLayout) -> Iterator[dict[str, Any]]:
+    """Yield an entry for each number of a flat action: its name, with its choices or its bounds."""
+    for part in sorted(layout.parts, key=lambda part: part.kind == "numbers"):
+        names = _element_names(name_of(part.path) or "action", part.shape)
+        if part.kind == "numbers":
+            for name, low, high in zip(names, part.low, part.high, strict=True):
+                yield {"name": name, "low": low, "high": high}
+        else:
+            for name, size, start in zip(names, part.sizes, part.starts, strict=True):
+                yield {"name": name, "choices": [str(start + choice) for choice in range(size)]}
+
+
+def _element_names(name: str, shape: tuple[int, ...]) -> list[str]:
+    """Return a name such as ``go[0][1]`` for each element of an array; for a scalar, ``name`` itself."""
+    return [name + "".join(f"[{index}]" for index in indices) for indices in np.ndindex(*shape)]
+
+
+def _entry_names(card: Card) -> list[list[str]]:
+    """Return, for each input of the model, the names of its entries along the axis after the batch.
+
+    Images and grids of other games than the stealth game have none.
+    """
     sensors = card.sensors
-    names: Mapping[str, list[str]] = {
+    names: dict[str, list[str]] = {
         "automaton": [f"state {state.id}" for state in card.fspa.states],
         "progress": ["progress"],
-        "entities": [f"{name}.{axis}" for name in sensors.entities for axis in "xyz"],
-        "variables": list(sensors.variables),
-        "map": list(sensors.map.types) if sensors.map else [],
     }
-    return {key: names[key] for key, _ in card.shapes}
+    if card.spaces is None:
+        names["entities"] = [f"{name}.{axis}" for name in sensors.entities for axis in "xyz"]
+        names["variables"] = list(sensors.variables)
+        names["map"] = list(sensors.map.types) if sensors.map else []
+        return [names[key] for key, _ in card.shapes]
+    unnamed = {key: _element_names(key, shape) if len(shape) == 1 else [] for key, shape in card.shapes}
+    return [names.get(key, entries) for key, entries in unnamed.items()]
 
 
 def _forget_source(model: ModelProto) -> None:

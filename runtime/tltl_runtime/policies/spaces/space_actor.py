@@ -76,15 +76,10 @@ class SpaceActor:
             # The Gumbel-max trick: the argmax of logits plus Gumbel noise is a sample of their softmax.
             logits = logits + generator.gumbel(size=len(logits))
             if len(means):
-                means = means + self._deviations() * generator.standard_normal(len(means))
+                means = means + deviations(self._weights) * generator.standard_normal(len(means))
         ends = np.cumsum(action.sizes, dtype=np.int64)
         choices = [logits[end - size : end].argmax() for size, end in zip(action.sizes, ends, strict=True)]
         return squashed(action, np.concatenate([np.array(choices, np.float64), means]))
-
-    def _deviations(self) -> NDArray[np.float64]:
-        logs = np.clip(self._weights[DEVIATIONS].astype(np.float64), LEAST_LOG, MOST_LOG)
-        deviations: NDArray[np.float64] = np.exp(logs)
-        return deviations
 
     def _encoded(self, arrays: Mapping[str, NDArray[Any]]) -> _Array:
         parts: list[_Array] = []
@@ -117,6 +112,13 @@ class SpaceActor:
         columns = windows.transpose(0, 3, 4, 1, 2).reshape(weight[0].size, -1)
         result: _Array = (weight.reshape(len(weight), -1) @ columns + bias[:, None]).reshape(-1, *sides)
         return result
+
+
+def deviations(weights: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+    """Return the standard deviations of an action's numbers before squashing, from the weights of a policy."""
+    logs = np.clip(weights[DEVIATIONS].astype(np.float64), LEAST_LOG, MOST_LOG)
+    result: NDArray[np.float64] = np.exp(logs)
+    return result
 
 
 def planes_of(part: ObservationPart, array: NDArray[Any]) -> _Array:
