@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tltl_runtime.game.episode_summary import summary_of
+from tltl_runtime.game.recording_check import check
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.regression.verdict.baseline import read_baseline, write_baseline
 from tltl_runtime.stealth.recordings.cause import cause
-from tltl_runtime.stealth.recordings.check import check, resimulate
-from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, summary_of
+from tltl_runtime.stealth.recordings.figures import opened_barriers
 from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.stealth.recordings.replay_check import resimulate
 
 OLD = Path(__file__).parents[1] / "old_files"
 EXPECTED: dict[str, Any] = json.loads((OLD / "expected.json").read_text(encoding="utf-8"))

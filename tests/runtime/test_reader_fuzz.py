@@ -19,6 +19,10 @@ from hypothesis import given
 from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, mutated_text, times
 from tests.interfaces.cli.conftest import ROOT
 from tests.runtime.training.runs import run_in
+from tltl_runtime.game.recording_check import check as check_episode
+from tltl_runtime.game.recording_summary import summary as episode_summary
+from tltl_runtime.game.recording_summary import summary_text as episode_summary_text
+from tltl_runtime.game.trace import monitor_command, trace_csv
 from tltl_runtime.policies.file import from_bytes as policy_from_bytes
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
@@ -32,12 +36,9 @@ from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.levels.file import read_level
-from tltl_runtime.stealth.recordings.check import check as check_episode
+from tltl_runtime.stealth.recordings.figures import figures
 from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes
-from tltl_runtime.stealth.recordings.summary import monitor_command, trace_csv
-from tltl_runtime.stealth.recordings.summary import summary as episode_summary
-from tltl_runtime.stealth.recordings.summary import summary_text as episode_summary_text
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.files.metrics import METRICS, read_metrics, truncate
@@ -159,7 +160,7 @@ def _read_recording(data: bytes) -> None:
     def read() -> None:
         episode = episode_from_bytes(data, "it.episode.npz")
         summary = episode_summary(episode)
-        episode_summary_text(summary)
+        episode_summary_text(summary, figures(episode))
         trace_csv(episode)
         monitor_command(episode, "it.csv")
         check_episode(episode)

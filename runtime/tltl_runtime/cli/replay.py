@@ -16,8 +16,7 @@ from tltl_runtime.cli.support.options import output_file, summary_format
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.rendering.film import FilmView
+    from tltl_runtime.game.episode import RecordedEpisode
     from tltlc.api import Notation
 
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
@@ -96,7 +95,7 @@ def command(
     context: click.Context,
     files: tuple[str, ...],
     path: Path | None,
-    view: FilmView | None,
+    view: str | None,
     speed: float | None,
     rate: float | None,
     size: tuple[int, int] | None,
@@ -112,30 +111,48 @@ def command(
     the level gives the same episode again for the same seed and actions.
     """
     _check_usage(context, files, path, size)
-    from tltl_runtime.stealth.recordings.check import check, check_replay
-    from tltl_runtime.stealth.recordings.file import read_episode
-    from tltl_runtime.stealth.recordings.summary import monitor_command, summary, summary_text
+    from tltl_runtime.game.recording_summary import summary, summary_text
+    from tltl_runtime.game.trace import monitor_command
 
-    film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
+    film = Film(view, speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
     with cli.Report(format, results=True) as report:
-        for name, episode in read_each(files, read_episode, report):
+        for name, episode in read_each(files, _read, report):
             fields = {"file": name, **summary(episode, notation)}
             if checked:
-                judgement_errors, replay_errors = check(episode), check_replay(episode)
-                report.add((*judgement_errors, *replay_errors))
-                fields |= {"follows_from_spec": not judgement_errors, "plays_again": not replay_errors}
+                fields |= _check(episode, report)
             if path is not None:
                 _write(path, episode, _span(episode, start, stop), film, size)
                 report.say(f"wrote {path}")
                 if path.suffix.lower() == ".csv":
                     report.say(f"judge it with: {monitor_command(episode, str(path))}")
             elif format == "text":
-                print(f"{name}\n{summary_text(fields)}{_check_text(fields)}")
+                figures = episode.level.game.figures(episode)
+                print(f"{name}\n{summary_text(fields, figures)}{_check_text(fields)}")
             summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
     return report.status
+
+
+def _read(path: str) -> RecordedEpisode:
+    from tltl_runtime.game.registry import game_of_recording
+
+    episode: RecordedEpisode = game_of_recording(path).read_episode(Path(path))
+    return episode
+
+
+def _check(episode: RecordedEpisode, report: cli.Report) -> dict[str, bool | None]:
+    """Report where a recording contradicts its spec or its game; return the results, by their names.
+
+    ``plays_again`` is None if the game cannot play a recording again.
+    """
+    from tltl_runtime.game.recording_check import check
+
+    judgement_errors, replay_errors = check(episode), episode.level.game.check_replay(episode)
+    report.add((*judgement_errors, *(replay_errors or ())))
+    plays_again = None if replay_errors is None else not replay_errors
+    return {"follows_from_spec": not judgement_errors, "plays_again": plays_again}
 
 
 def _check_usage(
@@ -164,16 +181,18 @@ def _check_text(fields: dict[str, Any]) -> str:
     if "plays_again" not in fields:
         return ""
     follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
-    same = "the same" if fields["plays_again"] else "ANOTHER"
-    return f"\n  checked  the judgement {follows} from the signals; played again it is {same} episode\n"
+    judged = f"\n  checked  the judgement {follows} from the signals"
+    if fields["plays_again"] is None:
+        return f"{judged}; its game cannot play it again\n"
+    return f"{judged}; played again it is {'the same' if fields['plays_again'] else 'ANOTHER'} episode\n"
 
 
-def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
+def _span(episode: RecordedEpisode, start: float | None, stop: float | None) -> tuple[float, float]:
     """Return the start and the end of the part of an episode to draw or write, in seconds.
 
     By default, these are the start and the end of the episode.
     """
-    end = episode.snapshots[-1].time
+    end = float(episode.times[-1])
     begin, last = start or 0.0, end if stop is None else stop
     if begin > last and stop is not None:
         raise click.UsageError(f"--from {begin:g} is after --to {last:g}")
@@ -182,23 +201,28 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
     return begin, min(last, end)
 
 
-def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
+def _write(
+    path: Path, episode: RecordedEpisode, span: tuple[float, float], film: Film, size: tuple[int, int] | None
+) -> None:
     """Write a plan, a film or the signals of an episode: the extension of ``path`` selects which.
 
     ``span``, the start and the end in seconds, applies to films and signals, and ``film`` to films.
     ``size``, in pixels, applies to plans. If it is None, the plan has a size that fits its
-    contents.
+    contents. Raises TltlError, TLT0731, if the game draws no pictures or has no films.
     """
     from tltlc.api import fileio
 
     extension = path.suffix.lower()
     if extension == ".csv":
-        from tltl_runtime.stealth.recordings.summary import trace_csv
+        from tltl_runtime.game.trace import trace_csv
 
         fileio.write_file(path, trace_csv(episode, *span))
     elif extension == ".png":
-        from tltl_runtime.stealth.rendering.plan import draw_episode
+        from tltl_runtime.game.capability_error import capability_error
 
-        fileio.write_file(path, draw_episode(episode, size, film.notation))
+        pictures = episode.level.game.pictures
+        if pictures is None:
+            raise capability_error(episode.level, "draws no pictures", "write the signals instead: `-o NAME.csv`")
+        fileio.write_file(path, pictures.episode(episode, size, film.notation))
     else:
         write_film(path, episode, span, film)

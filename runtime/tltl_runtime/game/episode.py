@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tltl_runtime.game.geometry import Point
 from tltl_runtime.game.level import Level
 from tltl_runtime.spec.episode_summary import End
-from tltlc.api import Fspa, record
+from tltlc.api import Fspa, RewardOptions, record
 
 
 class RecordedEpisode(Protocol):
@@ -74,6 +74,22 @@ class RecordedEpisode(Protocol):
     @property
     def progress(self) -> NDArray[np.float64]:
         """The best progress so far, (n + 1,), in [0, 1]: at the reset and after each decision."""
+
+    @property
+    def rewards(self) -> NDArray[np.float64]:
+        """The reward of each decision, (n,)."""
+
+    @property
+    def reward(self) -> RewardOptions:
+        """The options by which the rewards were computed."""
+
+    @property
+    def verdict(self) -> str:
+        """The verdict of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """The versions of Python and of the packages that played the episode, by name."""
 
     @property
     def success(self) -> bool:

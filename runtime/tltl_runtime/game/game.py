@@ -10,16 +10,23 @@ from typing import Any, Generic
 
 import gymnasium
 
+from tltl_runtime.game.capability_error import no_expert_error
 from tltl_runtime.game.episode import Cause
+from tltl_runtime.game.episode_summary import summary_of
+from tltl_runtime.game.films import Films
 from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.keyboard import Keyboard
 from tltl_runtime.game.level import UnreachableEntity
+from tltl_runtime.game.level_check import LevelCheck
 from tltl_runtime.game.level_files import LevelFiles, LevelT
 from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.pictures import Pictures
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
+from tltl_runtime.game.recording_summary import GameFigures
 from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltlc.api import EMPTY, Fspa, RewardOptions, TltlError
+from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, TltlError
 
 
 class Game(ABC, Generic[LevelT, EpisodeT]):
@@ -38,6 +45,18 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     level_files: LevelFiles[LevelT]
     """Finds and reads the files of levels."""
+
+    pictures: Pictures[LevelT, EpisodeT] | None = None
+    """Draws episodes; None if the game draws none."""
+
+    films: Films[EpisodeT] | None = None
+    """Draws films of episodes; None if the game has none."""
+
+    keyboard: Keyboard[EpisodeT] | None = None
+    """Lets a person play; None if only programs can play."""
+
+    has_expert: bool = False
+    """Whether a scripted expert can play the game: see :meth:`expert_episodes`."""
 
     modules: tuple[str, ...]
     """The modules that a process needs to play.
@@ -81,6 +100,31 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
         """
 
+    def level_check(self, name: str, variant: str | Variant, sensors: SensorChoice | None) -> LevelCheck | None:
+        """Read a level to check it against specs, for agents with ``sensors``.
+
+        By default None: the game cannot check its levels.
+
+        Raises:
+            TltlError: the level cannot be read, or lacks something that ``sensors`` names.
+        """
+        del name, variant, sensors
+        return None
+
+    def choose_sensors(self, level: LevelT, choice: SensorChoice | None = None) -> Sensors:
+        """Return the sensors that an agent uses: ``choice``, or those of the level if it is None.
+
+        By default, agents have no sensors that can be chosen.
+
+        Raises:
+            TltlError: TLT0815, for each mistake in ``choice``; by default, for all that it names.
+        """
+        keys = Sensors.__match_args__ if isinstance(choice, Sensors) else tuple(choice or ())
+        if choice is None or not keys or choice == level.sensors:
+            return level.sensors
+        title = f"agents have no sensors to choose in `{level.name}`"
+        raise TltlError([Diagnostic("TLT0815", f"{title}: `{key}`", help="leave it out") for key in keys])
+
     def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
         """Yield what ``sensors`` names but the level does not have, for example "the entity `exit`".
 
@@ -116,6 +160,14 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Return whether no player can meet the spec; False, also by default, if that is unknown."""
         del level, fspa
         return False
+
+    def play_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
+        """Return warnings that a player should read before play, such as of goals that nobody can reach.
+
+        By default none: the game does not search its levels.
+        """
+        del level, fspa
+        return []
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
         """Return the error to report if the level has caused ``error`` in play, else None.
@@ -155,14 +207,18 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         ``player`` is the name of the player in the recordings.
         """
 
-    @abstractmethod
     def expert_episodes(
         self, env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True
     ) -> Iterator[EpisodeT]:
         """Yield an episode of the scripted expert for each seed.
 
         An expert that is not ``careful`` plays as if no enemy could see it.
+
+        Raises:
+            TltlError: TLT0731, by default: the game has no scripted expert.
         """
+        del seeds, careful
+        raise no_expert_error(env.get_wrapper_attr("level"))
 
     @abstractmethod
     def read_episode(self, path: Path) -> EpisodeT:
@@ -176,9 +232,25 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def episode_bytes(self, episode: EpisodeT) -> bytes:
         """Return the bytes of the file of an episode; equal episodes give equal bytes."""
 
-    @abstractmethod
+    def check_replay(self, episode: EpisodeT) -> tuple[Diagnostic, ...] | None:
+        """Play the actions of an episode again; return TLT0824 if the episodes differ, else an empty tuple.
+
+        By default None: the game cannot play a recording again.
+
+        Raises:
+            TltlError: TLT0730, a package that plays is not installed.
+        """
+        del episode
+        return None
+
     def summary(self, episode: EpisodeT, index: int = 0) -> EpisodeSummary:
         """Return the summary of an episode; ``index`` is its number in an evaluation."""
+        return summary_of(episode, index)
+
+    def figures(self, episode: EpisodeT) -> GameFigures:
+        """Return the figures of an episode that only this game has; by default none."""
+        del episode
+        return GameFigures()
 
     @abstractmethod
     def cause(self, episode: EpisodeT) -> Cause:

@@ -62,6 +62,14 @@ class LevelFiles(ABC, Generic[LevelT]):
             TltlError: there is no such level or variant, or its file is invalid.
         """
 
+    def description(self, name: str, variant: Variant) -> str:
+        """Return, for people, what the overlays of a variant change; empty without overlays.
+
+        A game may describe the level instead if there are no overlays. Raises the errors of
+        :meth:`load_with_changes`.
+        """
+        return " ".join(self.load_with_changes(name, variant)[1])
+
     @abstractmethod
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
         """Yield the files that a level depends on, among them its spec.

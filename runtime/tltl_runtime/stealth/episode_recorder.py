@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
 import gymnasium
@@ -17,7 +16,8 @@ from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
-from tltlc.api import Diagnostic, Step, TltlError, fileio
+from tltl_runtime.support.writable_folder import writable_folder
+from tltlc.api import Step
 
 
 class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
@@ -152,20 +152,3 @@ def _write(folder: Path, episode: Episode) -> None:
     from tltl_runtime.stealth.recordings.file import write_episode
 
     write_episode(new_path(folder, file_stem(episode)), episode)
-
-
-def writable_folder(folder: Path) -> Path:
-    """Create ``folder`` if it is missing, test that files can be written into it, and return it.
-
-    Call this before play begins: a player should not learn after an hour that nothing is recorded.
-
-    Raises:
-        TltlError: TLT0005, the folder is not writable.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):
-            return folder
-    except OSError as error:
-        title = f"cannot write to `{folder}`: {fileio.reason(error)}"
-        raise TltlError([Diagnostic("TLT0005", title, help="name another folder")]) from None

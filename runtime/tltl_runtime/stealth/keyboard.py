@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from time import monotonic
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
+from tltl_runtime.game.keyboard import Recordings
+from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import VIEWS, View
@@ -17,17 +18,6 @@ from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.window.window import Keys, Window
 from tltl_runtime.stealth.world.player import DECISION
-
-
-class Recordings(Protocol):
-    """A store for the episodes that a person plays."""
-
-    def keep(self, episode: Episode) -> None:
-        """Write an unfinished episode, in place of the version that was written before."""
-
-    def save(self, episode: Episode) -> str:
-        """Write a finished episode and return the name of its file."""
-
 
 _IDLE: Final = (0, 0, 0, 0, 0)
 _STILL_WAIT: Final = 0.05
@@ -51,7 +41,7 @@ class KeyboardPlayer:
 
     def __init__(
         self,
-        env: RecordEpisode,
+        env: EpisodeRecorder[Episode],
         window: Window,
         renderer: Renderer,
         view: View,

@@ -17,26 +17,30 @@ from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level import UnreachableEntity
+from tltl_runtime.game.level_check import LevelCheck
 from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.game.recording_summary import GameFigures
 from tltl_runtime.game.sensors import SensorChoice, Sensors
-from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.stealth.capabilities.feasible import is_infeasible, unreachable_entities
+from tltl_runtime.stealth.capabilities.feasible import is_infeasible, reach_warnings, unreachable_entities
 from tltl_runtime.stealth.capabilities.vocabulary import params
+from tltl_runtime.stealth.films import StealthFilms
+from tltl_runtime.stealth.keyboard_play import StealthKeyboard
 from tltl_runtime.stealth.level import StealthLevel, fixed_places
 from tltl_runtime.stealth.levels import file
 from tltl_runtime.stealth.levels.dependencies import file_candidates, level_dependencies
 from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.observation.sensors import missing_sensors
+from tltl_runtime.stealth.observation.sensors import choose_sensors, missing_sensors
+from tltl_runtime.stealth.pictures import StealthPictures
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.episode_summary import summary_of
+from tltl_runtime.stealth.recordings.figures import figures
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes
 from tltl_runtime.stealth.snapshot import CHOICES
 from tltl_runtime.stealth.world.physics_errors import player_fault
-from tltlc.api import Fspa, RewardOptions, TltlError
+from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episode_recorder import RecordEpisode
@@ -76,12 +80,21 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         """
         return file_candidates(file.level_path(name), variant, file_name)
 
+    def description(self, name: str, variant: Variant) -> str:
+        """Return what the overlays of a variant change or, without overlays, what the level is about."""
+        level, changes = file.level_and_changes(name, variant)
+        return " ".join(changes) or level.doc
+
 
 class StealthGame(Game[StealthLevel, Episode]):
     """The stealth game, with the interface that all games of this package have."""
 
     choices = CHOICES
     level_files = StealthLevelFiles()
+    pictures = StealthPictures()
+    films = StealthFilms()
+    keyboard = StealthKeyboard()
+    has_expert = True
     modules = (__name__, "tltl_runtime.stealth.episode_recorder")
 
     def load_level(self, name: str, variant: str | Variant = "v0") -> StealthLevel:
@@ -104,6 +117,16 @@ class StealthGame(Game[StealthLevel, Episode]):
         from tltl_runtime.stealth.env import check_fit
 
         check_fit(level, fspa, spec)
+
+    def level_check(self, name: str, variant: str | Variant, sensors: SensorChoice | None) -> LevelCheck:
+        """Read a level, and search what a player can reach in it."""
+        from tltl_runtime.stealth.level_check import StealthLevelCheck
+
+        return StealthLevelCheck(name, variant, sensors)
+
+    def choose_sensors(self, level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
+        """Return the sensors of an agent: ``choice`` with the level's own for what it leaves out."""
+        return choose_sensors(level, choice)
 
     def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
         """Yield a text for each entity or signal that ``sensors`` names and the level lacks."""
@@ -128,6 +151,10 @@ class StealthGame(Game[StealthLevel, Episode]):
     def is_infeasible(self, level: StealthLevel, fspa: Fspa) -> bool:
         """Return whether no player can meet the spec; False if that is unknown."""
         return is_infeasible(level, fspa)
+
+    def play_warnings(self, level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
+        """Return a warning for each entity of a spec that no player can reach."""
+        return reach_warnings(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
         """Return TLT0806 if ``error`` says that the player has left the bounds, else None."""
@@ -178,9 +205,15 @@ class StealthGame(Game[StealthLevel, Episode]):
         """Return the bytes that a file of the episode contains."""
         return to_bytes(episode)
 
-    def summary(self, episode: Episode, index: int = 0) -> EpisodeSummary:
-        """Return the summary of an episode; ``index`` is its number in an evaluation."""
-        return summary_of(episode, index)
+    def check_replay(self, episode: Episode) -> tuple[Diagnostic, ...]:
+        """Play the actions of an episode again; return TLT0824 if the episodes differ in any bit."""
+        from tltl_runtime.stealth.recordings.replay_check import check_replay
+
+        return check_replay(episode)
+
+    def figures(self, episode: Episode) -> GameFigures:
+        """Return the health at the end of an episode, and for how long enemies saw the player."""
+        return figures(episode)
 
     def cause(self, episode: Episode) -> Cause:
         """Return why an episode ended, for example which enemy killed the player."""

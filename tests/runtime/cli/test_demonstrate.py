@@ -14,8 +14,8 @@ from PIL import Image
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.signals import signal_at_call, with_signals  # noqa: F401
 from tests.waiting import HANG_S
+from tltl_runtime.game.recording_check import check
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
-from tltl_runtime.stealth.recordings.check import check
 from tltl_runtime.stealth.recordings.file import read_episode
 
 

@@ -16,9 +16,10 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.watched import Watched
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tests.waiting import HANG_S
-from tltl_runtime.stealth.recordings.check import check, resimulate
+from tltl_runtime.game.recording_check import check
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import read_episode
+from tltl_runtime.stealth.recordings.replay_check import resimulate
 
 Run = Callable[..., Outcome]
 

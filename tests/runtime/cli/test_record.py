@@ -17,8 +17,8 @@ from tests.runtime.stealth.xvfb import keys, screen
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import HANG_S
 from tltl_runtime.cli.record import _DemonstrationRecorder
+from tltl_runtime.game.recording_check import check
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.recordings.check import check
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.training.imitation.demonstrations import Demonstrations
 

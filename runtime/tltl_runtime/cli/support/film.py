@@ -5,14 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from tltl_runtime.stealth.world.player import DECISION
+import click
+
+from tltl_runtime.game.capability_error import capability_error
+from tltl_runtime.game.films import Films
 from tltlc.api import cli, record
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.rendering.film import FilmView
+    from tltl_runtime.game.episode import RecordedEpisode
+    from tltl_runtime.game.level import Level
     from tltlc.api import Notation
 
 T = TypeVar("T")
@@ -28,43 +31,63 @@ _MAX_FRAMES_PER_SECOND: Final = 30.0
 class Film:
     """The options of a film.
 
-    ``rate`` is in frames per second. If it is None, the film has one frame per decision, but at
-    most 30 frames per second. ``size`` is in pixels.
+    ``view`` is one of those of the game; None is its usual one. ``rate`` is in frames per second. If
+    it is None, the film has one frame per decision, but at most 30 frames per second. ``size`` is in
+    pixels.
     """
 
-    view: FilmView = "third_person"
+    view: str | None = None
     speed: float = 1.0
     rate: float | None = None
     size: tuple[int, int] = (640, 480)
     notation: Notation = "english"
 
 
-def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
+def films_of(level: Level) -> Films[Any]:
+    """Return what draws films of a level's game; raises TltlError, TLT0731, if the game has none."""
+    films = level.game.films
+    if films is None:
+        raise capability_error(level, "has no films", "write the signals instead: `tltlc replay RECORDING -o NAME.csv`")
+    return films
+
+
+def write_film(path: Path, episode: RecordedEpisode, span: tuple[float, float], film: Film) -> None:
     """Write the film of an episode over a ``span`` of time, in seconds.
 
     The path's extension selects the format.
 
     Raises:
-        TltlError: TLT0005, the file cannot be written; TLT0730, no encoder for .mp4 is installed.
+        TltlError: TLT0005, the file cannot be written; TLT0730, no encoder for .mp4 is installed;
+            TLT0731, the game has no films.
+        UsageError: the game's films do not have the view.
     """
-    from tltl_runtime.stealth.rendering.film import frames
-    from tltl_runtime.stealth.rendering.film_file import NoEncoderError, write_gif, write_mp4
+    films = films_of(episode.level)
+    if film.view is not None and film.view not in films.views:
+        message = f"the films of `{episode.level.name}` have no view `{film.view}`: they have {', '.join(films.views)}"
+        raise click.UsageError(message, click.get_current_context(silent=True))
+    from tltl_runtime.cli.support.film_file import NoEncoderError, write_gif, write_mp4
     from tltlc.api import fileio
 
-    rate = film.rate or min(film.speed / DECISION, _MAX_FRAMES_PER_SECOND)
+    rate = film.rate or min(film.speed / _step_s(episode), _MAX_FRAMES_PER_SECOND)
     start, stop = span
     count = int((stop - start) / film.speed * rate + 1e-6) + 1
     times = [start + number * film.speed / rate for number in range(count)]
-    if times[-1] < stop - 1e-6 and stop == episode.snapshots[-1].time:
+    if times[-1] < stop - 1e-6 and stop == episode.times[-1]:
         # Always show the end of the episode.
         times.append(stop)
-    pictures = _with_progress(frames(episode, times, film.view, film.size, film.notation), len(times))
+    frames = films.frames(episode, times, film.view or films.views[0], film.size, film.notation)
+    pictures = _with_progress(frames, len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
         with fileio.replace_file(path) as temporary:
             write(temporary, pictures, 1 / rate)
     except NoEncoderError as error:
         raise cli.exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
+
+
+def _step_s(episode: RecordedEpisode) -> float:
+    """Return how long a decision takes on average, in seconds, to the nanosecond; 1 if that is nothing."""
+    return round(float(episode.times[-1]) / max(1, len(episode.actions)), 9) or 1.0
 
 
 def _with_progress(pictures: Iterable[T], count: int) -> Iterator[T]:

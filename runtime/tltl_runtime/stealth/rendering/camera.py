@@ -14,6 +14,9 @@ from tltlc.api import record
 View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
 
+FilmView = Literal["third_person", "top_down", "overview", "plan"]
+FILM_VIEWS: tuple[FilmView, ...] = (*VIEWS, "plan")
+
 SMALLEST, LARGEST = 16, 4096
 """The least and the greatest side of a picture, in pixels.
 

@@ -6,23 +6,21 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from math import cos, sin
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from tltl_runtime.game.films import Picture
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.rendering.camera import View
-from tltl_runtime.stealth.rendering.film_file import Picture
+from tltl_runtime.stealth.rendering.camera import FilmView, View
 from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import Notation, label_text
-
-FilmView = Literal["third_person", "top_down", "overview", "plan"]
 
 Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+from typing import Final
+
 from tltlc.api import Diagnostic, TltlError
+
+_PHYSICS: Final = "tltl_runtime.stealth.world.physics"
+"""The module of the physics, which raises the errors. It is slow to import, and may lack pybullet."""
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
@@ -11,7 +17,8 @@ def player_fault(error: RuntimeError) -> TltlError | None:
     For a level that was read from a file, such an error means that the player has left the level's
     bounds; this is a fault of the level. Other errors of the physics are not the level's fault.
     """
-    # Import this late, because it loads the physics.
+    if _PHYSICS not in sys.modules:
+        return None
     from tltl_runtime.stealth.world.physics import WorldError
 
     if not isinstance(error, WorldError) or error.body != "player":

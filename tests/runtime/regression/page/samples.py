@@ -7,6 +7,7 @@ from functools import cache
 
 from tests.runtime.stealth.expert_episodes import played
 from tltl_runtime.evaluation.figures import figures_of
+from tltl_runtime.game.episode_summary import summary_of
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
 from tltl_runtime.regression.report.case_report import CaseReport
@@ -15,7 +16,6 @@ from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.episode_summary import summary_of
 
 
 def navigation() -> tuple[Episode, ...]:

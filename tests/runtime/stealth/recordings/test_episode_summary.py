@@ -6,10 +6,11 @@ from contextlib import closing
 
 import pytest
 
+from tltl_runtime.game.episode_summary import summary_of
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.expert.expert import Expert
-from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, seen_steps, summary_of, was_chased
+from tltl_runtime.stealth.recordings.figures import opened_barriers, seen_steps, was_chased
 
 
 @pytest.mark.parametrize(("level", "careful"), [("navigation", True), ("cover_and_hide", False)])

@@ -19,15 +19,16 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tltl_runtime.game.level import LevelSpec, default_spec
+from tltl_runtime.game.recording_check import check
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.recordings.arrays import ARRAYS
-from tltl_runtime.stealth.recordings.check import check, check_replay, resimulate
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import from_bytes, read_episode, to_bytes, write_episode
+from tltl_runtime.stealth.recordings.replay_check import check_replay, resimulate
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -431,7 +432,9 @@ MESSAGES: dict[str, Callable[[Episode], str]] = {
 def test_an_invalid_recording_gives_the_expected_message(
     episode: Episode, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("tltl_runtime.stealth.recordings.check.versions", lambda: {**episode.versions, "numpy": "2.0"})
+    monkeypatch.setattr(
+        "tltl_runtime.stealth.recordings.replay_check.versions", lambda: {**episode.versions, "numpy": "2.0"}
+    )
     text, expected = MESSAGES[name](episode), GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         expected.write_text(text, encoding="utf-8")

@@ -7,10 +7,9 @@ from itertools import chain
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
-Picture = NDArray[np.uint8]
+from tltl_runtime.game.films import Picture
 
 
 class NoEncoderError(RuntimeError):

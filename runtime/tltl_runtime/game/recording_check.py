@@ -1,18 +1,17 @@
-"""Check a recording: run its spec's automaton again on its signals, and play its actions again."""
+"""Check a recording: run its spec's automaton again on its signals, and compare it with a replay."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.versions import versions
+from tltl_runtime.game.episode import RecordedEpisode
 from tltlc.api import Diagnostic, Monitor, TltlError
 
 _Difference = tuple[str, object, object]
 """The name of what differs, the recorded value, and the recomputed value."""
 
 
-def check(episode: Episode) -> tuple[Diagnostic, ...]:
+def check(episode: RecordedEpisode) -> tuple[Diagnostic, ...]:
     """Run the spec's automaton again on the recorded signals, and compare the results.
 
     Atoms, states, progress, rewards and the kind of end must equal the recorded ones. Return
@@ -31,67 +30,28 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
     return (Diagnostic("TLT0823", f"{title}{recorded}, but is {recomputed}", help=help_),)
 
 
-def resimulate(episode: Episode) -> int | None:
-    """Play the actions again from the seed; return the first step that differs in any bit.
+def replay_difference(episode: RecordedEpisode, row: int, versions: Mapping[str, str]) -> Diagnostic:
+    """Return TLT0824: an episode that was played again differs from its recording at step ``row``.
 
-    Return None if no step differs. Step 0 is the moment of the reset. A step differs if its
-    snapshot differs, or one of the spec's signals that the game supplies.
-
-    Raises:
-        TltlError: TLT0730, pybullet is not installed. :func:`check` does not need it.
+    Step 0 is the moment of the reset. ``versions`` are the present versions of what plays; the help
+    says which of them have changed since the recording.
     """
-    from tltl_runtime.stealth.simulation import Simulation
-    from tltl_runtime.stealth.world.physics import WorldError
-
-    names = [(column, signal.name) for column, signal in enumerate(episode.fspa.signals)]
-    row = 0
-    game = None
-    try:
-        game = Simulation(episode.level)
-        game.reset(episode.seed)
-        own = [(column, name) for column, name in names if name in game.readers]
-        for row, snapshot in enumerate(episode.snapshots):
-            if row:
-                game.step(episode.actions[row - 1].tolist())
-            signals = game.signals()
-            if game.snapshot() != snapshot or any(
-                signals[name] != episode.signals[row, column] for column, name in own
-            ):
-                return row
-    except WorldError:
-        return row
-    finally:
-        if game is not None:
-            game.close()
-    return None
-
-
-def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Return TLT0824 if :func:`resimulate` finds a difference, else an empty tuple.
-
-    The help of the diagnostic says which versions have changed since the recording. Raises the
-    errors of :func:`resimulate`.
-    """
-    row = resimulate(episode)
-    if row is None:
-        return ()
     when = f"at step {row}" if row else "at the start"
     title = f"played again from seed {episode.seed}, the episode is different {when}"
-    current = versions()
     changed = [
-        f"{name} {recorded} (now {current.get(name)})"
+        f"{name} {recorded} (now {versions.get(name)})"
         for name, recorded in episode.versions.items()
-        if recorded != current.get(name)
+        if recorded != versions.get(name)
     ]
     help_ = (
         f"it was recorded with {', '.join(changed)}"
         if changed
         else "the game's code or the recording has changed since"
     )
-    return (Diagnostic("TLT0824", title, help=help_),)
+    return Diagnostic("TLT0824", title, help=help_)
 
 
-def _differences(episode: Episode) -> Iterator[tuple[int, _Difference]]:
+def _differences(episode: RecordedEpisode) -> Iterator[tuple[int, _Difference]]:
     """Yield each difference between recorded and recomputed values, after the number of its step.
 
     Step 0 is the moment of the reset.

@@ -1,0 +1,27 @@
+"""Pictures of a game's episodes."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Generic
+
+from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.level_files import LevelT
+from tltl_runtime.game.recorder import EpisodeT
+from tltlc.api import Fspa, Notation
+
+
+class Pictures(ABC, Generic[LevelT, EpisodeT]):
+    """Draws episodes of a game from above, as PNG files."""
+
+    @abstractmethod
+    def episode(self, episode: EpisodeT, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
+        """Draw the path of an episode, with what remained to be satisfied in ``notation``.
+
+        ``size`` is the width and the height in pixels; by default, it fits the level.
+        """
+
+    @abstractmethod
+    def trajectories(self, level: LevelT, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
+        """Draw the trajectories of many episodes of a level that ``fspa`` judged."""

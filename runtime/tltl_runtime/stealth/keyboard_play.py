@@ -1,0 +1,45 @@
+"""The stealth game as a game that a person can play with the keyboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, cast
+
+from tltl_runtime.game.keyboard import Crouch, Keyboard, Recordings
+from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.stealth.rendering.camera import VIEWS, View
+from tltl_runtime.stealth.rendering.hud import KEYS
+
+_SIZE: Final = (640, 400)
+
+
+class StealthKeyboard(Keyboard[Episode]):
+    """Opens a window in which a person plays. It imports pygame and pybullet only then."""
+
+    views = VIEWS
+    keys = KEYS
+
+    def play(
+        self,
+        env: EpisodeRecorder[Episode],
+        recordings: Recordings,
+        *,
+        seed: int | None,
+        view: str,
+        crouch: Crouch,
+        enough: Callable[[], bool],
+    ) -> None:
+        """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true."""
+        from tltl_runtime.stealth.keyboard import KeyboardPlayer
+        from tltl_runtime.stealth.rendering.render import Renderer
+        from tltl_runtime.stealth.window.window import Window
+
+        level = env.get_wrapper_attr("level")
+        window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
+        renderer = Renderer(level, *_SIZE)
+        try:
+            KeyboardPlayer(env, window, renderer, cast(View, view), recordings, enough).play(seed)
+        finally:
+            renderer.close()
+            window.close()
