@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltl_runtime.cli.support.film import FILMS, Film, write_film
+from tltl_runtime.cli.support.film import FILMS, Film, films_of, write_film
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
@@ -15,7 +15,7 @@ from tltl_runtime.game.level_name import split_level
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.recordings.episode import Episode
+    from tltl_runtime.game.episode import RecordedEpisode
     from tltlc.api import Notation
 
 
@@ -60,18 +60,23 @@ def command(
     LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
-    from tltl_runtime.stealth.capabilities.feasible import reach_warnings
-    from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.episode_recorder import RecordEpisode
-    from tltl_runtime.stealth.expert.expert import expert_episodes
+    from tltl_runtime.game.capability_error import no_expert_error
+    from tltl_runtime.game.registry import game_of
 
     with cli.Report() as report:
         file, variant = split_level(level)
-        env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
+        game = game_of(file)
+        loaded = game.load_level(file, variant or "v0")
+        if not game.has_expert:
+            raise no_expert_error(loaded)
+        if film:
+            films_of(loaded)
+        player = "careless expert" if careless else "expert"
+        env = game.recorder(game.make_env(file, variant or "v0", spec), player)
         played = succeeded = 0
         try:
-            report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
-            for episode in expert_episodes(env, range(seed, seed + episodes), careful=not careless):
+            report.add(game.play_warnings(loaded, env.get_wrapper_attr("task").fspa))
+            for episode in game.expert_episodes(env, range(seed, seed + episodes), careful=not careless):
                 path = _write(folder, episode, film, notation)
                 played, succeeded = played + 1, succeeded + episode.success
                 click.echo(episode_line(episode, str(path)))
@@ -86,21 +91,22 @@ def command(
     return report.status
 
 
-def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
-    """Write the recording and a plan (.png) of an episode; return the path of the recording.
+def _write(folder: Path, episode: RecordedEpisode, film: str | None, notation: Notation) -> Path:
+    """Write the recording of an episode, and a plan (.png) if its game draws one; return the recording's path.
 
     Also write a film unless ``film``, the extension of its file, is None.
     """
     from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
-    from tltl_runtime.stealth.recordings.file import to_bytes
-    from tltl_runtime.stealth.rendering.plan import draw_episode
     from tltlc.api import fileio
 
-    recording = to_bytes(episode)
-    path = new_path(folder, file_stem(episode), recording, [".png", *([f".{film}"] if film else [])])
+    game = episode.level.game
+    recording, pictures = game.episode_bytes(episode), game.pictures
+    endings = [*([".png"] if pictures else []), *([f".{film}"] if film else [])]
+    path = new_path(folder, file_stem(episode), recording, endings)
     name = path.name.removesuffix(SUFFIX)
-    fileio.write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
+    plan = {f"{name}.png": pictures.episode(episode, notation=notation)} if pictures else {}
+    fileio.write_files(folder, {**plan, path.name: recording})
     if film:
-        span = (0.0, episode.snapshots[-1].time)
+        span = (0.0, float(episode.times[-1]))
         write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))
     return path

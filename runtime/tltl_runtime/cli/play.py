@@ -4,26 +4,32 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from tltl_runtime.cli.support.keyboard_play import keyboard_options, play_at_keyboard
+from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX
-from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episode_recorder import RecordEpisode
-from tltl_runtime.stealth.rendering.camera import View
-from tltl_runtime.stealth.rendering.hud import KEYS
+from tltl_runtime.game.registry import STEALTH, game_named, game_of
 from tltlc.api import cli
+
+if TYPE_CHECKING:
+    from tltl_runtime.game.keyboard import Crouch
+
+
+def _keys() -> str:
+    """Return the lines that say which key does what in the stealth game."""
+    keyboard = game_named(STEALTH).keyboard
+    return "\n".join(f"  {line}" for line in (keyboard.keys if keyboard else ()))
 
 
 @click.command(
     epilog=f"""\b
 Keys:
-  {KEYS[0]}
-  {KEYS[1]}
+{_keys()}
 
 \b
 Examples:
@@ -48,7 +54,7 @@ Examples:
 )
 @keyboard_options
 @level_faults()
-def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str) -> None:
+def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch) -> None:
     """Play a level with the keyboard, in real time, in a window.
 
     The spec judges you while you play: the screen shows what remains to be done. Each episode is recorded to a file,
@@ -58,10 +64,13 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
 
 
 def _play(
-    path: str, variant: str | None, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str
+    path: str, variant: str | None, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch
 ) -> None:
-    env = RecordEpisode(make_env(path, variant or "v0", spec), "keyboard")
+    game = game_of(path)
+    level = game.load_level(path, variant or "v0")
+    keyboard_of(level)
+    env = game.recorder(game.make_env(path, variant or "v0", spec), "keyboard")
     try:
-        play_at_keyboard(env, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
+        play_at_keyboard(env, level, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
     finally:
         env.close()

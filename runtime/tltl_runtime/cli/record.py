@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
-from tltl_runtime.cli.support.keyboard_play import keyboard_options, play_at_keyboard
+from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.plain_text import plain_text
@@ -17,10 +17,10 @@ from tltl_runtime.game.level_name import split_level
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.episode_recorder import RecordEpisode
-    from tltl_runtime.stealth.keyboard import Recordings
-    from tltl_runtime.stealth.recordings.episode import Episode
-    from tltl_runtime.stealth.rendering.camera import View
+    from tltl_runtime.game.episode import RecordedEpisode
+    from tltl_runtime.game.keyboard import Crouch, Recordings
+    from tltl_runtime.game.level import Level
+    from tltl_runtime.game.recorder import EpisodeRecorder
     from tltl_runtime.training.imitation.demonstrations import Attempt, Demonstrations
 
 
@@ -67,8 +67,8 @@ def command(
     episodes: int,
     seed: int | None,
     folder: Path | None,
-    view: View,
-    crouch: str,
+    view: str,
+    crouch: Crouch,
 ) -> int:
     """Record demonstrations: episodes of the scripted expert or of a person that meet the spec.
 
@@ -79,23 +79,26 @@ def command(
     The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
     """
     with cli.Report() as report, ignore_closed_pipe():
-        from tltl_runtime.stealth.env import make_env
-        from tltl_runtime.stealth.episode_recorder import RecordEpisode
+        from tltl_runtime.game.registry import game_of
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
         file, variant = _level_and_variant(level, spec)
-        env = RecordEpisode(make_env(file, variant, spec), by)
+        game = game_of(file)
+        loaded = game.load_level(file, variant)
+        _check_player(loaded, by)
+        env = game.recorder(game.make_env(file, variant, spec), by)
         demonstrations: Demonstrations | None = None
         try:
-            loaded, task = env.get_wrapper_attr("level"), env.get_wrapper_attr("task")
+            task = env.get_wrapper_attr("task")
             folder = folder or Path("demonstrations") / f"{loaded.name}-{loaded.variant}-{task.fspa.name}"
             demonstrations = Demonstrations(folder, loaded, task)
             for line in _existing_lines(demonstrations, episodes):
                 click.echo(line, err=True)
             if demonstrations.count < episodes and by == "keyboard":
-                _record_person(env, demonstrations, episodes, seed, view, crouch)
+                _record_person(env, loaded, demonstrations, episodes, seed, view, crouch)
             elif demonstrations.count < episodes:
-                _record_expert(env, demonstrations, episodes, seed or 0, report)
+                report.add(game.play_warnings(loaded, task.fspa))
+                _record_expert(env, demonstrations, episodes, seed or 0)
         except KeyboardInterrupt:
             if demonstrations:
                 click.echo(
@@ -143,21 +146,33 @@ def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]
     return lines
 
 
-def _record_expert(
-    env: RecordEpisode, demonstrations: Demonstrations, requested: int, seed: int, report: cli.Report
-) -> None:
-    from tltl_runtime.stealth.capabilities.feasible import reach_warnings
+def _check_player(level: Level, by: str) -> None:
+    """Raise TltlError, TLT0731, if a level's game has no player ``by``, that is ``expert`` or ``keyboard``."""
+    if by == "keyboard":
+        keyboard_of(level)
+    elif not level.game.has_expert:
+        from tltl_runtime.game.capability_error import no_expert_error
+
+        raise no_expert_error(level)
+
+
+def _record_expert(env: EpisodeRecorder[Any], demonstrations: Demonstrations, requested: int, seed: int) -> None:
     from tltl_runtime.training.imitation.demonstrations import expert_attempts
 
-    report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
     for attempt in expert_attempts(env, demonstrations, requested, seed):
         click.echo(_attempt_line(attempt, requested))
 
 
 def _record_person(
-    env: RecordEpisode, demonstrations: Demonstrations, requested: int, seed: int | None, view: View, crouch: str
+    env: EpisodeRecorder[Any],
+    level: Level,
+    demonstrations: Demonstrations,
+    requested: int,
+    seed: int | None,
+    view: str,
+    crouch: Crouch,
 ) -> None:
-    from tltl_runtime.stealth.episode_recorder import writable_folder
+    from tltl_runtime.support.writable_folder import writable_folder
 
     writable_folder(demonstrations.folder)
 
@@ -167,7 +182,7 @@ def _record_person(
     def enough() -> bool:
         return demonstrations.count >= requested
 
-    play_at_keyboard(env, recordings, seed=seed, view=view, crouch=crouch, enough=enough)
+    play_at_keyboard(env, level, recordings, seed=seed, view=view, crouch=crouch, enough=enough)
 
 
 class _DemonstrationRecorder:
@@ -183,10 +198,10 @@ class _DemonstrationRecorder:
     def __init__(self, demonstrations: Demonstrations, requested: int) -> None:
         self._demonstrations, self._requested = demonstrations, requested
 
-    def keep(self, episode: Episode) -> None:
+    def keep(self, episode: RecordedEpisode) -> None:
         """Do nothing: an unfinished episode has not met the spec yet."""
 
-    def save(self, episode: Episode) -> str:
+    def save(self, episode: RecordedEpisode) -> str:
         """Write the episode if it is a demonstration; return the text that the player sees."""
         try:
             attempt = self._demonstrations.add(episode)
@@ -196,7 +211,7 @@ class _DemonstrationRecorder:
         count = f"{attempt.kept} of {self._requested}"
         return f"{attempt.path.name}, {count}" if attempt.path else f"not kept, {count}"
 
-    def _save_elsewhere(self, episode: Episode, error: TltlError) -> str:
+    def _save_elsewhere(self, episode: RecordedEpisode, error: TltlError) -> str:
         from tltl_runtime.cli.support.episode_text import episode_line
         from tltl_runtime.cli.support.recording_files import write_elsewhere
         from tltl_runtime.game.recording_path import file_stem
@@ -211,9 +226,7 @@ class _DemonstrationRecorder:
 
 def _attempt_line(attempt: Attempt, requested: int) -> str:
     from tltl_runtime.cli.support.episode_text import episode_line
-    from tltl_runtime.stealth.recordings.episode import Episode
 
-    assert isinstance(attempt.episode, Episode)
     count = f"{attempt.kept} of {requested}"
     return episode_line(attempt.episode, f"{attempt.path} ({count})" if attempt.path else f"not kept ({count})")
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from tltl_runtime.stealth.recordings.cause import cause
-from tltl_runtime.stealth.recordings.episode import Episode
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.support.number_text import number, share
 
 
-def episode_line(episode: Episode, result: str) -> str:
+def episode_line(episode: RecordedEpisode, result: str) -> str:
     """Describe an episode in a line; ``result`` says where its recording is, or that there is none.
 
     If the episode failed, a second line gives the cause.
     """
-    steps, seconds = len(episode.actions), episode.snapshots[-1].time
+    steps, seconds = len(episode.actions), episode.times[-1]
     end = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"
     line = f"{end}, progress {share(episode.progress[-1])}, return {number(episode.rewards.sum(), 3)}: {result}"
-    return line if episode.success else f"{line}\n  {cause(episode).text}"
+    return line if episode.success else f"{line}\n  {episode.level.game.cause(episode).text}"

@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from tltl_runtime.game.capability_error import capability_error
 from tltlc.api import cli
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.episode_recorder import RecordEpisode
-    from tltl_runtime.stealth.keyboard import Recordings
-    from tltl_runtime.stealth.rendering.camera import View
+    from tltl_runtime.game.keyboard import Crouch, Keyboard, Recordings
+    from tltl_runtime.game.level import Level
+    from tltl_runtime.game.recorder import EpisodeRecorder
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _CROUCHES: Final = ("hold", "toggle")
-_SIZE: Final = (640, 400)
+_VIEWS: Final = ("third_person", "top_down", "overview")
+"""The views of the stealth game, which need no import of it here."""
 
 
 def keyboard_options(function: Function) -> Function:
     """Add the options ``--view`` and ``--crouch`` to a command."""
-    from tltl_runtime.stealth.rendering.camera import VIEWS
-
     crouch = click.option(
         "--crouch",
         type=click.Choice(_CROUCHES),
@@ -34,7 +34,7 @@ def keyboard_options(function: Function) -> Function:
     )
     view = click.option(
         "--view",
-        type=click.Choice(VIEWS),
+        type=click.Choice(_VIEWS),
         default="third_person",
         show_default=True,
         help="Where the camera is when the window opens.",
@@ -42,39 +42,40 @@ def keyboard_options(function: Function) -> Function:
     return view(crouch(function))
 
 
+def keyboard_of(level: Level) -> Keyboard[Any]:
+    """Return what lets a person play a level's game; raises TltlError, TLT0731, if the game has no such thing."""
+    keyboard = level.game.keyboard
+    if keyboard is None:
+        advice = "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`"
+        raise capability_error(level, "has no window in which a person can play", advice)
+    return keyboard
+
+
 def play_at_keyboard(
-    env: RecordEpisode,
+    env: EpisodeRecorder[Any],
+    level: Level,
     recordings: Callable[[str], Recordings],
     *,
     seed: int | None,
-    view: View,
-    crouch: str,
+    view: str,
+    crouch: Crouch,
     enough: Callable[[], bool] = lambda: False,
 ) -> None:
-    """Open a window and play episodes of ``env`` until the player stops.
+    """Open a window and play episodes of ``env``, on ``level``, until the player stops.
 
     Playing also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
     LEVEL-VARIANT, and returns the object that stores the episodes. ``seed`` is the seed of the
-    first episode. ``crouch`` is ``hold`` or ``toggle``. Warnings about unreachable goals are
-    printed to standard error before the window opens.
+    first episode. If the game has no such ``view``, the window shows the game's usual one. Warnings
+    about unreachable goals are printed to standard error before the window opens.
 
     Raises:
-        TltlError: TLT0830, no window can be opened; TLT0730, pygame is not installed.
+        TltlError: TLT0830, no window can be opened; TLT0730, a package is not installed; TLT0731, no
+            person can play the game.
     """
-    from tltl_runtime.stealth.capabilities.feasible import reach_warnings
-    from tltl_runtime.stealth.keyboard import KeyboardPlayer
-    from tltl_runtime.stealth.rendering.render import Renderer
-    from tltl_runtime.stealth.window.window import Window
-
-    level = env.get_wrapper_attr("level")
+    keyboard = keyboard_of(level)
     receiver = recordings(f"{level.name}-{level.variant}")
     # Reset first: if the level lacks something that the spec needs, the error comes before the window opens.
     env.reset()
-    cli.show(reach_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
-    window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
-    renderer = Renderer(level, *_SIZE)
-    try:
-        KeyboardPlayer(env, window, renderer, view, receiver, enough).play(seed)
-    finally:
-        renderer.close()
-        window.close()
+    cli.show(level.game.play_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
+    shown = view if view in keyboard.views else keyboard.views[0]
+    keyboard.play(env, receiver, seed=seed, view=shown, crouch=crouch, enough=enough)

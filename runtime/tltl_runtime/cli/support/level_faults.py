@@ -1,4 +1,4 @@
-"""Report a player who leaves the level: it is an error of the level, not a bug."""
+"""Report errors in play that a level causes, such as a player who leaves it: they are not bugs."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ from contextlib import contextmanager
 
 @contextmanager
 def level_faults() -> Iterator[None]:
-    """Within this context, raise TltlError, TLT0806, if a player has left the level.
+    """Within this context, raise TltlError if a level has caused an error in play.
 
-    Other errors of the physics engine are bugs: they propagate.
+    In the stealth game, this is TLT0806: a player has left the level. Other errors, such as those of
+    a physics engine, are bugs: they propagate.
     """
     try:
         yield
     except RuntimeError as error:
-        from tltl_runtime.stealth.world.physics_errors import player_fault
+        from tltl_runtime.game.registry import level_fault
 
-        fault = player_fault(error)
+        fault = level_fault(error)
         if fault is None:
             raise
         raise fault from error

@@ -9,10 +9,8 @@ from tempfile import gettempdir
 
 import click
 
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.recording_path import SUFFIX, new_path
-from tltl_runtime.stealth.recordings.cause import cause
-from tltl_runtime.stealth.recordings.episode import Episode
-from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.support.number_text import share
 from tltlc.api import Diagnostic, TltlError, fileio
 
@@ -45,21 +43,21 @@ class RecordingFiles:
             title = f"cannot record to `{self._folder}`: {problem}"
             raise TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
 
-    def keep(self, episode: Episode) -> None:
+    def keep(self, episode: RecordedEpisode) -> None:
         """Write an unfinished episode, in case the process is killed; ``save`` removes the file."""
         if self._unfinished is None:
             self._unfinished = new_path(self._folder, f"{self._name}.unfinished")
         with suppress(TltlError):
-            write_episode(self._unfinished, episode)
+            _write(self._unfinished, episode)
 
-    def save(self, episode: Episode) -> str:
+    def save(self, episode: RecordedEpisode) -> str:
         """Write an episode, print its result, and return the path of its file.
 
         If the folder cannot be written, the file goes to the folder for temporary files.
         """
         path = new_path(self._folder, self._name)
         try:
-            write_episode(path, episode)
+            _write(path, episode)
         except TltlError as error:
             path = write_elsewhere(episode, self._name, error)
         if self._unfinished is not None:
@@ -69,7 +67,7 @@ class RecordingFiles:
         return str(path)
 
 
-def write_elsewhere(episode: Episode, name: str, error: TltlError) -> Path:
+def write_elsewhere(episode: RecordedEpisode, name: str, error: TltlError) -> Path:
     """Print an error and write the episode to the folder for temporary files instead; return its path.
 
     Raises:
@@ -77,8 +75,12 @@ def write_elsewhere(episode: Episode, name: str, error: TltlError) -> Path:
     """
     click.echo(f"{error}", err=True)
     path = new_path(Path(gettempdir()), name)
-    write_episode(path, episode)
+    _write(path, episode)
     return path
+
+
+def _write(path: Path, episode: RecordedEpisode) -> None:
+    fileio.write_file(path, episode.level.game.episode_bytes(episode))
 
 
 def _write_problem(folder: Path, make: bool) -> str:
@@ -93,5 +95,6 @@ def _write_problem(folder: Path, make: bool) -> str:
     return "" if os.access(folder, os.W_OK) else "permission denied"
 
 
-def _result_text(episode: Episode) -> str:
-    return f"{cause(episode).text}; {episode.verdict}, progress {share(episode.progress[-1])}, seed {episode.seed}"
+def _result_text(episode: RecordedEpisode) -> str:
+    cause = episode.level.game.cause(episode)
+    return f"{cause.text}; {episode.verdict}, progress {share(episode.progress[-1])}, seed {episode.seed}"
