@@ -116,9 +116,8 @@ def command(
         from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import EpisodeRequest, PlayerName
+        from tltl_runtime.game.registry import game_of
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
-        from tltl_runtime.stealth.capabilities.feasible import reach_warnings
-        from tltl_runtime.stealth.levels.file import load_level
         from tltlc.api import fileio, replace
 
         path, name, variant = policy_place(policy, level, "tltlc evaluate")
@@ -132,7 +131,8 @@ def command(
         # The spec of a level often has the level's name: do not repeat it.
         labels = tuple(dict.fromkeys((loaded_policy.card.level, loaded_policy.card.fspa.name)))
         setup = replace(setup, player=PlayerName(labels, sha256))
-        report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
+        game = game_of(setup.level)
+        report.add(game.play_warnings(game.load_level(setup.level, setup.variant), setup.fspa))
         command_line = _replay_command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, command_line, folder, json_file)
         # Check this only now: the report may go into the folder, which EvaluationFiles has created.

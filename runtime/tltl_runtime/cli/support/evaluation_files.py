@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
@@ -13,15 +14,11 @@ from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.game.recording_path import SUFFIX, new_path
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.stealth.episode_recorder import writable_folder
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.recordings.file import from_bytes, read_episode
-from tltl_runtime.stealth.rendering.plan import draw_episode
-from tltl_runtime.stealth.rendering.trajectories import draw_trajectories
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import to_json
+from tltl_runtime.support.writable_folder import writable_folder
 from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"
@@ -74,7 +71,8 @@ class EvaluationFiles:
         self._setup, self._path, self._sha256, self._first, self._folder = setup, path, sha256, first, folder
         self._command = command
         self._json = None if cli.is_stdout(json_file) else json_file
-        self._level = load_level(setup.level, setup.variant)
+        self._game = game_of(setup.level)
+        self._level = self._game.load_level(setup.level, setup.variant)
         self._summaries: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
@@ -103,9 +101,12 @@ class EvaluationFiles:
             self._trajectories[sampled].append(result.trajectory)
         if result.recording and self._folder is not None:
             stem = f"{self._name}-{self._setup.seed}-{result.request.index}-{CHOICES[sampled]}"
-            path = new_path(self._folder, stem, result.recording, [".png"])
-            plan = draw_episode(from_bytes(result.recording, path.name))
-            files = {path.name: result.recording, f"{path.name.removesuffix(SUFFIX)}.png": plan}
+            pictures = self._game.pictures
+            path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
+            files = {path.name: result.recording}
+            if pictures:
+                episode = self._game.episode_from_bytes(result.recording, path.name)
+                files[f"{path.name.removesuffix(SUFFIX)}.png"] = pictures.episode(episode)
             fileio.write_files(self._folder, files)
             self._recorded.append(path.name)
 
@@ -135,7 +136,7 @@ class EvaluationFiles:
         return {
             "level": self._level.name,
             "variant": self._level.variant,
-            "level_hash": level_hash(self._level),
+            "level_hash": self._game.level_hash(self._level),
             "spec": setup.fspa.name,
             "seed": setup.seed,
             "first": self._first,
@@ -155,27 +156,31 @@ class EvaluationFiles:
     def write(self, text: str) -> str:
         """Write the JSON report ``text`` and, if there is a folder, the pictures of trajectories.
 
-        Return a description of the folder's contents; empty without a folder.
+        There are none if the game draws none. Return a description of the folder's contents; empty without a folder.
         """
         if self._json is not None:
             fileio.write_file(self._json, text, "name another place with --json")
         if self._folder is None:
             return ""
-        pictures: dict[str, str | bytes] = {}
-        for sampled, trajectories in self._trajectories.items():
-            if trajectories:
-                title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
-                pictures[_PICTURES[sampled]] = draw_trajectories(self._level, self._setup.fspa, trajectories, title)
+        pictures = dict(self._pictures())
         fileio.write_files(self._folder, {_REPORT: text, **pictures})
-        count = len(self._recorded)
-        recordings_text = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
+        count, has_plans = len(self._recorded), bool(self._recorded and self._game.pictures)
+        recordings_text = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * has_plans}"
         hint = f"; look at {next(iter(pictures))} first" if pictures else ""
         return f"{self._folder}: {recordings_text}, {', '.join((*pictures, _REPORT))}{hint}"
+
+    def _pictures(self) -> Iterator[tuple[str, bytes]]:
+        """Yield the name and the content of each picture of trajectories."""
+        for sampled, trajectories in self._trajectories.items():
+            if trajectories and self._game.pictures:
+                title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
+                picture = self._game.pictures.trajectories(self._level, self._setup.fspa, trajectories, title)
+                yield _PICTURES[sampled], picture
 
     def _note(self) -> str:
         """Return a note if the policy was trained on another level, or before this level changed; else ``""``."""
         card, level = self._setup.policy.card, self._level
-        if level_hash(level) == card.level_hash:
+        if self._game.level_hash(level) == card.level_hash:
             return ""
         if (level.name, level.variant) == (card.level, card.variant):
             return "note: the level has changed since the policy was trained on it\n"
@@ -204,7 +209,7 @@ class EvaluationFiles:
     def _is_by_another_policy(self, path: Path) -> bool:
         """Whether a file is a recording of another policy."""
         try:
-            player = read_episode(path).player
+            player = self._game.read_episode(path).player
         except TltlError:
             return False
         return is_labelled_policy(player) and not self._setup.player.is_of(player)
