@@ -1,4 +1,8 @@
-"""Levels and variants in arguments: ``LEVEL``, ``LEVEL:VARIANT``, ``LEVEL:VARIANT+OVERLAY``."""
+"""Levels and variants in arguments: ``LEVEL``, ``LEVEL:VARIANT``, ``LEVEL:VARIANT+OVERLAY``.
+
+A level may also be a scene of a game file: ``FILE.game.toml``, ``FILE.game.toml:SCENE`` or
+``FILE.game.toml:SCENE:VARIANT``. Without ``SCENE``, it is the first scene of the file.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,12 @@ from typing import Final
 from tltlc.api import record
 
 _PLACE: Final = re.compile(r"(.+?):([A-Za-z_][A-Za-z0-9_]*(?:\+.+)?)\Z", re.DOTALL)
+GAME_FILE: Final = ".game.toml"
+"""The ending of the names of game files."""
+
+_SCENE: Final = re.compile(
+    rf"(?P<file>.+?{re.escape(GAME_FILE)})(?::(?P<scene>[^:]+)(?::(?P<variant>[^:]+))?)?\Z", re.DOTALL
+)
 _OVERLAY: Final = re.compile(r"\+([^+/\\]*(?=\+|\Z)|.+?\.toml(?=\+|\Z)|[^+]*)", re.DOTALL)
 
 
@@ -54,6 +64,10 @@ def split_level(argument: str) -> tuple[str, str | None]:
     The variant is None if the argument has none. The path of an existing file is not split, and
     neither is a drive letter of Windows.
     """
+    scene = _SCENE.match(argument)
+    if scene:
+        level = scene["file"] if scene["scene"] is None else f"{scene['file']}:{scene['scene']}"
+        return level, scene["variant"]
     match = _PLACE.match(argument)
     if not match or os.path.exists(argument):  # noqa: PTH110
         return argument, None
@@ -61,6 +75,19 @@ def split_level(argument: str) -> tuple[str, str | None]:
     if len(level) == 1 and level.isalpha() and os.name == "nt":
         return argument, None
     return level, variant
+
+
+def is_scene(level: str) -> bool:
+    """Whether a level's name or path, without a variant, is that of a scene in a game file."""
+    return _SCENE.match(level) is not None
+
+
+def split_scene(level: str) -> tuple[str, str | None]:
+    """Split the level ``FILE.game.toml:SCENE`` into file and scene; the scene is None if there is none."""
+    match = _SCENE.match(level)
+    if match is None:
+        raise ValueError(f"`{level}` is not a scene of a game file")
+    return match["file"], match["scene"]
 
 
 def parse_variant(text: str) -> Variant:

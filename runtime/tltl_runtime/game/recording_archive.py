@@ -7,10 +7,11 @@ shapes and ranges are checked.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from io import BytesIO
 from math import inf
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -29,6 +30,10 @@ That is about half a million decisions of the stealth game.
 """
 
 ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
+
+STEALTH_FORMAT: Final = "tltl-episode"
+SCENE_FORMAT: Final = "tltl-scene-episode"
+"""The formats of recordings, by which the game of a recording is known."""
 
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that contain the bytes of a UTF-8 text."""
@@ -66,6 +71,16 @@ def archive_bytes(meta: Any, fspa: Fspa, arrays: Arrays) -> bytes:
     return archive.getvalue()
 
 
+@fileio.resource_limits()
+def format_of(path: Path) -> str | None:
+    """Return the format of a recording; None if the file cannot be read or is no recording."""
+    try:
+        archive = RecordingArchive(fileio.read_bytes(path, str(path), MAX_BYTES), str(path), ())
+        return archive.document()[0]
+    except TltlError:
+        return None
+
+
 class RecordingArchive:
     """The archive with the bytes ``data``; messages call the file ``name``.
 
@@ -86,22 +101,33 @@ class RecordingArchive:
         if "meta" not in self._members:
             raise ERRORS.unreadable_error(name, "it is another kind of archive")
 
-    def meta(self, formats: Collection[str], version: int) -> dict[str, Any]:
+    def meta(self, format_: str, version: int) -> dict[str, Any]:
         """Return the JSON object ``meta``.
 
         Raises:
-            TltlError: TLT0820, its ``format`` is none of ``formats``; TLT0821, its ``version`` is another;
+            TltlError: TLT0820, its ``format`` is another; TLT0821, its ``version`` is another;
                 TLT0822, it is not JSON.
         """
-        text = self._text("meta")
-        try:
-            document = fileio.parse_json(text, fileio.limits.RECORDED_TEXTS["meta"])
-        except (ValueError, RecursionError):
-            raise ERRORS.broken_error(self._name, "`meta` is not JSON") from None
-        if not isinstance(document, dict) or document.get("format") not in formats:
+        own, document = self.document()
+        if own != format_:
             raise ERRORS.unreadable_error(self._name, "it is another kind of archive")
         ERRORS.check_version(self._name, document.get("version"), version)
         return document
+
+    def document(self) -> tuple[str, dict[str, Any]]:
+        """Return the format of the recording, and the JSON object ``meta``, of any version.
+
+        Raises:
+            TltlError: TLT0820, it is no recording; TLT0822, ``meta`` is not JSON.
+        """
+        try:
+            document = fileio.parse_json(self._text("meta"), fileio.limits.RECORDED_TEXTS["meta"])
+        except (ValueError, RecursionError):
+            raise ERRORS.broken_error(self._name, "`meta` is not JSON") from None
+        format_ = document.get("format") if isinstance(document, dict) else None
+        if format_ not in (STEALTH_FORMAT, SCENE_FORMAT):
+            raise ERRORS.unreadable_error(self._name, "it is another kind of archive")
+        return format_, document
 
     def automaton(self) -> Fspa:
         """Return the automaton; raises TltlError, TLT0822 or TLT0601 to TLT0604, if it is invalid."""

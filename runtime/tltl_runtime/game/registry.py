@@ -5,20 +5,30 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.game.game import Game
+from tltl_runtime.game.level_name import is_scene
+from tltl_runtime.game.recording_archive import SCENE_FORMAT, STEALTH_FORMAT, format_of
 from tltlc.api import TltlError
 
 STEALTH: Final = "stealth"
+GYMNASIUM: Final = "gymnasium"
+"""The games that game files describe, all together."""
 
-_MODULES: Final = {STEALTH: "tltl_runtime.stealth.stealth_game"}
+_MODULES: Final = {
+    STEALTH: "tltl_runtime.stealth.stealth_game",
+    GYMNASIUM: "tltl_runtime.gymnasium_games.gymnasium_game",
+}
 """The modules of the games. The ``GAME`` in a module is the game.
 
 They are imported by their names, so that commands, evaluation, training and regression tests need
 not import a particular game. The maps of ``regression.report.page.stealth`` still import the stealth
 game themselves.
 """
+
+_GAMES_BY_FORMAT: Final = {STEALTH_FORMAT: STEALTH, SCENE_FORMAT: GYMNASIUM}
 
 
 def game_named(name: str) -> Game[Any, Any]:
@@ -39,14 +49,16 @@ def game_of(level: str) -> Game[Any, Any]:
 
     The level need not exist.
     """
-    del level  # All levels are of the stealth game.
-    return game_named(STEALTH)
+    return game_named(GYMNASIUM if is_scene(level) else STEALTH)
 
 
 def game_of_recording(path: str | os.PathLike[str]) -> Game[Any, Any]:
-    """Return the game whose episode is recorded in a file, which need not exist."""
-    del path  # All recordings are of the stealth game.
-    return game_named(STEALTH)
+    """Return the game whose episode is recorded in a file.
+
+    If the file is missing or no recording, return a game whose method ``read_episode`` raises the
+    error.
+    """
+    return game_named(_GAMES_BY_FORMAT.get(format_of(Path(path)) or "", STEALTH))
 
 
 def level_fault(error: RuntimeError) -> TltlError | None:

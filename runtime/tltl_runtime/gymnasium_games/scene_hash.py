@@ -42,6 +42,21 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
     )
 
 
+def file_hashes(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> tuple[tuple[str, str], ...]:
+    """Return the name and the SHA-256, in hexadecimal, of each file that a variant of a scene consists of.
+
+    The first is the game file; the others are the scene's ``files``, and the Python files in the game's
+    folder that the game imports. Names are relative to this folder.
+
+    Raises:
+        TltlError: the errors of :func:`scene_hash`.
+    """
+    own = variant_of(game, scene, variant)
+    contents = {_name(game.folder, file): content_of(file) for file in (game.path, *own.files)}
+    contents |= python_files(game.folder, _named_modules(game))
+    return tuple((name, _hash(data)) for name, data in contents.items())
+
+
 def _named_modules(game: GameFile) -> list[str]:
     """Return the modules that a game file names."""
     functions = [function.module for function in (game.python, game.signals) if function]

@@ -9,7 +9,14 @@ from typing import Final, Literal
 
 import numpy as np
 
-from tltl_runtime.game.recording_archive import ERRORS, MAX_BYTES, Arrays, RecordingArchive, archive_bytes
+from tltl_runtime.game.recording_archive import (
+    ERRORS,
+    MAX_BYTES,
+    STEALTH_FORMAT,
+    Arrays,
+    RecordingArchive,
+    archive_bytes,
+)
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.levels.level_object_check import fault
@@ -19,7 +26,7 @@ from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Fspa, RewardOptions, fileio, record, replace
 
-FORMAT: Final = "tltl-episode"
+FORMAT: Final = STEALTH_FORMAT
 VERSION: Final = 1
 
 
@@ -147,7 +154,7 @@ def _names(level: StealthLevel, fspa: Fspa) -> AxisNames:
 
 def _read_meta(archive: RecordingArchive, name: str) -> Meta:
     try:
-        meta = from_json(Meta, archive.meta([FORMAT], VERSION), "meta")
+        meta = from_json(Meta, archive.meta(FORMAT, VERSION), "meta")
     except (RecordJsonError, RecursionError) as error:
         raise ERRORS.broken_error(name, str(error)) from None
     if wrong := fault(meta.level):

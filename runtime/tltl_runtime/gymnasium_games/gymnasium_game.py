@@ -1,0 +1,116 @@
+"""The games of game files as one :class:`~tltl_runtime.game.game.Game`.
+
+Each of its levels is a scene of a game file, which says how the environment is made.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import gymnasium
+
+from tltl_runtime.game.episode import Cause
+from tltl_runtime.game.game import Game
+from tltl_runtime.game.level_name import Variant, parse_variant, split_scene
+from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.game.sensors import SensorChoice
+from tltl_runtime.gymnasium_games.scene_cause import scene_cause
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltl_runtime.gymnasium_games.scene_episode_file import (
+    read_scene_episode,
+    scene_episode_bytes,
+    scene_episode_from_bytes,
+)
+from tltl_runtime.gymnasium_games.scene_files import SceneFiles
+from tltl_runtime.gymnasium_games.scene_level import SceneLevel
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltlc.api import Fspa, RewardOptions
+
+
+class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
+    """All games that game files describe."""
+
+    level_files = SceneFiles()
+    modules = (__name__, "tltl_runtime.gymnasium_games.scene_recorder", "tltl_runtime.gymnasium_games.scene_env")
+
+    def load_level(self, name: str, variant: str | Variant = "v0") -> SceneLevel:
+        """Load a scene, ``FILE.game.toml:SCENE``, in one of its variants; nothing is imported or run."""
+        chosen = parse_variant(variant) if isinstance(variant, str) else variant
+        return self.level_files.load_with_changes(name, chosen)[0]
+
+    def level_hash(self, level: SceneLevel) -> str:
+        """Return the hash of everything in the game file and the scene's files that can change an episode."""
+        return level.content_hash
+
+    def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
+        """Do nothing: which signals a scene has is only known when it is played."""
+
+    def make_env(
+        self,
+        level: str | os.PathLike[str],
+        variant: str | Variant = "v0",
+        spec: str | Path | Fspa | None = None,
+        *,
+        sensors: SensorChoice | None = None,
+        reward: RewardOptions | None = None,
+        params: Mapping[str, float] | None = None,
+        render_mode: str | None = None,
+    ) -> TltlEnv:
+        """Make an environment of a scene with a spec, by default the spec of the scene.
+
+        ``sensors`` are ignored, because the environment makes the observation.
+        """
+        from tltl_runtime.gymnasium_games.scene_env import make_scene_env
+
+        del sensors
+        name = os.fspath(level)
+        loaded = self.load_level(name, variant)
+        path, _ = split_scene(name)
+        env = make_scene_env(
+            Path(path), loaded.name, loaded.variant, spec, reward=reward, params=params, render_mode=render_mode
+        )
+        env.level = loaded  # type: ignore[attr-defined]
+        return env
+
+    def recorder(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> EpisodeRecorder[SceneEpisode]:
+        """Wrap an environment to record its episodes, with ``player`` as the player's name."""
+        from tltl_runtime.gymnasium_games.scene_recorder import SceneRecorder
+
+        return SceneRecorder(env, player)
+
+    def expert_episodes(
+        self, env: EpisodeRecorder[SceneEpisode], seeds: Iterable[int], *, careful: bool = True
+    ) -> Iterator[SceneEpisode]:
+        """Yield an episode of the game's own expert, ``tltl_expert``, for each seed."""
+        del careful
+        expert = env.get_wrapper_attr("tltl_expert")()
+        for seed in seeds:
+            observation, _ = env.reset(seed=seed)
+            over = False
+            while not over:
+                observation, _, terminated, truncated, _ = env.step(expert.choose(observation))
+                over = terminated or truncated
+            yield env.episode
+
+    def read_episode(self, path: Path) -> SceneEpisode:
+        """Read a recorded episode from a file."""
+        return read_scene_episode(path)
+
+    def episode_from_bytes(self, data: bytes, name: str) -> SceneEpisode:
+        """Return the episode in the bytes of a file; messages call the file ``name``."""
+        return scene_episode_from_bytes(data, name)
+
+    def episode_bytes(self, episode: SceneEpisode) -> bytes:
+        """Return the bytes that a file of the episode contains."""
+        return scene_episode_bytes(episode)
+
+    def cause(self, episode: SceneEpisode) -> Cause:
+        """Return why an episode ended."""
+        return scene_cause(episode)
+
+
+GAME: Final = GymnasiumGame()
+"""The games of game files. :mod:`tltl_runtime.game.registry` finds it by this name."""

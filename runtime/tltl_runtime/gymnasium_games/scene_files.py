@@ -1,0 +1,81 @@
+"""Find and read the scenes of game files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from tltl_runtime.game.level_files import LevelFiles
+from tltl_runtime.game.level_name import Variant, split_scene
+from tltl_runtime.gymnasium_games.game_argument import scene_of, variant_of
+from tltl_runtime.gymnasium_games.game_file import GameFile, Scene, read_game_file
+from tltl_runtime.gymnasium_games.scene_hash import file_hashes, scene_hash
+from tltl_runtime.gymnasium_games.scene_level import SceneLevel
+from tltl_runtime.spec.spec_files import spec_files
+from tltlc.api import Diagnostic, TltlError
+
+
+class SceneFiles(LevelFiles[SceneLevel]):
+    """Finds and reads scenes. The name of a scene is ``FILE.game.toml`` or ``FILE.game.toml:SCENE``."""
+
+    def names(self) -> tuple[str, ...]:
+        """Return no names: no game file comes with the package."""
+        return ()
+
+    def path(self, name: str) -> Path:
+        """Return the path of the game file."""
+        return Path(split_scene(name)[0])
+
+    def variants(self, name: str) -> tuple[str, ...]:
+        """Return the variants of a scene, in the order of the game file."""
+        return tuple(_scene(name)[1].variants)
+
+    def overlays(self, name: str) -> tuple[str, ...]:
+        """Return no names: scenes have no overlays."""
+        del name
+        return ()
+
+    def load_with_changes(self, name: str, variant: Variant) -> tuple[SceneLevel, tuple[str, ...]]:
+        """Load a scene in one of its variants; there are no overlays, so there are no descriptions.
+
+        Raises:
+            TltlError: the errors of ``read_game_file``; TLT0800, there is no such scene or variant.
+        """
+        if variant.overlays:
+            title = f"`{variant.overlays[0]}` cannot be added: the scenes of a game file have no overlays"
+            raise TltlError([Diagnostic("TLT0800", title, help="write a variant in the game file instead")])
+        game, scene = _scene(name)
+        own = variant_of(game, scene.name, variant.name)
+        level = SceneLevel(
+            name=scene.name,
+            variant=variant.name,
+            game_name=game.name,
+            options=own.options,
+            spec=own.spec,
+            content_hash=scene_hash(game, scene.name, variant.name),
+            files=file_hashes(game, scene.name, variant.name),
+        )
+        return level, ()
+
+    def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
+        """Yield the game file, the files of the scene, and its spec."""
+        yield self.path(name)
+        try:
+            game, scene = _scene(name)
+            own = variant_of(game, scene.name, variant.name)
+        except TltlError:
+            return
+        yield from own.files
+        if own.spec is not None:
+            yield from spec_files(own.spec.file)
+
+    def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
+        """Yield the path of a file of the scene: its name is relative to the folder of the game file."""
+        del variant
+        yield self.path(name).parent / file_name
+
+
+def _scene(name: str) -> tuple[GameFile, Scene]:
+    path, scene = split_scene(name)
+    game = read_game_file(Path(path))
+    return game, scene_of(game, scene)

@@ -1,0 +1,63 @@
+"""The scenes of a game file as levels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
+
+from tltl_runtime.game.geometry import Region
+from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.game.sensors import Sensors
+from tltlc.api import record
+
+if TYPE_CHECKING:
+    from tltl_runtime.gymnasium_games.gymnasium_game import GymnasiumGame
+
+_NO_SENSORS: Final = Sensors((), (), None)
+
+
+def _spec_text(spec: LevelSpec | None) -> str:
+    return "" if spec is None else spec.text
+
+
+@record
+class SceneLevel:
+    """A variant of a scene of a game file.
+
+    ``game_name`` is the name of the game. ``options`` are the keyword arguments with which the
+    environment is made. ``content_hash`` is the SHA-256, in hexadecimal, of everything in the game
+    file and the scene's files that can change an episode. ``files`` has the name and the SHA-256 of
+    each of these files; the game file is the first.
+    """
+
+    json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
+
+    name: str
+    variant: str
+    game_name: str
+    options: Mapping[str, Any]
+    spec: LevelSpec | None
+    content_hash: str
+    files: tuple[tuple[str, str], ...]
+
+    @property
+    def game(self) -> GymnasiumGame:
+        """The game of all levels that are scenes of game files."""
+        from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+
+        return GAME
+
+    @property
+    def sensors(self) -> Sensors:
+        """No sensors: the environment makes the observation."""
+        return _NO_SENSORS
+
+    @property
+    def bounds(self) -> None:
+        """Unknown."""
+
+    @property
+    def regions(self) -> tuple[Region, ...]:
+        """None: a game file names no parts of a scene."""
+        return ()

@@ -1,0 +1,146 @@
+"""Record episodes of scenes while they are played."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any, SupportsFloat
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import RecordConstructorArgs
+
+from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltl_runtime.policies.spaces.action_layout import action_layout
+from tltl_runtime.policies.spaces.values import flat_action
+from tltlc.api import Diagnostic, Step, TltlError
+
+
+class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
+    """A wrapper that records the current episode and changes no observation, reward or info.
+
+    ``env`` is an environment of a scene, or wrappers around one. ``player`` is the player's name in the
+    recording.
+
+    Raises:
+        TltlError: TLT0844, the actions are of a space that cannot be recorded.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> None:
+        RecordConstructorArgs.__init__(self, player=player)
+        gymnasium.Wrapper.__init__(self, env)
+        self._judge = judging_wrapper(env)
+        self._player = player
+        self._layout = action_layout(env.action_space)
+        self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
+        self._has_positions = env.has_wrapper_attr("tltl_positions")
+        self._has_cause = env.has_wrapper_attr("tltl_cause")
+        self._rows: _Rows | None = None
+        self._over = False
+
+    @property
+    def episode(self) -> SceneEpisode:
+        """A copy of the episode so far; raises RuntimeError before the first reset."""
+        if self._rows is None:
+            raise RuntimeError("there is no episode before the first reset")
+        rows, task, count = self._rows, self._judge.task, len(self._rows.steps)
+        last = rows.steps[-1] if rows.steps else None
+        clock_s = self.env.get_wrapper_attr("tltl_clock_s") if self.env.has_wrapper_attr("tltl_clock_s") else 1.0
+        return SceneEpisode(
+            level=self.env.get_wrapper_attr("level"),
+            fspa=task.fspa,
+            params=dict(task.params),
+            player=self._player,
+            seed=rows.seed,
+            layout=self._layout,
+            actions=np.array(rows.actions, dtype=np.float64).reshape(count, self._layout.width),
+            times=np.arange(count + 1) * clock_s,
+            positions=np.array(rows.positions, dtype=np.float64) if self._has_positions else None,
+            signals=np.array(rows.signals, dtype=np.float64).reshape(count + 1, len(self._names)),
+            atoms=np.array(rows.atoms, dtype=np.float64).reshape(count, len(task.fspa.atoms)),
+            states=np.array([0, *(step.state for step in rows.steps)], dtype=np.int32),
+            progress=np.array([0.0, *(step.progress for step in rows.steps)], dtype=np.float64),
+            rewards=np.array([step.reward for step in rows.steps], dtype=np.float64),
+            verdict=last.verdict if last else task.fspa.states[0].verdict,
+            success=rows.success,
+            end=recorded_end(last, rows.success),
+            killer=rows.killer,
+            reward=task.reward,
+            versions=versions(),
+        )
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin a new episode and discard the previous one; without a seed, draw one from the environment's."""
+        if seed is None:
+            seed = int(self.np_random.integers(1 << 31))
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._rows, self._over = _Rows(seed), False
+        self._add_moment(self._rows)
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """Take a step in the environment; record it unless the episode was already over.
+
+        Raises:
+            RuntimeError: there was no reset before.
+        """
+        if self._rows is None:
+            raise RuntimeError("there is no episode before the first reset")
+        flat = flat_action(self._layout, action)
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        if not self._over:
+            step = self._judge.taken
+            assert step is not None
+            self._rows.add(flat.tolist(), tuple(info["atoms"].values()), step, info["success"])
+            self._add_moment(self._rows)
+            self._over = terminated or truncated
+            if self._over and self._has_cause:
+                self._rows.killer = str(self.env.get_wrapper_attr("tltl_cause")() or "")
+        return observation, reward, terminated, truncated, info
+
+    def _add_moment(self, rows: _Rows) -> None:
+        sample = self._judge.sample
+        rows.signals.append([float(sample[name]) for name in self._names])
+        if self._has_positions:
+            rows.positions.append(player_position(self.env.get_wrapper_attr("tltl_positions")()))
+
+
+class _Rows:
+    """The data of an episode that is still being played, with a row for each step.
+
+    ``signals`` and ``positions`` have one more row: the first is for the moment of the reset.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
+        self.signals: list[list[float]] = []
+        self.positions: list[tuple[float, float, float]] = []
+        self.actions: list[list[float]] = []
+        self.atoms: list[tuple[float, ...]] = []
+        self.steps: list[Step] = []
+        self.success = False
+        self.killer = ""
+
+    def add(self, action: list[float], atoms: tuple[float, ...], step: Step, success: bool) -> None:
+        self.actions.append(action)
+        self.atoms.append(atoms)
+        self.steps.append(step)
+        self.success = success
+
+
+def player_position(positions: Mapping[str, Sequence[SupportsFloat]]) -> tuple[float, float, float]:
+    """Return the position of the ``player`` among those that a game gives; z is 0 if it gives x and y alone.
+
+    Raises:
+        TltlError: TLT0781, there is no position of the player, or it is not two or three finite numbers.
+    """
+    place = positions.get("player")
+    numbers = [] if place is None else [float(number) for number in place]
+    if len(numbers) not in (2, 3) or not all(map(isfinite, numbers)):
+        title = "the game's `tltl_positions` gives no position of `player`"
+        help_ = "return two or three numbers for it: `{'player': (1.0, 2.0)}`"
+        raise TltlError([Diagnostic("TLT0781", title, help=help_)])
+    x, y, z = (*numbers, 0.0)[:3]
+    return x, y, z
