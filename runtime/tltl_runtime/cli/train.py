@@ -180,12 +180,12 @@ def command(
                 click.echo(line, err=True)
         # These imports take seconds, so they come after the first messages.
         from tltl_runtime.cli.support.training_progress import stopped_line, train_with_display
-        from tltl_runtime.stealth.capabilities.feasible import reach_warnings
-        from tltl_runtime.stealth.levels.file import load_level
+        from tltl_runtime.game.registry import game_of
         from tltl_runtime.training.files.record import write_record
 
         if is_first:
-            report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
+            game = game_of(run.level)
+            report.add(game.play_warnings(game.load_level(run.level, run.variant), run.fspa))
         try:
             last = train_with_display(run, resume=resume is not None, again=again)
         except KeyboardInterrupt:

@@ -44,6 +44,11 @@ def game_named(name: str) -> Game[Any, Any]:
     return game
 
 
+def shipped_levels() -> tuple[str, ...]:
+    """Return the names of the levels that come with the package, which are of the stealth game."""
+    return game_named(STEALTH).level_files.names()
+
+
 def game_of(level: str) -> Game[Any, Any]:
     """Return the game that a level belongs to; ``level`` is its name or the path of its file.
 

@@ -10,12 +10,12 @@ import click
 
 from tltl_runtime.cli.support.policy_path import check_level_is_shipped, policy_file, policy_place
 from tltl_runtime.cli.support.sensor_options import option_of
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.level import Sensors, StealthLevel
-from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.files.settings import TrainingSettings
 from tltl_runtime.training.files.settings_file import read_values
@@ -81,7 +81,7 @@ def with_policy_network(
 
 
 def check_initial_policy(
-    initial: InitialPolicyOptions, level: StealthLevel, fspa: Fspa, sensor_options: Mapping[str, Any]
+    initial: InitialPolicyOptions, level: Level, fspa: Fspa, sensor_options: Mapping[str, Any]
 ) -> Sensors:
     """Check the initial policy; return its sensors, which the agent uses.
 
@@ -115,11 +115,11 @@ def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
 
 
 def _sensor_differences(
-    initial: InitialPolicyOptions, level: StealthLevel, sensor_options: Mapping[str, Any]
+    initial: InitialPolicyOptions, level: Level, sensor_options: Mapping[str, Any]
 ) -> Iterator[str]:
     """Yield a sentence for each option that asks for other sensors than those of the policy."""
     own = initial.card.sensors
-    sensors = choose_sensors(level, sensor_options) if sensor_options else own
+    sensors = level.game.choose_sensors(level, sensor_options) if sensor_options else own
     for key in sensor_options:
         if getattr(sensors, key) != getattr(own, key):
             own_option, option = option_of(key, own), option_of(key, sensors)

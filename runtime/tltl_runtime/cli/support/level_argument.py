@@ -10,14 +10,14 @@ from shlex import quote
 import click
 
 from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.spec.task import read_spec
-from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def names_level(text: str) -> bool:
     """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level in the package, and not an existing path."""
-    return not fileio.exists(text) and split_level(text)[0] in level_names()
+    return not fileio.exists(text) and split_level(text)[0] in shipped_levels()
 
 
 def check_spelling(text: str) -> None:
@@ -27,7 +27,7 @@ def check_spelling(text: str) -> None:
     checked.
     """
     name = split_level(text)[0]
-    close = get_close_matches(name, level_names(), n=1)
+    close = get_close_matches(name, shipped_levels(), n=1)
     if close and re.fullmatch(r"[\w-]+", name) and not fileio.exists(text):
         title = f"there is neither a file nor a level `{text}`"
         raise TltlError([Diagnostic("TLT0001", title, help=f"did you mean the level `{close[0]}`?")])
@@ -44,7 +44,7 @@ def check_named(policy: Path | None, level: str | None) -> None:
         fileio.read_bytes(policy, str(policy), 0)
     if level is not None:
         name, variant = split_level(level)
-        load_level(name, variant or "v0")
+        game_of(name).load_level(name, variant or "v0")
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:
@@ -88,7 +88,7 @@ def own_level(spec: str, how: str = "with --level") -> str:
     beside = Path(fileio.split_spec_name(spec)[0]).parent / f"{fspa.level}.toml"
     if fileio.is_file(beside):
         return str(beside)
-    if fspa.level not in level_names():
+    if fspa.level not in shipped_levels():
         title = (
             f"there is no level `{fspa.level}`: `{beside}` does not exist, and no level of that name comes with tltlc"
         )

@@ -7,8 +7,8 @@ from shlex import quote
 
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
 from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.policies.shipped import shipped_policy
-from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.training.files.metrics import METRICS, read_metrics
 from tltl_runtime.training.files.run_file import POLICY, RUN, named_trainings, read_level_and_variant, resume_command
 from tltlc.api import Diagnostic, TltlError, fileio
@@ -55,7 +55,7 @@ def check_level_is_shipped(level: str, policy: Path, command: str) -> None:
 
     The policy's file does not contain the path of that level.
     """
-    if level not in level_names():
+    if level not in shipped_levels():
         title = f"there is no level `{level}`: the policy was trained on a level of your own"
         help_ = f"name its file: `{command} {quote(str(policy))} --level {level}.toml`"
         raise TltlError([Diagnostic("TLT0800", title, help=help_)])
@@ -110,7 +110,7 @@ def _shipped_policy_file(level: str) -> Path:
     """Return the policy that comes with a level; raises TltlError, TLT0853, if there is none."""
     path = shipped_policy(level)
     if path is None:
-        load_level(level)
+        game_of(level).load_level(level)
         help_ = f"name a policy that you trained, e.g. with `tltlc train --level {level}`"
         raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
     return path

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.level import Sensors
+    from tltl_runtime.game.sensors import Sensors
 
     _Type = click.ParamType[Any]
 else:
@@ -24,8 +24,8 @@ def sensor_options(command: Function) -> Function:
     """Add the options ``--entities``, ``--variables``, ``--map`` and their ``--no-`` forms to a command.
 
     The command gets ``sensors``, a mapping for
-    :func:`tltl_runtime.stealth.observation.sensors.choose_sensors`. Without options, it is empty: the level's
-    own sensors apply.
+    :meth:`tltl_runtime.game.game.Game.choose_sensors`. Without options, it is empty: the level's own
+    sensors apply.
     """
 
     @wraps(command)

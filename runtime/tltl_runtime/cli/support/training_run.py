@@ -24,14 +24,10 @@ from tltl_runtime.cli.support.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import parse_variant, split_level
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import differences
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import load_task, read_spec
-from tltl_runtime.stealth.capabilities.vocabulary import params
-from tltl_runtime.stealth.env import check_fit
-from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.stealth.levels.identity import level_hash
-from tltl_runtime.stealth.observation.sensors import choose_sensors
 from tltl_runtime.support.number_text import duration
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.training.files.checkpoint import read_checkpoint
@@ -95,18 +91,19 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     path, variant = _level_and_variant(options, initial)
     settings = new_settings(options, initial)
     _check_demonstrations(options.demonstrations, settings)
-    level = load_level(path, variant)
-    offered = params(level)
+    game = game_of(path)
+    level = game.load_level(path, variant)
+    offered = game.params(level)
     spec: str | Fspa = options.spec or (initial.card.fspa if initial else default_spec(level))
     # If the policy's spec is used, keep the policy's parameters, except for those that the level supplies.
     known = initial.card.params if initial and options.spec is None else {}
     own = {name: value for name, value in known.items() if name not in offered}
     task = load_task(spec, own, offered=offered)
-    check_fit(level, task.fspa, spec)
+    game.check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
     seed = options.seed or 0
     sensors = (
-        choose_sensors(level, options.sensors or None)
+        game.choose_sensors(level, options.sensors or None)
         if initial is None
         else check_initial_policy(initial, level, task.fspa, options.sensors)
     )
@@ -211,9 +208,14 @@ def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
         check_level_exists(run.level, run.variant.text, resume_command(run.folder))
         return run
     path, variant = split_level(options.level)
-    if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
+    game = game_of(path)
+    if game.level_hash(game.load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
     return replace(run, level=path, variant=parse_variant(variant or "v0"))
+
+
+def _level_path(level: str) -> Path:
+    return game_of(level).level_files.path(level).resolve()
 
 
 def _check_folder(folder: Path) -> None:
@@ -289,8 +291,8 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
     where = f"the training in `{run.folder}`"
     if options.level is not None:
         path, variant = split_level(options.level)
-        ours = level_path(run.level).resolve(), run.variant.absolute()
-        if (level_path(path).resolve(), parse_variant(variant or "v0").absolute()) != ours:
+        ours = _level_path(run.level), run.variant.absolute()
+        if (_level_path(path), parse_variant(variant or "v0").absolute()) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant.text}`, not on `{path}:{variant or 'v0'}`"
     if options.spec is not None:
         fspa, _ = read_spec(options.spec)
@@ -305,7 +307,9 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
         yield f"{where} uses the method `{run.settings.method}`, not `{options.method}`"
     if options.policy is not None and (difference := policy_difference(run, options.policy)):
         yield difference
-    sensors = choose_sensors(load_level(run.level, run.variant), options.sensors) if options.sensors else run.sensors
+    game, sensors = game_of(run.level), run.sensors
+    if options.sensors:
+        sensors = game.choose_sensors(game.load_level(run.level, run.variant), options.sensors)
     # Sensors without an option stay as they are in the training, whatever the level's own sensors are.
     for key in options.sensors:
         if getattr(sensors, key) != getattr(run.sensors, key):
