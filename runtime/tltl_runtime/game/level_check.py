@@ -17,13 +17,10 @@ class SensedPart:
 
 
 class LevelCheck(ABC):
-    """One variant of a level, read and searched, so that it can be checked against specs.
-
-    ``name`` and ``variant`` are those of the level.
-    """
+    """One variant of a level, read and searched, so that it can be checked against specs."""
 
     name: str
-    variant: str
+    """The name of the level."""
 
     spec: str | None
     """The spec that the level is made for, as the argument ``FILE.tltl:NAME``; None if there is none."""

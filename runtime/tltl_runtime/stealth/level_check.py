@@ -31,7 +31,7 @@ class StealthLevelCheck(LevelCheck):
     def __init__(self, name: str, variant: str | Variant, sensors: SensorChoice | None) -> None:
         self._level, level_warnings = read_level(name, variant)
         self._observer, self._reach = Observer(self._level, sensors), compute_reach(self._level)
-        self.name, self.variant = self._level.name, self._level.variant
+        self.name = self._level.name
         self.spec = self._level.spec.text if self._level.spec else None
         self.warnings = (*level_warnings, *check_height(self._level, self._reach))
         self.sensed = tuple(_sensed_parts(self._observer))

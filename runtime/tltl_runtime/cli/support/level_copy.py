@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.stealth.levels.default_spec import LEVELS
-from tltl_runtime.stealth.levels.file import level_names, level_path, load_level, variants
+from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio
 
 _STARTER: Final = Path(__file__).parents[2] / "starter" / "vault.toml"
 """A small level to start with, the example of docs/levels.md."""
 
-NAMES: Final = (_STARTER.stem, *level_names())
+NAMES: Final = (_STARTER.stem, *shipped_levels())
 """The names of the levels that can be copied."""
 
 
@@ -24,16 +24,20 @@ def files(name: str) -> dict[str, str]:
     :data:`NAMES` or a ``.toml`` file.
 
     Raises:
-        TltlError: TLT0800, there is no such level; the errors of :func:`load_level`.
+        TltlError: TLT0800, there is no such level; the errors of loading it.
     """
     if name not in NAMES and not name.endswith(".toml"):
         title = f"there is no level `{name}` to copy"
         raise TltlError([Diagnostic("TLT0800", title, help=suggestion(name, NAMES))])
-    path = _STARTER if name == _STARTER.stem else level_path(name)
-    levels = [load_level(str(path), variant) for variant in variants(str(path))]
-    names = dict.fromkeys(name for level in levels for name, _ in level.files)
-    paths = {name: next(place / name for place in (path.parent, LEVELS) if (place / name).is_file()) for name in names}
-    spec = levels[0].spec
+    game = game_of(name)
+    path = _STARTER if name == _STARTER.stem else game.level_files.path(name)
+    levels = {Variant(text): game.load_level(str(path), text) for text in game.level_files.variants(str(path))}
+    paths = {
+        file_name: next(filter(Path.is_file, game.level_files.candidates(str(path), variant, file_name)))
+        for variant, level in levels.items()
+        for file_name, _ in level.files
+    }
+    spec = next(iter(levels.values())).spec
     if spec:
         paths[spec.file.name] = spec.file
     texts = {name: fileio.read_source(file, name).text for name, file in paths.items()}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltl_runtime.stealth.levels.file import changes, level_names, load_level, variants
+from tltl_runtime.game.level_name import parse_variant
+from tltl_runtime.game.registry import STEALTH, game_named, shipped_levels
 
 
 def rows() -> Iterator[dict[str, str]]:
@@ -13,7 +14,8 @@ def rows() -> Iterator[dict[str, str]]:
     The value of ``doc`` is what the overlays of the variant change or, without overlays, what the
     level is about.
     """
-    for name in level_names():
-        for variant in variants(name):
-            doc = " ".join(changes(name, variant)) or load_level(name, variant).doc
+    level_files = game_named(STEALTH).level_files
+    for name in shipped_levels():
+        for variant in level_files.variants(name):
+            doc = level_files.description(name, parse_variant(variant))
             yield {"name": name, "variant": variant, "doc": " ".join(doc.split())}
