@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from tltl_runtime.cli.support.level_faults import level_faults
+from tltl_runtime.cli.support.level_options import level_options
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.worker_options import WorkersType
@@ -41,9 +42,7 @@ Examples:
 """
 )
 @click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "--level", metavar="LEVEL[:VARIANT]", help="The level to play (default: the level of the training; VARIANT: v0)."
-)
+@level_options("The level to play (default: the level of the training; VARIANT: v0).")
 @click.option(
     "--episodes",
     metavar="N",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from tltl_runtime.cli.support.level_options import level_options
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import sensor_options
@@ -56,9 +57,7 @@ Watching, from another terminal:
 """
 )
 @click.argument("spec", metavar="[SPEC[:NAME]]", required=False)
-@click.option(
-    "--level", metavar="LEVEL[:VARIANT]", help="The level (default: the level that the spec names; VARIANT: v0)."
-)
+@level_options("The level (default: the level that the spec names; VARIANT: v0).")
 @output_folder(
     "The folder for the policy and the measurements (default: training/LEVEL-VARIANT-SPEC-SEED; imitation appends "
     "-imitation, --from appends -tuned)."

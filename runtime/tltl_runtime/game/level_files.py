@@ -46,6 +46,14 @@ class LevelFiles(ABC, Generic[LevelT]):
             TltlError: TLT0800, no level of the game has that name.
         """
 
+    def level_name(self, name: str) -> str:
+        """Return the name of a level as :class:`~tltl_runtime.game.level.Level` has it; the level need not load.
+
+        Raises:
+            TltlError: TLT0800, no level of the game has that name.
+        """
+        return self.path(name).stem
+
     @abstractmethod
     def variants(self, name: str) -> tuple[str, ...]:
         """Return the variants of a level, in the order of its file; raises the errors of loading it."""

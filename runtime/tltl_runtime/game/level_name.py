@@ -82,6 +82,19 @@ def is_scene(level: str) -> bool:
     return _SCENE.match(level) is not None
 
 
+def level_file(level: str) -> Path | None:
+    """Return the path of the file of a level, named without a variant; None if it is a name of the package."""
+    if is_scene(level):
+        return Path(split_scene(level)[0])
+    return Path(level) if level.endswith(".toml") else None
+
+
+def with_level_file(level: str, path: Path) -> str:
+    """Return a level, named without a variant, whose file is at ``path`` instead."""
+    scene = split_scene(level)[1] if is_scene(level) else None
+    return str(path) if scene is None else f"{path}:{scene}"
+
+
 def split_scene(level: str) -> tuple[str, str | None]:
     """Split the level ``FILE.game.toml:SCENE`` into file and scene; the scene is None if there is none."""
     match = _SCENE.match(level)

@@ -26,6 +26,10 @@ class SceneFiles(LevelFiles[SceneLevel]):
         """Return the path of the game file."""
         return Path(split_scene(name)[0])
 
+    def level_name(self, name: str) -> str:
+        """Return the name of a scene; raises the errors of ``read_game_file`` if ``name`` has none."""
+        return split_scene(name)[1] or _scene(name)[1].name
+
     def variants(self, name: str) -> tuple[str, ...]:
         """Return the variants of a scene, in the order of the game file."""
         return tuple(_scene(name)[1].variants)

@@ -9,10 +9,10 @@ from gymnasium import spaces
 from tltl_runtime.game.level_check import LevelCheck, SensedPart
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.sensors import SensorChoice
+from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.stealth.capabilities.capabilities import check_capabilities, params_from_level, used_entities
 from tltl_runtime.stealth.capabilities.feasible import check_height, check_reach
 from tltl_runtime.stealth.capabilities.reach import compute_reach
-from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.stealth.levels.file import read_level
 from tltl_runtime.stealth.observation.observation import Observer
 from tltlc.api import Diagnostic, Fspa, Spec

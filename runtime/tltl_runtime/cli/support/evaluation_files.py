@@ -13,6 +13,7 @@ from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup, is_lab
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.level_name import level_file, with_level_file
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -114,7 +115,8 @@ class EvaluationFiles:
         """Return the text report."""
         setup = self._setup
         # Show the path of a user's level, which may have the name of a level of the package.
-        level = path_text(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
+        file = level_file(setup.level)
+        level = self._level.name if file is None else with_level_file(setup.level, Path(path_text(file)))
         head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(evaluations)}"

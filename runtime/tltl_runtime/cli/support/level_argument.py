@@ -9,7 +9,7 @@ from shlex import quote
 
 import click
 
-from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.level_name import GAME_FILE, is_scene, level_file, split_level, with_level_file
 from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.spec.task import read_spec
 from tltlc.api import Diagnostic, TltlError, fileio
@@ -65,10 +65,14 @@ def check_level_exists(level: str, variant: str, command: str) -> None:
 
     The help of the error suggests ``command`` with ``--level``.
     """
-    if level.endswith(".toml") and not fileio.exists(level):
+    file = level_file(level)
+    if file is not None and not fileio.exists(file):
         suffix = "" if variant == "v0" else f":{variant}"
-        title = f"the file of the level, `{level}`, no longer exists"
-        help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{suffix}`"
+        option = "--level FILE.toml"
+        if is_scene(level):
+            option = f"--game {with_level_file(level, Path(f'FILE{GAME_FILE}'))}"
+        title = f"the file of the level, `{file}`, no longer exists"
+        help_ = f"put it back, or say where it is now: `{command} {option}{suffix}`"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
 
 

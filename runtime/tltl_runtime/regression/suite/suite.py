@@ -11,7 +11,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import Variant, parse_variant, split_level
+from tltl_runtime.game.level_name import GAME_FILE, Variant, is_scene, parse_variant, split_level, split_scene
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
@@ -217,7 +217,7 @@ def _case(
                 Diagnostic("TLT0805", title, (table.label_of("overlay"),), suggestion(overlay, overlay_names))
             )
     base = variant or variant_names[0]
-    name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
+    name = name or f"{_short_name(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
     played = Variant(base, overlays)
     return Case(
         name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place
@@ -245,6 +245,8 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 
     The second is empty for a level of the package. Both are empty if the case names no level.
     """
+    if "game" in table.entries:
+        return _scene(table, folder)
     level = table.text("level")
     if not level:
         return "", ""
@@ -267,6 +269,27 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
             help_text = similar_level(level, folder) or diagnostic.help
         table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.label_of("level"),), help_text))
     return level, ""
+
+
+def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
+    """Read the keys ``game`` and ``scene`` of a case; return the level and the place, as :func:`_level` does."""
+    file, scene = table.text("game"), table.text("scene", "")
+    if not file:
+        return "", ""
+    if not file.endswith(GAME_FILE):
+        title = f"`game` must be the path of a file `NAME{GAME_FILE}`, not `{file}`"
+        table.log.append(Diagnostic("TLT0803", title, (table.label_of("game"),), "name the scene with `scene`"))
+        return "", ""
+    if not fileio.is_file(folder / file):
+        table.log.append(_missing_file_error("game", file, table.label_of("game")))
+    ending = f":{scene}" if scene else ""
+    return f"{folder / file}{ending}", f"{Path(normpath(file)).as_posix()}{ending}"
+
+
+def _short_name(level: str) -> str:
+    """Return the name of a level for the names of cases: that of its scene or file."""
+    file, scene = split_scene(level) if is_scene(level) else (level, None)
+    return scene or Path(file).name.removesuffix(GAME_FILE).removesuffix(".toml")
 
 
 def _separate_keys_help(level: str, variant: Variant) -> str:

@@ -36,7 +36,7 @@ def unnamed_changes(
 
 def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
     """Yield the names of a case's level files whose SHA-256 differs from that in the baseline."""
-    identity = (game_of(case.level).level_files.path(case.level).stem, case.reference, case.place)
+    identity = (game_of(case.level).level_files.level_name(case.level), case.reference, case.place)
     files = next((reference.played.files for reference in references if _identity(reference) == identity), ())
     # Files that only the reference variant uses are no dependencies of the case.
     paths = dependencies(suite, case)

@@ -12,7 +12,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
-from tltl_runtime.game.level_name import Variant, parse_variant
+from tltl_runtime.game.level_name import Variant, level_file, parse_variant, with_level_file
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.card import OBSERVATION
@@ -104,7 +104,8 @@ def write_run(run: TrainingRun) -> None:
     Raises TltlError, TLT0005, if the file cannot be written.
     """
     # Paths are absolute, because the training may be resumed from another folder.
-    level = str(Path(run.level).absolute()) if run.level.endswith(".toml") else run.level
+    file = level_file(run.level)
+    level = run.level if file is None else with_level_file(run.level, file.absolute())
     document = {
         "format": _FORMAT,
         "version": _VERSION,

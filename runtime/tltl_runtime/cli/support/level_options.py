@@ -1,0 +1,42 @@
+"""The options that name what is played: a level of the stealth game, or a scene of a game file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, Final, TypeVar
+
+import click
+
+from tltl_runtime.game.level_name import is_scene, split_level
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_GAME: Final = "FILE.game.toml[:SCENE[:VARIANT]]"
+
+
+def level_options(help_text: str) -> Callable[[Function], Function]:
+    """Return a decorator for ``--level`` and ``--game``, of which at most one may be given.
+
+    The command gets the value of either as ``level``.
+    """
+
+    def decorate(command: Function) -> Function:
+        @wraps(command)
+        def with_level(*args: Any, level: str | None, game: str | None, **options: Any) -> Any:
+            if level is not None and game is not None:
+                raise click.UsageError("give --level or --game, not both", click.get_current_context())
+            return command(*args, level=level if game is None else game, **options)
+
+        with_game = click.option("--game", metavar=_GAME, callback=_check_game, help="The scene of your own game.")
+        return click.option("--level", metavar="LEVEL[:VARIANT]", help=help_text)(with_game(with_level))  # type: ignore[return-value]
+
+    return decorate
+
+
+def _check_game(ctx: click.Context, parameter: click.Parameter, game: str | None) -> str | None:
+    if game is not None and not is_scene(split_level(game)[0]):
+        raise click.BadParameter(
+            f"`{game}` is not a game file: name a file `NAME.game.toml`, and after it `:SCENE:VARIANT`"
+        )
+    return game
