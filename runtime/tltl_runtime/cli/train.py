@@ -14,6 +14,7 @@ from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.sensor_options import sensor_options
 from tltl_runtime.cli.support.worker_options import WorkersType
+from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.support.number_text import duration, share
 from tltl_runtime.training.files.choices import Method
 from tltlc.api import cli
@@ -207,7 +208,7 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
-    place = f"{Path(run.level).stem} {run.variant.text}"
+    place = f"{level_stem(run.level)} {run.variant.text}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():

@@ -89,6 +89,12 @@ def level_file(level: str) -> Path | None:
     return Path(level) if level.endswith(".toml") else None
 
 
+def level_stem(level: str) -> str:
+    """Return a short name of a level, named without a variant: that of its scene, or of its file."""
+    file, scene = split_scene(level) if is_scene(level) else (level, None)
+    return scene or Path(file).name.removesuffix(GAME_FILE).removesuffix(".toml")
+
+
 def with_level_file(level: str, path: Path) -> str:
     """Return a level, named without a variant, whose file is at ``path`` instead."""
     scene = split_scene(level)[1] if is_scene(level) else None

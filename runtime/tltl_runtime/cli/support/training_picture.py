@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from pathlib import Path
 from typing import Final
 
 from rich.console import Console, Group, RenderableType
@@ -23,6 +22,7 @@ from tltl_runtime.cli.support.training_text import (
     search_result_line,
     seconds_left,
 )
+from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.report import EpisodeWindow, TrainingReport
@@ -79,7 +79,7 @@ class TrainingDisplay:
         """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
-        title = f"{run.fspa.name} on {Path(run.level).stem} {run.variant.text}, seed {run.seed}"
+        title = f"{run.fspa.name} on {level_stem(run.level)} {run.variant.text}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
             # Two lines are for the border, and one line below the border stays free.

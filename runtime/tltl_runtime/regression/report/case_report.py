@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
+from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions, Phrase, union
@@ -173,7 +173,7 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """
     causes = ("it cannot be played", *map(one_line, error.diagnostics))
     # Name the variant as for a level that loads, without the paths of overlay files.
-    name = Path(case.level).stem
+    name = level_stem(case.level)
     return CaseReport(
         case.name,
         name,
@@ -191,7 +191,7 @@ def report_on_edited(case: Case, error: TltlError) -> CaseReport:
     Its verdict is ``review``, and it has no figures.
     """
     causes = tuple(map(one_line, error.diagnostics))
-    return CaseReport(case.name, Path(case.level).stem, case.variant.title, "review", causes, certain=False)
+    return CaseReport(case.name, level_stem(case.level), case.variant.title, "review", causes, certain=False)
 
 
 def one_line(diagnostic: Diagnostic) -> str:

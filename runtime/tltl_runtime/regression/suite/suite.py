@@ -11,7 +11,13 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.game.level_name import GAME_FILE, Variant, is_scene, parse_variant, split_level, split_scene
+from tltl_runtime.game.level_name import (
+    GAME_FILE,
+    Variant,
+    level_stem,
+    parse_variant,
+    split_level,
+)
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
@@ -217,7 +223,7 @@ def _case(
                 Diagnostic("TLT0805", title, (table.label_of("overlay"),), suggestion(overlay, overlay_names))
             )
     base = variant or variant_names[0]
-    name = name or f"{_short_name(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
+    name = name or f"{level_stem(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
     played = Variant(base, overlays)
     return Case(
         name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place
@@ -286,12 +292,6 @@ def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
     return f"{folder / file}{ending}", f"{Path(normpath(file)).as_posix()}{ending}"
 
 
-def _short_name(level: str) -> str:
-    """Return the name of a level for the names of cases: that of its scene or file."""
-    file, scene = split_scene(level) if is_scene(level) else (level, None)
-    return scene or Path(file).name.removesuffix(GAME_FILE).removesuffix(".toml")
-
-
 def _separate_keys_help(level: str, variant: Variant) -> str:
     """Return a help text that says how to write ``LEVEL:VARIANT+OVERLAY`` in a suite."""
     lines = [
@@ -341,7 +341,7 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
         shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
             title, label = f"no policy comes with the level `{level}`", table.label_of("level")
-            help_ = f'name a policy that you trained, e.g. `policy = "training/{Path(level).stem}"`'
+            help_ = f'name a policy that you trained, e.g. `policy = "training/{level_stem(level)}"`'
             if related_level := level_with_fitting_policy(level):
                 help_ += f', or the one for the same spec that comes with tltlc: `policy = "{related_level}"`'
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
