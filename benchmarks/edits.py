@@ -129,9 +129,9 @@ def expert(level: str, variant: str | Variant, plan: Plan) -> Record:
     whether the spec cannot be met without one of them. ``successes`` is the number of successes,
     and ``ways`` has a digest of each episode.
     """
+    from tltl_runtime.spec.spec_places import SpecPlaces
     from tltl_runtime.stealth.capabilities.feasible import check_reach
     from tltl_runtime.stealth.capabilities.reach import compute_reach
-    from tltl_runtime.stealth.capabilities.spec_places import SpecPlaces
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
