@@ -13,6 +13,7 @@ from tltlc.grammar.tree import (
     Expr,
     Import,
     NameExpr,
+    ParamDecl,
     SignalDecl,
     SpecDecl,
 )
@@ -26,6 +27,7 @@ __all__ = [
     "Expr",
     "Import",
     "NameExpr",
+    "ParamDecl",
     "SignalDecl",
     "SpecDecl",
     "expressions",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from math import inf
 from pathlib import Path
 from typing import Any, Final, SupportsFloat
 
@@ -39,6 +40,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         super().__init__(env)
         self._game = game
         self._label = scene_label
+        self._steps = 0
         if signals is None and not env.has_wrapper_attr("tltl_signals"):
             title = "the environment does not say its signals"
             help_ = 'write `signals = "MODULE:FUNCTION"`, or give the environment a method `tltl_signals()`'
@@ -53,13 +55,15 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Reset the game; raises TltlError, TLT0781, if the game raises an exception."""
+        self._steps = 0
         with guarded(self._game, RAISES, "the game's `reset`", self._label):
             observation, info = self.env.reset(seed=seed, options=options)
             return self._kept(observation), info
 
     def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
         """Take a step in the game; raises TltlError, TLT0781, if the game raises an exception."""
-        with guarded(self._game, RAISES, "the game's `step`", self._label):
+        self._steps += 1
+        with guarded(self._game, RAISES, f"step {self._steps} of the game", self._label):
             observation, reward, terminated, truncated, info = self.env.step(action)
             return self._kept(observation), reward, terminated, truncated, info
 
@@ -67,6 +71,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         """Return the signals of the current state; raises TltlError, TLT0781, if the game does not give them."""
         label = self._game.labels.get("signals", self._label)
         name = f"`{self._game.signals.text}`" if self._game.signals else "the game's `tltl_signals`"
+        name += f", called after step {self._steps}," if self._steps else ", called after the reset,"
         with guarded(self._game, RAISES, name, label):
             sample = self.env.get_wrapper_attr("tltl_signals")() if self._signals is None else self._signals(self.env)
         if not isinstance(sample, Mapping):
@@ -142,7 +147,7 @@ def make_base_env(
             env = _from_id(game, game.gymnasium or "", options, own)
         try:
             signals = import_function(game, game.signals, "signals") if game.signals else None
-            _check_params(game, env, own)
+            _check_offers(game, env, own)
             return SceneEnv(env, game, signals, own.label)
         except BaseException:
             env.close()
@@ -212,11 +217,16 @@ def _check_options(
     unknown = [key for key in options if key not in names]
     if unknown:
         title = f"{what} takes no option `{unknown[0]}`"
-        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), suggestion(unknown[0], names))])
+        help_ = suggestion(unknown[0], names) if names else "leave it out"
+        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
 
 
-def _check_params(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVariant) -> None:
-    """Raise TltlError, TLT0780, unless ``tltl_params`` gives numbers by name, where there is such a method."""
+def _check_offers(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVariant) -> None:
+    """Raise TltlError, TLT0780, if the game has a wrong ``tltl_clock_s``, or wrong ``tltl_params``."""
+    clock_s = env.get_wrapper_attr("tltl_clock_s") if env.has_wrapper_attr("tltl_clock_s") else 1.0
+    if not isinstance(clock_s, (int, float)) or not 0.0 < clock_s < inf:
+        title = f"the game's `tltl_clock_s` is {clock_s!r:.40}, not the seconds of a step"
+        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), "give it a number above zero, e.g. 0.05")])
     if not env.has_wrapper_attr("tltl_params"):
         return
     name = "the game's `tltl_params`"

@@ -60,6 +60,15 @@ class SpecPlaces:
         place = self._declaration_span(signal)
         return self._label(place) if place else self.signal(signal)
 
+    def param(self, name: str) -> tuple[Label, ...]:
+        """Return the label of the first use of a param in the spec, or else of its declaration."""
+        declared = (
+            declaration.name_span
+            for declaration in self._declarations
+            if isinstance(declaration, syntax.ParamDecl) and declaration.name == name
+        )
+        return self._label(_first_use(self._declarations_of_spec, name) or _first(declared))
+
     def level(self) -> tuple[Label, ...]:
         """Return the label of the clause that names the spec's level."""
         clauses = (clause for declaration in self._declarations_of_spec for clause in declaration.clauses)

@@ -107,7 +107,7 @@ def test_a_scene_without_a_spec_is_an_error(folder: Path) -> None:
         ('"corridor:make"', '"corider:make"', ["TLT0730", "`corider` is not installed", "did you mean `corridor`?"]),
         ('"corridor:make"', '"nosuch:make"', ["TLT0730", "`pip install nosuch`"]),
         ('"corridor:make"', '"json:loads"', ["`json:loads` raises TypeError", "unexpected keyword argument"]),
-        ('"corridor:make"', '"corridor:signals"', ["takes no option `length`", "there are none"]),
+        ('"corridor:make"', '"corridor:signals"', ["takes no option `length`", "leave it out"]),
         ("{ length = 4 }", "{ lenth = 4 }", ["takes no option `lenth`", "did you mean `length`?"]),
         ("{ length = 4 }", '{ length = "x" }', ["TLT0780", "raises TypeError", "corridor.py:"]),
         ('observation = ["cell"', 'observation = ["cel"', ["has no key `cel`", "did you mean `cell`?"]),
@@ -149,7 +149,7 @@ def test_an_exception_in_play_is_an_error_with_its_place(folder: Path) -> None:
     with pytest.raises(TltlError) as error:
         env.step(0)
     message = render(error.value.diagnostics)
-    assert "error[TLT0781]: the game's `step` raises IndexError: list index out of range" in message
+    assert "error[TLT0781]: step 1 of the game raises IndexError: list index out of range" in message
     assert "[][action]" in message
 
 
@@ -162,7 +162,7 @@ def test_a_wrong_function_of_signals_is_an_error(folder: Path, result: str, expe
     with pytest.raises(TltlError) as error:
         env.reset(seed=0)
     message = render(error.value.diagnostics)
-    assert "error[TLT0781]: `corridor:signals` " in message
+    assert "error[TLT0781]: `corridor:signals`, called after the reset, r" in message
     assert expected in message
 
 

@@ -1,0 +1,219 @@
+"""Start a scene, play it, and report what it offers and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+from gymnasium import spaces
+
+from tltl_runtime.gymnasium_games.capabilities import Capability, capabilities
+from tltl_runtime.gymnasium_games.game_errors import RAISES, guarded
+from tltl_runtime.gymnasium_games.game_file import GameFile
+from tltl_runtime.gymnasium_games.plays import (
+    SEED,
+    STEPS,
+    Difference,
+    Moment,
+    drawn_actions,
+    first_difference,
+    first_other_observation,
+    go_on,
+    play,
+)
+from tltl_runtime.gymnasium_games.scene_env import SceneEnv, make_base_env
+from tltl_runtime.gymnasium_games.spec_fit import Supply
+from tltlc.api import Diagnostic, Label, monitors, record
+
+_BEFORE_SNAPSHOT: Final = 20
+_AFTER_SNAPSHOT: Final = 50
+
+
+@record
+class SceneReport:
+    """What a check found out about a variant of a scene.
+
+    ``supply`` is what it supplies to specs. ``steps_per_s`` counts steps with their signals.
+    ``reproducible`` says whether equal seeds and actions give equal signals and observations.
+    ``restores`` says whether a restored snapshot gives what was there before; None if the game has
+    no snapshots. ``diagnostics`` says what is wrong, apart from specs.
+    """
+
+    scene: str
+    variant: str
+    observation: spaces.Space[Any]
+    action: spaces.Space[Any]
+    supply: Supply
+    capabilities: tuple[Capability, ...]
+    steps_per_s: float
+    reproducible: bool
+    restores: bool | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
+    """Start a variant of a scene, and play it twice with the same seed and actions.
+
+    The diagnostics of the report: TLT0783, warning, the plays differ; TLT0784, error, a restored
+    snapshot differs; TLT0785, warning, an observation is not in the observation space.
+
+    Raises:
+        TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
+            raises an exception.
+    """
+    env = make_base_env(game, scene, variant)
+    try:
+        return _report(game, env, scene, variant)
+    finally:
+        env.close()
+
+
+def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneReport:
+    label, name = game.labels["game"], f"{scene}:{variant}"
+    offered, actions = capabilities(env), drawn_actions(env)
+    params = env.get_wrapper_attr("tltl_params")() if "params" in offered else None
+    first, second = play(env, actions), play(env, actions)
+    differences = [*_differences(name, label, first.moments, second.moments)]
+    restored = [*_restored(game, env, name, label, reproducible=not differences)] if "snapshot" in offered else []
+    return SceneReport(
+        scene=scene,
+        variant=variant,
+        observation=env.observation_space,
+        action=env.action_space,
+        supply=Supply(scene, first.moments, params, _clock_s(env)),
+        capabilities=offered,
+        steps_per_s=STEPS / max(second.seconds, 1e-9),
+        reproducible=not differences,
+        restores=not restored if "snapshot" in offered else None,
+        diagnostics=(*differences, *restored, *_outside_space(env.observation_space, name, label, first.moments)),
+    )
+
+
+def _clock_s(env: SceneEnv) -> float | None:
+    return float(env.get_wrapper_attr("tltl_clock_s")) if env.has_wrapper_attr("tltl_clock_s") else None
+
+
+def _differences(name: str, label: Label, first: Sequence[Moment], second: Sequence[Moment]) -> Iterator[Diagnostic]:
+    """Yield TLT0783 for the first signal and the first observation that differ in two plays."""
+    help_ = "draw all random numbers from `self.np_random`, which `super().reset(seed=seed)` seeds"
+    difference = first_difference(first, second)
+    if difference is not None:
+        title = f"equal seeds and actions give different plays in `{name}`: {_difference_text(difference)}"
+        yield Diagnostic("TLT0783", title, (label,), help_, "warning")
+    step = first_other_observation(first, second)
+    if step is not None and (difference is None or step < difference.step):
+        title = f"equal seeds and actions give different observations in `{name}`, first {_when(step)}"
+        yield Diagnostic("TLT0783", title, (label,), help_, "warning")
+
+
+def _difference_text(difference: Difference) -> str:
+    if not difference.name:
+        return f"the episode ends {_when(difference.step)} in one play only"
+    first, second = _signal_text(difference.first), _signal_text(difference.second)
+    return f"`{difference.name}` is {first} in the first and {second} in the second {_when(difference.step)}"
+
+
+def _signal_text(value: object) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, float, np.number)) and not isinstance(value, np.complexfloating):
+        return monitors.number_text(float(value))
+    return "missing" if value is None else f"{value!r:.40}"
+
+
+def _when(step: int) -> str:
+    return f"at step {step}" if step else "after the reset"
+
+
+def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reproducible: bool) -> Iterator[Diagnostic]:
+    """Yield TLT0784 if the game after a restored snapshot is another one than before.
+
+    The signals are compared at once. If the game is ``reproducible``, the same actions must also give
+    the same signals and observations from there on.
+    """
+    actions = drawn_actions(env, _BEFORE_SNAPSHOT + _AFTER_SNAPSHOT, seed=SEED + 1)
+    play(env, actions[:_BEFORE_SNAPSHOT], SEED + 1)
+    before = Moment(0, None, dict(env.tltl_signals()), False)
+    with guarded(game, RAISES, "the game's `tltl_snapshot`", label):
+        snapshot = env.get_wrapper_attr("tltl_snapshot")()
+    if not isinstance(snapshot, bytes):
+        title = f"the game's `tltl_snapshot` returns a {type(snapshot).__name__}, not bytes"
+        yield Diagnostic("TLT0784", title, (label,), "return the whole state of the game as bytes")
+        return
+    expected = _until_end(go_on(env, actions[_BEFORE_SNAPSHOT:]))
+    with guarded(game, RAISES, "the game's `tltl_restore`", label):
+        env.get_wrapper_attr("tltl_restore")(snapshot)
+    help_ = "save everything that changes in an episode, also the state of `self.np_random`"
+    difference = first_difference([before], [Moment(0, None, dict(env.tltl_signals()), False)])
+    if difference is not None:
+        title = (
+            f"`tltl_restore` does not give back what `tltl_snapshot` saved in `{name}`: {_restored_text(difference)}"
+        )
+        yield Diagnostic("TLT0784", title, (label,), help_)
+        return
+    if not reproducible:
+        return
+    played = _until_end(go_on(env, actions[_BEFORE_SNAPSHOT:]))
+    difference = first_difference(expected, played)
+    step = first_other_observation(expected, played)
+    if difference is not None:
+        title = f"after `tltl_restore`, equal actions give another play in `{name}`: {_restored_text(difference)}"
+        yield Diagnostic("TLT0784", title, (label,), help_)
+    elif step is not None:
+        title = (
+            f"after `tltl_restore`, equal actions give other observations in `{name}`, first after {_steps_text(step)}"
+        )
+        yield Diagnostic("TLT0784", title, (label,), help_)
+
+
+def _restored_text(difference: Difference) -> str:
+    after = f" after {_steps_text(difference.step)}" if difference.step else ""
+    if not difference.name:
+        return f"the episode ends{after} in one play only"
+    first, second = _signal_text(difference.first), _signal_text(difference.second)
+    return f"`{difference.name}` was {first}, and is {second}{after}"
+
+
+def _steps_text(steps: int) -> str:
+    return f"{steps} step{'' if steps == 1 else 's'}"
+
+
+def _until_end(moments: Sequence[Moment]) -> list[Moment]:
+    """Return the moments up to the end of the episode: a snapshot need not determine the next episode."""
+    end = next((index for index, moment in enumerate(moments) if moment.ended), len(moments))
+    return list(moments[: end + 1])
+
+
+def _outside_space(
+    space: spaces.Space[Any], name: str, label: Label, moments: Sequence[Moment]
+) -> Iterator[Diagnostic]:
+    """Yield TLT0785 for the first observation that is not in the observation space."""
+    for moment in moments:
+        if not space.contains(moment.observation):
+            part, value = _outside_part(space, moment.observation)
+            title = f"{part} in `{name}` is not in the observation space {_when(moment.step)}: {value}"
+            help_ = "give the space the shape, type and bounds of the observations, or convert these"
+            yield Diagnostic("TLT0785", title, (label,), help_, "warning")
+            return
+
+
+def _outside_part(space: spaces.Space[Any], observation: Any) -> tuple[str, str]:
+    """Return the name of the part of an observation that is not in its space, and a text for its value."""
+    if isinstance(space, spaces.Dict) and isinstance(observation, Mapping):
+        for key, part in space.spaces.items():
+            if key not in observation:
+                return f"the observation's `{key}`", "it is missing"
+            if not part.contains(observation[key]):
+                return f"the observation's `{key}`", _value_text(observation[key])
+        others = [key for key in observation if key not in space.spaces]
+        return "the observation", f"the space has no key `{others[0]}`" if others else "its keys differ"
+    return "the observation", _value_text(observation)
+
+
+def _value_text(value: Any) -> str:
+    """Describe a value: the type, shape and bounds of an array, the type and value of anything else."""
+    if isinstance(value, np.ndarray) and value.size:
+        bounds = f" and values from {value.min()} to {value.max()}" if value.dtype.kind in "iufb" else ""
+        return f"it has shape {value.shape}, type {value.dtype}{bounds}"
+    return f"it is {value!r:.40}, of type {type(value).__name__}"

@@ -1,0 +1,130 @@
+"""Play a scene with drawn actions, and compare two plays."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from typing import Any, Final
+
+import numpy as np
+
+from tltl_runtime.gymnasium_games.scene_env import SceneEnv
+from tltlc.api import record
+
+STEPS: Final = 200
+"""The steps of a play."""
+
+SEED: Final = 1
+
+
+@record
+class Moment:
+    """What a game shows after a reset or a step.
+
+    ``step`` counts the steps of the play, from 1; it is 0 after the first reset. ``sample`` has the
+    values of the signals, ``ended`` says whether the episode ends here.
+    """
+
+    step: int
+    observation: Any
+    sample: Mapping[str, Any]
+    ended: bool
+
+
+@record
+class Play:
+    """A play: its moments, those after resets included, and the seconds that it took."""
+
+    moments: tuple[Moment, ...]
+    seconds: float
+
+
+@record
+class Difference:
+    """The first difference of two plays: what differs after ``step``, and its value in each play."""
+
+    step: int
+    name: str
+    first: Any
+    second: Any
+
+
+def drawn_actions(env: SceneEnv, count: int = STEPS, seed: int = SEED) -> list[Any]:
+    """Return random actions of the environment's action space; the same seed gives the same actions."""
+    space = deepcopy(env.action_space)
+    space.seed(seed)
+    return [space.sample() for _ in range(count)]
+
+
+def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> Play:
+    """Reset an environment with a seed and take the actions; reset it again when an episode ends.
+
+    Raises:
+        TltlError: TLT0781, the game raises an exception.
+    """
+    start = time.perf_counter()
+    observation, _ = env.reset(seed=seed)
+    moments = [_moment(env, 0, observation, ended=False)]
+    moments += go_on(env, actions)
+    return Play(tuple(moments), time.perf_counter() - start)
+
+
+def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[Moment]:
+    """Take actions from the present state on, and return the moments after them and after resets.
+
+    Raises:
+        TltlError: TLT0781, the game raises an exception.
+    """
+    moments = []
+    for step, action in enumerate(actions, 1):
+        observation, _, terminated, truncated, _ = env.step(action)
+        ended = bool(terminated or truncated)
+        moments.append(_moment(env, step, observation, ended=ended))
+        if ended:
+            observation, _ = env.reset()
+            moments.append(_moment(env, step, observation, ended=False))
+    return moments
+
+
+def first_difference(first: Sequence[Moment], second: Sequence[Moment]) -> Difference | None:
+    """Return the first signal that differs, or that an episode ends in one play only; None if there is none."""
+    for one, other in zip(first, second, strict=False):
+        if one.ended != other.ended:
+            return Difference(one.step, "", one.ended, other.ended)
+        for name in (*one.sample, *(name for name in other.sample if name not in one.sample)):
+            values = one.sample.get(name), other.sample.get(name)
+            if not is_same(*values):
+                return Difference(one.step, name, *values)
+    return None
+
+
+def first_other_observation(first: Sequence[Moment], second: Sequence[Moment]) -> int | None:
+    """Return the first step after which the observations of two plays differ; None if there is none."""
+    pairs = zip(first, second, strict=False)
+    return next((one.step for one, other in pairs if not is_same(one.observation, other.observation)), None)
+
+
+def is_same(first: Any, second: Any) -> bool:
+    """Whether two values, or nested containers of values, are equal; NaN equals NaN."""
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return first.keys() == second.keys() and all(is_same(first[key], second[key]) for key in first)
+    if isinstance(first, (tuple, list)) and isinstance(second, (tuple, list)):
+        return len(first) == len(second) and all(map(is_same, first, second))
+    one, other = np.asarray(first), np.asarray(second)
+    if one.shape != other.shape:
+        return False
+    return bool(np.array_equal(one, other, equal_nan=one.dtype.kind in "fc" and other.dtype.kind in "fc"))
+
+
+def _moment(env: SceneEnv, step: int, observation: Any, *, ended: bool) -> Moment:
+    return Moment(step, _copied(observation), _copied(env.tltl_signals()), ended)
+
+
+def _copied(value: Any) -> Any:
+    """Return a copy of nested containers of arrays: games may reuse their arrays."""
+    if isinstance(value, Mapping):
+        return {key: _copied(item) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [_copied(item) for item in value] if isinstance(value, list) else tuple(map(_copied, value))
+    return value.copy() if isinstance(value, np.ndarray) else value
