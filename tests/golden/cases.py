@@ -75,7 +75,7 @@ def sources() -> dict[str, bytes]:
     """Return the source files of all cases, by the name of the case and their own."""
     return {
         f"{kind}/{case.name}/{name}": data
-        for kind in ("error", "level", "suite")
+        for kind in ("error", "level", "suite", "game")
         for case in cases(kind)
         for name, data in case.files.items()
         if name.endswith(".tltl")

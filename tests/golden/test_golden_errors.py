@@ -26,6 +26,8 @@ TRAININGS = sorted((Path(__file__).parent / "training").iterdir())
 """Messages about policies and trainings; `tests/runtime/policies` and `tests/runtime/training` compare them."""
 SUITES = cases("suite")
 """Messages about suites and baselines; `tests/runtime/regression/test_messages.py` compares them."""
+GAMES = cases("game")
+"""Messages about games; `tests/runtime/gymnasium_games/test_messages.py` compares them."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {
     *("TLT0007", "TLT0009", "TLT0624", "TLT0712", "TLT0730", "TLT0764", "TLT0768"),
@@ -65,7 +67,7 @@ def test_a_message_equals_its_golden_text(
 
 
 def test_every_code_has_a_golden_message() -> None:
-    all_cases = (*CASES, *LEVELS, *EPISODES, *POLICIES, *TRAININGS, *SUITES)
+    all_cases = (*CASES, *LEVELS, *EPISODES, *POLICIES, *TRAININGS, *SUITES, *GAMES)
     assert {case.name[:7] for case in all_cases} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
 
 

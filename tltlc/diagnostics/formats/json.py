@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from tltlc.core.record import EMPTY
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
-def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
+def render(diagnostics: Sequence[Diagnostic], *, color: bool = False, facts: Mapping[str, object] = EMPTY) -> str:
     """Return the diagnostics as the text of a JSON document, ``{"diagnostics": […]}``.
 
-    Lines and columns count from 1, offsets from 0; columns and offsets are in characters.
+    Lines and columns count from 1, offsets from 0; columns and offsets are in characters. ``facts``
+    are JSON data for further keys of the document.
     """
-    return json.dumps({"diagnostics": list(map(entry, diagnostics))}, ensure_ascii=False, indent=2) + "\n"
+    document = {"diagnostics": list(map(entry, diagnostics)), **facts}
+    return json.dumps(document, ensure_ascii=False, indent=2) + "\n"
 
 
 def entry(diagnostic: Diagnostic) -> dict[str, object]:

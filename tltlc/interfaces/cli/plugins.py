@@ -62,12 +62,12 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
         raise exits.missing_component(wanted_by, error.name or package, requirement) from error
 
 
-def load_levels_plugin(name: str, wanted_by: str) -> Any:
-    """Load the object of the entry point ``name`` in the group ``tltlc.levels``.
+def load_from(group: str, name: str, wanted_by: str) -> Any:
+    """Load the object of the entry point ``name`` in a group of the runtime, such as ``tltlc.levels``.
 
     Raise TLT0730 if no installed package provides it. ``wanted_by`` is as in :func:`load`.
     """
-    for plugin in find("tltlc.levels"):
+    for plugin in find(group):
         if plugin.name == name:
             return load(plugin, wanted_by)
     raise exits.missing_component(wanted_by, "tltl_runtime", "tltlc[game]")

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 from types import TracebackType
-from typing import Final, TextIO
+from typing import Any, Final, TextIO
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import exits
@@ -25,13 +25,14 @@ class Report:
     ``text``, diagnostics appear at once, on standard error. In the machine formats, such as JSON,
     they form one document, which appears at the end: on standard output, or on standard error for
     commands that print results. ``diagnostics`` has the diagnostics in order, and ``status`` is the
-    exit status.
+    exit status. ``facts`` are further entries of the document in JSON, by their keys.
     """
 
     def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
         self.format = format
         self.diagnostics: dict[Diagnostic, None] = {}
         self.status = exits.CLEAN
+        self.facts: dict[str, list[Any]] = {}
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -64,7 +65,13 @@ class Report:
             self.add(error.diagnostics)
         elif error is not None:
             return False
-        if self.format != "text":
+        if self.format == "json" and self.facts:
+            from tltlc.diagnostics.formats.json import render
+            from tltlc.diagnostics.shortening import shorten
+
+            self._document.write(render(list(map(shorten, self.diagnostics)), facts=self.facts))
+            self._document.flush()
+        elif self.format != "text":
             show(self.diagnostics, self.format, self._document)
         return error is not None
 

@@ -1,6 +1,6 @@
 """``tltlc check``: report every error and warning of compiling, and write nothing.
 
-With a level, also report whether the specs fit the level.
+With a level or a game, also report whether the specs fit it.
 """
 
 from __future__ import annotations
@@ -12,29 +12,30 @@ import click
 from tltlc.interfaces.cli import plugins
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
-LEVELS: Final = "tltlc.levels"
-"""The key in ``Context.meta`` under which the click command that checks levels is stored.
+CHECKS: Final = {"--level": "tltlc.levels", "--game": "tltlc.games"}
+"""The groups of entry points with a click command ``check``, by the option that asks for it.
 
-Its options join those of ``check --level``. Its callback receives ``levels`` (as on the command
-line), ``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of its
-options.
+The command is stored in ``Context.meta``, under the name of the group. Its options join those of
+``check`` with this option. Its callback receives ``levels`` or ``games`` (as on the command line),
+``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of its options.
 """
 
 
 class CheckCommand(click.Command):
-    """The command ``check``; it has the options for levels only if ``--level`` is given."""
+    """The command ``check``; it has the options for levels and games only if ``--level`` or ``--game`` is given."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse like click; if a level is given, also parse the options for levels."""
-        if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
-            ctx.meta[LEVELS] = plugins.load_levels_plugin("check", "`tltlc check --level`")
+        """Parse like click; if a level or a game is given, also parse the options for it."""
+        for option, group in CHECKS.items():
+            if not ctx.resilient_parsing and any(text.partition("=")[0] == option for text in args):
+                ctx.meta[group] = plugins.load_from(group, "check", f"`tltlc check {option}`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Return the options of the command; the options for levels come before ``--help``."""
+        """Return the options of the command; the options for levels and games come before ``--help``."""
         *own, help_ = super().get_params(ctx)
-        levels = ctx.meta.get(LEVELS)
-        return [*own, *(levels.params if levels else ()), help_]
+        more = [ctx.meta[group].params for group in CHECKS.values() if group in ctx.meta]
+        return [*own, *(param for params in more for param in params), help_]
 
 
 @click.command(
@@ -49,6 +50,8 @@ Examples:
   tltlc check cover_and_hide.tltl --level vault.toml
   tltlc check --level navigation:v1              a level against its own spec
   tltlc check --level all --help                 more options for levels
+  tltlc check --game doorkey.game.toml           all scenes of a game, each against its own spec
+  tltlc check fetch.tltl --game doorkey.game.toml:small
 """,
 )
 @click.argument("specs", metavar="[SPEC_OR_FOLDER]...", nargs=-1)
@@ -60,10 +63,19 @@ Examples:
     help="Check that this level has everything the specs use (repeatable). LEVEL is a .toml file, the name of a level "
     "that comes with tltlc, or `all` for all of these. Without VARIANT, all variants are checked.",
 )
+@click.option(
+    "--game",
+    "games",
+    metavar="FILE.game.toml[:SCENE[:VARIANT]]",
+    multiple=True,
+    help="Play this game, and check that it has everything the specs use (repeatable). Without SCENE, all scenes are "
+    "checked, and without VARIANT, all variants. The command runs the Python code that the file names.",
+)
 @source_options
 def command(
     specs: tuple[str, ...],
     levels: tuple[str, ...],
+    games: tuple[str, ...],
     settings: CompileSettings,
     format: str,  # noqa: A002
     **options: Any,
@@ -72,7 +84,9 @@ def command(
 
     In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
     With --level, the command also reports what a spec needs and the level lacks, and what nobody can reach there;
-    without SPEC, it uses the spec of the level. The exit status is 1 if there is an error, and 0 otherwise.
+    without SPEC, it uses the spec of the level. With --game, it also plays each scene twice, and reports what the game
+    offers, how fast it is, and whether equal seeds and actions give equal plays. The exit status is 1 if there is an
+    error, and 0 otherwise.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source
@@ -81,7 +95,8 @@ def command(
     from tltlc.io.spec_file import split
 
     context = click.get_current_context()
-    specs = specs or (() if levels else (".",))
+    places = {"--level": levels, "--game": games}
+    specs = specs or (() if levels or games else (".",))
     inputs = []
     with Report(format) as report:
         paths = every_source(specs, report)
@@ -92,12 +107,16 @@ def command(
                 report.add(error.diagnostics)
                 continue
             report.add(spec_input.diagnostics)
-            if levels:
+            if levels or games:
                 inputs.append(spec_input)
             if spec in specs and not spec_input.diagnostics:
                 report.say(f"{spec_input.name}: {count_text(len(spec_input.automata), 'spec')}, nothing to report")
         if len(paths) > 1 or not set(paths).issubset(specs):
             report.say(f"{count_text(len({split(path)[0] for path in paths}), 'file')}: {tally(report.diagnostics)}")
-        if levels and (inputs or not specs):
-            context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
+        for option, given in places.items():
+            if given and (inputs or not specs):
+                check = context.meta[CHECKS[option]]
+                own = {str(param.name): options[str(param.name)] for param in check.params}
+                place = {f"{option.removeprefix('--')}s": given}
+                check.callback(**place, inputs=inputs, settings=settings, report=report, **own)
     return report.status

@@ -42,7 +42,7 @@ def command(folder: Path, level: str | None) -> int:
             raise occupied_folder_error(folder, "choose another name, or an empty folder")
         files, next_command = _FILES, f"test {shlex.quote(str(folder))}"
         if level is not None:
-            files = plugins.load_levels_plugin("new", "`tltlc new --level`")(level)
+            files = plugins.load_from("tltlc.levels", "new", "`tltlc new --level`")(level)
             next_command = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
         for path in write_files(folder, files, advice="choose another place, e.g. `tltlc new my_game`"):
             report.say(f"wrote {path}")

@@ -1,0 +1,136 @@
+"""``tltlc check --game``: play the scenes of games, and check whether they supply what specs need."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any, Final
+
+import click
+
+from tltl_runtime.gymnasium_games.game_argument import parse_game, scene_of, variant_of
+from tltl_runtime.gymnasium_games.game_check import SceneReport, check_scene
+from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
+from tltl_runtime.gymnasium_games.space_text import space_json, space_text
+from tltl_runtime.gymnasium_games.spec_fit import check_fit
+from tltl_runtime.spec.spec_places import SpecPlaces
+from tltl_runtime.support.path_text import path_text
+from tltlc.api import Diagnostic, Fspa, TltlError, cli
+
+_MOST_SIGNALS: Final = 30
+"""A line lists at most this many signals."""
+
+
+@click.command()
+@click.option("--allow-outside", is_flag=True, help="Let the game file name files and specs outside its folder.")
+def command(
+    games: tuple[str, ...],
+    inputs: Sequence[cli.Input],
+    settings: cli.CompileSettings,
+    report: cli.Report,
+    allow_outside: bool,
+) -> None:
+    """Check scenes against the compiled specs ``inputs``; without these, check each against its own spec."""
+    report.facts["scenes"] = []
+    for argument in games:
+        try:
+            chosen = parse_game(argument)
+            game = read_game_file(chosen.path, allow_outside=allow_outside)
+            check = _GameCheck(game, inputs, settings, report)
+            for scene in game.scenes if chosen.scene is None else (scene_of(game, chosen.scene),):
+                if chosen.variant is not None:
+                    variant_of(game, scene.name, chosen.variant)
+                for variant in scene.variants if chosen.variant is None else (chosen.variant,):
+                    check(scene.name, variant)
+        except TltlError as error:
+            report.add(error.diagnostics)
+
+
+class _GameCheck:
+    """Checks the scenes of a game."""
+
+    def __init__(
+        self, game: GameFile, inputs: Sequence[cli.Input], settings: cli.CompileSettings, report: cli.Report
+    ) -> None:
+        self._game, self._inputs, self._settings, self._report = game, inputs, settings, report
+
+    def __call__(self, scene: str, variant: str) -> None:
+        """Check one variant of a scene, and report the diagnostics and what the scene offers."""
+        try:
+            with redirect_stdout(sys.stderr):  # a game may print, and the document goes to standard output
+                found = check_scene(self._game, scene, variant)
+            specs = [*self._specs(scene, variant)]
+        except TltlError as error:
+            self._report.add(error.diagnostics)
+            return
+        self._report.add(found.diagnostics)
+        fits: dict[str, list[Diagnostic]] = {}
+        for fspa, places in specs:
+            fits[fspa.name] = check_fit(found.supply, fspa, places)
+            self._report.add(fits[fspa.name])
+        for line in _lines(found, fits):
+            self._report.say(line)
+        self._report.facts["scenes"].append(_facts(self._game, found, fits))
+
+    def _specs(self, scene: str, variant: str) -> Iterator[tuple[Fspa, SpecPlaces]]:
+        """Yield the automata of the command's specs, or else of the scene's own spec."""
+        for opened in self._inputs or self._own_spec(scene, variant):
+            specs = {spec.name: spec for spec in opened.program.specs} if opened.program else {}
+            for fspa in opened.automata:
+                yield fspa, SpecPlaces(specs.get(fspa.name))
+
+    def _own_spec(self, scene: str, variant: str) -> list[cli.Input]:
+        spec = variant_of(self._game, scene, variant).spec
+        if spec is None:
+            advice = 'name one before --game, or in the scene: `spec = "FILE.tltl:NAME"`'
+            self._report.say(f"{scene}:{variant}: the scene does not name a spec; {advice}")
+            return []
+        opened = cli.open_input(path_text(Path(spec.text)), self._settings)
+        self._report.add(opened.diagnostics)
+        return [opened]
+
+
+def _lines(found: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> Iterator[str]:
+    """Yield the lines that say what a scene offers; the first ones have its name."""
+    name, supply = f"{found.scene}:{found.variant}", found.supply
+    for spec, diagnostics in fits.items():
+        fits_spec = cli.status_of(diagnostics) == cli.CLEAN
+        yield f"{name} has everything that `{spec}` needs" if fits_spec else f"{name} does not fit `{spec}`"
+    if not fits:
+        yield name
+    listed = [*map(str, supply.moments[0].sample)]
+    signals = ", ".join(listed[:_MOST_SIGNALS]) + (", …" if len(listed) > _MOST_SIGNALS else "")
+    yield f"  signals: {signals or 'none'}"
+    if supply.params:
+        yield f"  params: {', '.join(f'{key} = {float(value):g}' for key, value in supply.params.items())}"
+    yield f"  observation: {space_text(found.observation)}"
+    yield f"  action: {space_text(found.action)}"
+    yield f"  capabilities: {', '.join(found.capabilities) or 'none'}"
+    yield f"  speed: {found.steps_per_s:,.0f} steps a second"
+    yield f"  equal seeds and actions give equal plays: {'yes' if found.reproducible else 'no'}"
+    if found.restores is not None:
+        yield f"  a restored snapshot is what was saved: {'yes' if found.restores else 'no'}"
+
+
+def _facts(game: GameFile, found: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
+    """Return the report on a scene as JSON data."""
+    supply = found.supply
+    return {
+        "game": path_text(game.path),
+        "scene": found.scene,
+        "variant": found.variant,
+        "specs": [
+            {"name": spec, "fits": cli.status_of(diagnostics) == cli.CLEAN} for spec, diagnostics in fits.items()
+        ],
+        "signals": [*map(str, supply.moments[0].sample)],
+        "params": None if supply.params is None else {key: float(value) for key, value in supply.params.items()},
+        "clock_s": supply.clock_s,
+        "observation": space_json(found.observation),
+        "action": space_json(found.action),
+        "capabilities": list(found.capabilities),
+        "steps_per_s": round(found.steps_per_s, 1),
+        "reproducible": found.reproducible,
+        "restores": found.restores,
+    }
