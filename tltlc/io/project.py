@@ -4,6 +4,7 @@ All its keys are optional::
 
     libraries = ["predicates"]           # folders, relative to the project file
     targets = ["json", "dot", "python"]  # what `tltlc compile` writes without -t
+    game = "doorkey.game.toml"           # the game that the specs are for, relative to the project file
 
     [style]
     notation = "unicode"  # of formulas in pictures: unicode, ascii or english
@@ -34,10 +35,11 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Notation
 
 FILE_NAME: Final = "tltl.toml"
+GAME_SUFFIX: Final = ".game.toml"
 NOTATIONS: Final = ("unicode", "ascii", "english")
 FORMATTINGS: Final = ("words", "letters", "symbols", "unicode")
 LINT_LEVELS: Final = ("allow", "note", "warning", "error")
-_KEYS: Final = ("libraries", "targets", "style", "lint")
+_KEYS: Final = ("libraries", "targets", "game", "style", "lint")
 _STYLE_KEYS: Final = ("notation", "formatting")
 
 
@@ -48,7 +50,7 @@ class Project:
     ``libraries`` are the folders in which imports are searched. ``targets`` is empty if the file
     does not set them. ``lint`` maps each code of a diagnostic to one of the :data:`LINT_LEVELS`.
     ``notation`` is the notation of formulas in pictures, and ``formatting`` the style of
-    ``tltlc fmt``.
+    ``tltlc fmt``. ``game`` is the path of the game file; None if the project names none.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -56,6 +58,7 @@ class Project:
     notation: Notation = "unicode"
     lint: Mapping[str, str] = EMPTY
     formatting: str = "words"
+    game: Path | None = None
 
     def with_lint_levels(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with the severities that ``lint`` sets.
@@ -80,7 +83,7 @@ def project_for(path: str) -> Project:
     """Return the settings for a source file, from the nearest project file in its folder or above it.
 
     For standard input (``-``), the search starts in the current folder. If ``path`` is relative,
-    the paths of libraries in the current folder are relative, too, so that messages show both in
+    the paths of libraries and of the game in the current folder are relative, too, so that messages show both in
     the same form. Errors are those of :func:`read_project`.
     """
     try:
@@ -91,8 +94,10 @@ def project_for(path: str) -> Project:
     if file is None:
         return Project()
     project = read_project(file)
-    libraries = project.libraries if Path(path).is_absolute() else map(_relative_library, project.libraries)
-    return replace(project, libraries=tuple(libraries))
+    if Path(path).is_absolute():
+        return project
+    game = None if project.game is None else _relative_path(project.game)
+    return replace(project, libraries=tuple(map(_relative_path, project.libraries)), game=game)
 
 
 def project_file(folder: Path) -> Path | None:
@@ -110,8 +115,8 @@ def read_project(path: Path) -> Project:
 
     Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if ``path`` is
     not a file; TLT0701 if the file is not TOML. If it is TOML, all its errors are raised together:
-    TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library that
-    :func:`tltlc.io.confinement.confine_reads` forbids to read.
+    TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library, and a
+    game, that :func:`tltlc.io.confinement.confine_reads` forbids to read.
     """
     from tltlc.io.toml_text import parse
 
@@ -133,6 +138,7 @@ def read_project(path: Path) -> Project:
     for key, value, known in (("notation", notation, NOTATIONS), ("formatting", formatting, FORMATTINGS)):
         if value not in known:
             errors.append(_wrong_value(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
+    game = _game(table.get("game"), path.parent, source, errors)
     lint = _lint_levels(table.get("lint", {}), source, errors)
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
@@ -142,7 +148,7 @@ def read_project(path: Path) -> Project:
             errors.append(_missing_folder(source, library))
     if errors:
         raise TltlError(errors)
-    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation, lint, formatting)
+    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation, lint, formatting, game)
 
 
 def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
@@ -160,6 +166,25 @@ def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFi
             )
             errors.append(Diagnostic("TLT0702", f"unknown key `{key}`", _key_labels(source, key), suggestion))
     return errors
+
+
+def _game(name: object, folder: Path, source: SourceFile, errors: list[Diagnostic]) -> Path | None:
+    """Return the path of the game file; append an error to ``errors`` if it cannot be one."""
+    if name is None:
+        return None
+    if not isinstance(name, str) or not name.endswith(GAME_SUFFIX):
+        expected = f'the name of a game file, e.g. `game = "doorkey{GAME_SUFFIX}"`'
+        errors.append(_wrong_value(source, "game", expected, name))
+        return None
+    path = folder / name
+    if not may_read(path):
+        errors.append(outside_diagnostic(name, _key_labels(source, "game")))
+    elif not is_file(path):
+        title = f"there is no file `{name}` beside this file"
+        errors.append(
+            Diagnostic("TLT0703", title, _key_labels(source, "game"), "create it, or name a file that exists")
+        )
+    return path
 
 
 def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
@@ -236,8 +261,8 @@ def _first_words(text: str) -> Mapping[str, Span]:
     return spans
 
 
-def _relative_library(library: Path) -> Path:
-    return Path(_display_path(Path(normpath(library))))
+def _relative_path(path: Path) -> Path:
+    return Path(_display_path(Path(normpath(path))))
 
 
 def _display_path(path: Path) -> str:

@@ -31,6 +31,31 @@ def test_the_nearest_project_file_upwards_is_used(inside: Path) -> None:
     assert project_for("levels/deep/x.tltl") == Project()
 
 
+def test_the_game_of_a_project_is_relative_to_its_file(inside: Path) -> None:
+    Path("specs").mkdir()
+    Path("a.game.toml").write_text("")
+    Path("tltl.toml").write_text('game = "a.game.toml"\n')
+    assert project_for("specs/x.tltl").game == Path("a.game.toml")
+    assert project_for(str(inside / "specs/x.tltl")).game == inside / "a.game.toml"
+
+
+@pytest.mark.parametrize(
+    ("value", "title"),
+    [
+        ('"none.game.toml"', "there is no file `none.game.toml` beside this file"),
+        ('"hide.tltl"', 'wrong value for `game`: "hide.tltl"'),
+        ('["a.game.toml"]', "wrong value for `game`: a list"),
+    ],
+)
+def test_another_game_is_an_error(inside: Path, value: str, title: str) -> None:
+    Path("tltl.toml").write_text(f"game = {value}\n")
+    with pytest.raises(TltlError) as error:
+        read_project(inside / "tltl.toml")
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, diagnostic.title) == ("TLT0703", title)
+    assert diagnostic.labels
+
+
 def test_settings_of_the_project_apply(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("predicates").mkdir()
     Path("predicates/mine.tltl").write_text("signal health in [0, 1]\npredicate fit in [0, 1] = health\n")
