@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from tltl_runtime.game.level_name import parse_variant
 from tltl_runtime.game.registry import STEALTH, game_named, shipped_levels
 
 
-def rows() -> Iterator[dict[str, str]]:
+def rows(_add: Callable[..., object]) -> Iterator[dict[str, str]]:
     """Yield a row for each variant of each level of the package.
 
     The value of ``doc`` is what the overlays of the variant change or, without overlays, what the

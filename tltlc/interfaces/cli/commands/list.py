@@ -1,4 +1,4 @@
-"""``tltlc list``: list the available predicates, targets, levels or error codes."""
+"""``tltlc list``: list the available predicates, targets, games, levels or error codes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ListRow = dict[str, str]
 LISTS = "tltlc.lists"
 """The entry-point group for lists that the compiler cannot make itself, such as the levels.
 
-Each entry is a function that returns the rows of its list.
+Each entry is a function that gets a function for diagnostics, and returns the rows of its list.
 """
 
 
@@ -27,10 +27,11 @@ Examples:
   tltlc list predicates --library mine    and your folder
   tltlc list targets --json
   tltlc list levels                       the levels of the stealth game and their variants
+  tltlc list games                        these, and the scenes of the game files in this folder
   tltlc list codes
 """
 )
-@click.argument("what", type=click.Choice(("predicates", "targets", "levels", "codes")))
+@click.argument("what", type=click.Choice(("predicates", "targets", "games", "levels", "codes")))
 @click.option(
     "--library",
     "-L",
@@ -42,11 +43,11 @@ Examples:
 )
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON list.")
 def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
-    """List all predicates, targets, levels or error codes, each with a short description."""
+    """List all predicates, targets, games, levels or error codes, each with a short description."""
     from tltlc.interfaces.cli.report import Report
 
     with Report() as report:
-        rows = list(_predicates(libraries, report.add) if what == "predicates" else _LISTS[what]())
+        rows = list(_predicates(libraries, report.add) if what == "predicates" else _rows(what, report.add))
         if as_json:
             print(json.dumps(rows, indent=2, ensure_ascii=False))
         else:
@@ -113,19 +114,22 @@ def _codes() -> Iterator[ListRow]:
         yield {"name": code, "doc": code_pages.title(code)}
 
 
-def _levels() -> Iterator[ListRow]:
-    """Return a row for each level of the runtime; raise TLT0730 if the runtime is not installed."""
+_OWN_LISTS: dict[str, Callable[[], Iterator[ListRow]]] = {"targets": _targets, "codes": _codes}
+
+
+def _rows(what: str, add: Callable[..., None]) -> Iterator[ListRow]:
+    """Return the rows of a list; raise TLT0730 if the runtime makes this list and is not installed."""
     from tltlc.interfaces.cli import plugins
     from tltlc.interfaces.cli.exits import missing_component
 
+    if what in _OWN_LISTS:
+        return _OWN_LISTS[what]()
+    command = f"`tltlc list {what}`"
     for plugin in plugins.find(LISTS):
-        if plugin.name == "levels":
-            list_levels: Callable[[], Iterator[ListRow]] = plugins.load(plugin, "`tltlc list levels`")
-            return list_levels()
-    raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[game]")
-
-
-_LISTS: dict[str, Callable[[], Iterator[ListRow]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
+        if plugin.name == what:
+            rows: Callable[[Callable[..., None]], Iterator[ListRow]] = plugins.load(plugin, command)
+            return rows(add)
+    raise missing_component(command, "tltl_runtime", "tltlc[game]")
 
 
 def _lines(rows: list[ListRow]) -> None:
