@@ -30,7 +30,7 @@ GAMES = cases("game")
 """Messages about games; `tests/runtime/gymnasium_games/test_messages.py` compares them."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {
-    *("TLT0007", "TLT0009", "TLT0624", "TLT0712", "TLT0730", "TLT0764", "TLT0768"),
+    *("TLT0007", "TLT0009", "TLT0624", "TLT0712", "TLT0730", "TLT0731", "TLT0764", "TLT0768"),
     *("TLT0770", "TLT0771", "TLT0775", "TLT0776", "TLT0777"),
     *("TLT0830", "TLT0850", "TLT0851", "TLT0852", "TLT0854"),
     *("TLT0870", "TLT0871", "TLT0873", "TLT0904", "TLT0905", "TLT0930", "TLT0931", "TLT0941", "TLT0942"),
