@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from tltlc.api import record
 
@@ -31,6 +31,22 @@ class Sensors:
     entities: tuple[str, ...]
     variables: tuple[str, ...]
     map: MapSensor | None
+
+
+NO_SENSORS: Final = Sensors((), (), None)
+"""Those of agents whose observations have no parts that sensors choose."""
+
+
+def sensor_shapes(sensors: Sensors) -> dict[str, tuple[int, ...]]:
+    """Return the shapes of the parts of an observation that ``sensors`` give, by key."""
+    shapes: dict[str, tuple[int, ...]] = {}
+    if sensors.entities:
+        shapes["entities"] = (3 * len(sensors.entities),)
+    if sensors.variables:
+        shapes["variables"] = (len(sensors.variables),)
+    if sensors.map is not None:
+        shapes["map"] = (len(sensors.map.types), sensors.map.extent, sensors.map.extent)
+    return shapes
 
 
 SensorChoice = Sensors | Mapping[str, Any]

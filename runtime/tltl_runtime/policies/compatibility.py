@@ -36,7 +36,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         suggestion = "use that tltlc, or train a policy with this one"
         raise _unfit_error(f"the policy was trained with {age} tltlc, whose agents observe other things", suggestion)
     game = level.game
-    if card.spaces is None and card.branches != game.branches:
+    if card.spaces is None and game.branches and card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
         raise _unfit_error(f"the policy chooses among {own} actions, and the game has {sizes}")
     missing = [*game.missing_sensors(level, card.sensors)]
@@ -58,7 +58,7 @@ def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Spac
         TltlError: TLT0843, the spaces are not those of the policy; the message names what differs.
             TLT0844, no policy can have the spaces.
     """
-    layouts = space_layouts(observation, action)
+    layouts = space_layouts(observation, action, card.sensors)
     if layouts is None and card.spaces is None:
         assert isinstance(observation, spaces.Dict)
         assert isinstance(action, spaces.MultiDiscrete)

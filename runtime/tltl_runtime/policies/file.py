@@ -19,7 +19,7 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from tltl_runtime.game.registry import STEALTH, game_named
-from tltl_runtime.game.sensors import Sensors
+from tltl_runtime.game.sensors import Sensors, sensor_shapes
 from tltl_runtime.policies.actor import weight_shapes
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
@@ -219,14 +219,7 @@ def _are_sizes(shapes: Collection[tuple[int, ...]]) -> bool:
 
 def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
     """Return the shapes of the observation by key, for a spec and sensors."""
-    shapes: dict[str, tuple[int, ...]] = {"automaton": (len(fspa.states),), "progress": (1,)}
-    if sensors.entities:
-        shapes["entities"] = (3 * len(sensors.entities),)
-    if sensors.variables:
-        shapes["variables"] = (len(sensors.variables),)
-    if sensors.map is not None:
-        shapes["map"] = (len(sensors.map.types), sensors.map.extent, sensors.map.extent)
-    return shapes
+    return {"automaton": (len(fspa.states),), "progress": (1,), **sensor_shapes(sensors)}
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:

@@ -12,7 +12,7 @@ from tltl_runtime.policies.actor import Actor
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.spaces.encoder_plan import NORMALIZER
 from tltl_runtime.policies.spaces.space_actor import SpaceActor
-from tltl_runtime.policies.spaces.values import action_value, observation_arrays
+from tltl_runtime.policies.spaces.values import action_value, observation_arrays, squashed
 
 
 class NotFiniteError(ValueError):
@@ -81,12 +81,26 @@ class Policy:
         Raises:
             NotFiniteError: the observation or the output of the network is not finite.
         """
+        row = self.choose_row(observation, generator)
+        if self.card.spaces is None:
+            return row
+        layout = self.card.spaces.action
+        return action_value(layout, squashed(layout, row))
+
+    def choose_row(self, observation: Any, generator: np.random.Generator | None = None) -> NDArray[Any]:
+        """Return an action as :meth:`choose` does, but as a row of numbers [width].
+
+        With a card that has ``spaces``, it has the choices, which count from 0, and then the numbers
+        before they are squashed to their bounds.
+
+        Raises:
+            NotFiniteError: the observation or the output of the network is not finite.
+        """
         logits = self.logits(observation)
         if not np.isfinite(logits).all():
             raise NotFiniteError(_not_finite_message(self._arrays(observation)))
         if isinstance(self._actor, SpaceActor):
-            assert self.card.spaces is not None
-            return action_value(self.card.spaces.action, self._actor.choose(logits, generator))
+            return self._actor.choose(logits, generator)
         return self._branch_choices(logits.astype(np.float64), generator)
 
     def _branch_choices(self, logits: NDArray[np.float64], generator: np.random.Generator | None) -> NDArray[np.int64]:

@@ -15,7 +15,7 @@ from torch import Tensor
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import model_config
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.policies.spaces.torch_model import space_model_config
+from tltl_runtime.policies.spaces.model_config import space_model_config
 
 
 def new_actor(card: Card) -> MLPModel:

@@ -15,6 +15,7 @@ from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
+from tltl_runtime.policies.spaces.distribution import IndependentParts
 from tltl_runtime.training.exploration.self_imitation import imitate
 from tltl_runtime.training.files.report import Iteration
 from tltl_runtime.training.ppo.distributed import process_group
@@ -67,11 +68,17 @@ class Runner(OnPolicyRunner):
     def scale_inverse_temperature(self, factor: float) -> None:
         """Multiply the actor's logits by ``factor``: above 1, it makes likely choices likelier.
 
+        The variances of an action's numbers are divided by it.
+
         In the first ``cfg["warm_up"]`` iterations this does nothing.
         """
         if self.current_learning_iteration <= self.cfg.get("warm_up", 0):
             return
         last = [layer for layer in self.alg.actor.mlp if isinstance(layer, nn.Linear)][-1]
+        distribution = self.alg.actor.distribution
+        if isinstance(distribution, IndependentParts):
+            distribution.sharpen(last, factor)
+            return
         with torch.no_grad():
             for parameter in last.parameters():
                 parameter.mul_(factor)

@@ -43,7 +43,7 @@ def interrupted(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Run:  # noqa: F8
     The interrupt comes before the environments of the training start.
     """
 
-    def stop(_: object) -> None:
+    def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
     def run(*arguments: str | Path) -> Outcome:

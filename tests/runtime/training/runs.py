@@ -12,12 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from gymnasium import spaces
 
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.checkpoint import Checkpoint, read_checkpoint
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
@@ -26,6 +28,8 @@ from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace
 
+STEALTH_ACTIONS = ActionEncoding(spaces.MultiDiscrete([3, 3, 2, 2, 2]))
+"""The encoding of the actions of the stealth game."""
 SMALL: dict[str, Any] = {
     "rollout.envs": 4,
     "rollout.steps": 16,

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from tests.runtime.training.runs import run_in
+from tests.runtime.training.runs import STEALTH_ACTIONS, run_in
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 from tltl_runtime.training.files.checkpoint import read_checkpoint
@@ -159,7 +159,7 @@ def test_a_curriculum_of_another_shape_is_rejected(tmp_path: Path) -> None:
 
 def curriculum_state() -> dict[str, Any]:
     """The state of a curriculum with one demonstration and one failed episode."""
-    curriculum = ReverseCurriculum(4, np.random.default_rng(0))
+    curriculum = ReverseCurriculum(4, np.random.default_rng(0), STEALTH_ACTIONS)
     curriculum.add(SuccessfulEpisode(1, [[0] * 5, [1] * 5], 2))
     curriculum.failures.append(FailedEpisode(3, [[0] * 5], 1))
     return curriculum.state()
@@ -189,7 +189,7 @@ STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
 @pytest.mark.parametrize("name", STARTS)
 def test_a_damaged_curriculum_is_rejected(name: str) -> None:
     whole = curriculum_state()
-    ReverseCurriculum(4, np.random.default_rng(0)).load(whole)
+    ReverseCurriculum(4, np.random.default_rng(0), STEALTH_ACTIONS).load(whole)
     STARTS[name](whole)
     with pytest.raises(ValueError, match="`"):
-        ReverseCurriculum(4, np.random.default_rng(0)).load(whole)
+        ReverseCurriculum(4, np.random.default_rng(0), STEALTH_ACTIONS).load(whole)

@@ -16,6 +16,7 @@ from tltl_runtime.training.files.checkpoint import read_checkpoint
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.run import train as training
 from tltl_runtime.training.run.preparation import make_environments
+from tltl_runtime.training.run.spaces import training_spaces
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -140,10 +141,10 @@ def _training_with_search(tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         stop__confirmation=1000,
         checkpoint_s=1e9,
     )
-    env = make_environments(run)
+    env = make_environments(run, training_spaces(run))
     close, env.close = env.close, lambda: None  # type: ignore[method-assign]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(training, "make_environments", lambda run: env)
+        patch.setattr(training, "make_environments", lambda run, spaces: env)
         assert list(training.train(run))
         yield (
             replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=10**9))),

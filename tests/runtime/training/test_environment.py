@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 
+from tests.runtime.training.runs import STEALTH_ACTIONS
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.replayed_starts import EpisodeStart, ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
@@ -47,7 +48,7 @@ class FixedCurriculum(ReverseCurriculum):
     """A curriculum that returns the same starts in turn."""
 
     def __init__(self) -> None:
-        super().__init__(1, np.random.default_rng(0))
+        super().__init__(1, np.random.default_rng(0), STEALTH_ACTIONS)
         self.add(DEMONSTRATION)
         self._starts = cycle(STARTS)
 

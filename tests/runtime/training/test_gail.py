@@ -23,6 +23,7 @@ from tltl_runtime.training.files.settings import rsl_config
 from tltl_runtime.training.imitation.gail import Gail
 from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.run.preparation import load_imitation_data, make_environments, prepare_environment
+from tltl_runtime.training.run.spaces import TrainingSpaces
 from tltl_runtime.training.run.train import train
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace
@@ -59,10 +60,10 @@ def equal(one: Any, other: Any) -> bool:
 def algorithm_of(run: TrainingRun) -> Gail:
     """The algorithm of a training before its first step."""
     processes = process_group()
-    vector_env = make_environments(run)
+    vector_env = make_environments(run, spaces := TrainingSpaces(None, searches=False))
     torch.manual_seed(0)
     env, _ = prepare_environment(
-        run, processes, "cpu", vector_env, None, print, load_imitation_data(run, processes, print), None
+        run, processes, "cpu", spaces, vector_env, None, print, load_imitation_data(run, processes, print), None
     )
     algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     vector_env.close()

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.runtime.training.runs import STEALTH_ACTIONS
 from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart, ReplayedStartEnv
@@ -250,7 +251,7 @@ def test_each_cell_is_counted_once(env: WorkerVectorEnv) -> None:
 
 
 def curriculum_of(demonstrations: Sequence[SuccessfulEpisode], segments: int, seed: int = 1) -> ReverseCurriculum:
-    curriculum = ReverseCurriculum(segments, np.random.default_rng(seed))
+    curriculum = ReverseCurriculum(segments, np.random.default_rng(seed), STEALTH_ACTIONS)
     for demonstration in demonstrations:
         curriculum.add(demonstration)
     return curriculum

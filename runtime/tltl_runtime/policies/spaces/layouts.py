@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
+from tltl_runtime.game.sensors import NO_SENSORS, Sensors, sensor_shapes
 from tltl_runtime.policies.spaces.action_layout import ActionLayout, action_layout
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart, observation_layout
+from tltl_runtime.policies.spaces.refusals import ADDED_KEYS
 from tltlc.api import record
 
 
@@ -34,13 +36,18 @@ class SpaceLayouts:
         return {part.key: part.shape for part in self.observation}
 
 
-def space_layouts(observation: spaces.Space[Any], action: spaces.Space[Any]) -> SpaceLayouts | None:
+def space_layouts(
+    observation: spaces.Space[Any], action: spaces.Space[Any], sensors: Sensors = NO_SENSORS
+) -> SpaceLayouts | None:
     """Return the layouts of two spaces; None if the network takes and gives their values as they are.
+
+    That is so if the observation has the keys that :class:`~tltl_runtime.spec.wrapper.TltlEnv` adds,
+    the parts that ``sensors`` give, and no others.
 
     Raises:
         TltlError: TLT0844, no policy can have one of the spaces.
     """
-    if isinstance(observation, spaces.Dict) and _is_plain(observation) and is_plain_action(action):
+    if isinstance(observation, spaces.Dict) and _is_plain(observation, sensors) and is_plain_action(action):
         return None
     return SpaceLayouts(observation_layout(observation), action_layout(action))
 
@@ -50,8 +57,11 @@ def is_plain_action(space: spaces.Space[Any]) -> bool:
     return isinstance(space, spaces.MultiDiscrete) and space.nvec.ndim == 1 and not space.start.any()
 
 
-def _is_plain(space: spaces.Dict) -> bool:
-    """Whether an observation has only vectors in [-1, 1] and maps of zeros and ones, whose planes come first."""
+def _is_plain(space: spaces.Dict, sensors: Sensors) -> bool:
+    """Whether an observation has what sensors give alone: vectors in [-1, 1] and maps of zeros and ones."""
+    shapes = {key: part.shape for key, part in space.spaces.items() if key not in ADDED_KEYS}
+    if shapes != sensor_shapes(sensors):
+        return False
     return all(isinstance(part, spaces.Box) and _is_plain_part(part) for part in space.spaces.values())
 
 

@@ -25,7 +25,6 @@ from tltl_runtime.policies.spaces.encoder_plan import (
 )
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
-from tltl_runtime.policies.spaces.values import squashed
 
 _Array = NDArray[np.float32]
 
@@ -69,7 +68,10 @@ class SpaceActor:
             return values
 
     def choose(self, outputs: _Array, generator: np.random.Generator | None = None) -> NDArray[np.float64]:
-        """Return the flat action for outputs of the network: sampled, or the likeliest without a generator."""
+        """Return an action for outputs of the network: sampled, or the likeliest without a generator.
+
+        It is a row [width]: the choices, and then the numbers before they are squashed.
+        """
         action = self._layouts.action
         logits, means = np.split(outputs.astype(np.float64), [sum(action.sizes)])
         if generator is not None:
@@ -79,7 +81,7 @@ class SpaceActor:
                 means = means + deviations(self._weights) * generator.standard_normal(len(means))
         ends = np.cumsum(action.sizes, dtype=np.int64)
         choices = [logits[end - size : end].argmax() for size, end in zip(action.sizes, ends, strict=True)]
-        return squashed(action, np.concatenate([np.array(choices, np.float64), means]))
+        return np.concatenate([np.array(choices, np.float64), means])
 
     def _encoded(self, arrays: Mapping[str, NDArray[Any]]) -> _Array:
         parts: list[_Array] = []

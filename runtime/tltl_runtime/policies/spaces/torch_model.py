@@ -25,19 +25,6 @@ from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltl_runtime.policies.spaces.space_actor import FARTHEST
 
 
-def space_model_config(network: Network, layouts: SpaceLayouts, *, is_actor: bool) -> dict[str, Any]:
-    """Return rsl-rl's configuration of an actor, or of a critic, for these layouts."""
-    config: dict[str, Any] = {
-        "class_name": "tltl_runtime.policies.spaces.torch_model:SpaceModel",
-        "network": network,
-        "layouts": layouts,
-    }
-    if is_actor:
-        distribution = "tltl_runtime.policies.spaces.distribution:IndependentParts"
-        config["distribution_cfg"] = {"class_name": distribution, "layout": layouts.action}
-    return config
-
-
 class SpaceModel(MLPModel):
     """An actor or critic whose inputs are the parts of an observation, as in ``layouts``.
 

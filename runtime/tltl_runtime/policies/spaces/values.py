@@ -26,6 +26,13 @@ def observation_arrays(
     return {part.key: _array(part, _at(observation, part.path), count) for part in layout}
 
 
+def batch_row(batch: Any, row: int) -> Any:
+    """Return the value in one row of a batch of a space."""
+    if isinstance(batch, Mapping):
+        return {key: batch_row(values, row) for key, values in batch.items()}
+    return tuple(batch_row(values, row) for values in batch) if isinstance(batch, tuple) else batch[row]
+
+
 def action_value(layout: ActionLayout, flat: NDArray[Any], count: int | None = None) -> Any:
     """Return the value of the action space for flat actions [count, width]."""
     choices, numbers = np.split(flat, [len(layout.sizes)], axis=-1)

@@ -16,16 +16,15 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Row
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
 from tltlc.api import record, replace
 
-Actions = list[list[int]]
-
 
 @record
 class EpisodeStart:
-    """The start of an episode: its seed, and ``actions`` [n, branches] to replay first.
+    """The start of an episode: its seed, and ``actions`` to replay first, as rows [n, width].
 
     For a start in a demonstration, ``segment`` is a pair: the end of the demonstration, as
     :func:`~tltl_runtime.training.exploration.search.end_of` returns it, and the index of the
@@ -34,13 +33,13 @@ class EpisodeStart:
     """
 
     seed: int
-    actions: Sequence[Sequence[int]] = ()
+    actions: Sequence[Row] = ()
     segment: tuple[int, int] | None = None
     max_decisions: int | None = None
 
 
 class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment whose episodes begin at ``next_start``: a seed, and actions to replay.
+    """An environment whose episodes begin at ``next_start``: a seed, and flat actions to replay.
 
     ``next_start`` keeps its value for all later episodes; setting it to None does nothing. Until it
     is first set, episodes begin as in the wrapped environment. ``make`` makes the wrapped
@@ -51,20 +50,21 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
         super().__init__(make())
         self._spare_env = make()
-        self._next_start: tuple[int, NDArray[np.int8]] | None = None
+        self._encoding = ActionEncoding(self.env.action_space)
+        self._next_start: tuple[int, NDArray[Any]] | None = None
         self._replay: Iterator[None] | None = None
         self._replayed: tuple[Any, dict[str, Any]] = {}, {}
 
     @property
-    def next_start(self) -> tuple[int, NDArray[np.int8]] | None:
-        """The seed of the next episodes and the actions [n, branches] to replay.
+    def next_start(self) -> tuple[int, NDArray[Any]] | None:
+        """The seed of the next episodes and the flat actions [n, width] to replay.
 
         None before it is first set.
         """
         return self._next_start
 
     @next_start.setter
-    def next_start(self, next_start: tuple[int, NDArray[np.int8]] | None) -> None:
+    def next_start(self, next_start: tuple[int, NDArray[Any]] | None) -> None:
         # A vector environment sets the attribute of all its environments at once, with None for most of them.
         if next_start is not None:
             self._next_start = next_start
@@ -93,7 +93,7 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         super().close()
         self._spare_env.close()
 
-    def _replay_in_spare(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
+    def _replay_in_spare(self, seed: int, actions: NDArray[Any]) -> Iterator[None]:
         """Replay ``actions`` in the environment in which the agent does not play.
 
         This is a generator: each step of it replays one action.
@@ -101,7 +101,7 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         observation, info = self._spare_env.reset(seed=seed)
         for action in actions:
             yield
-            observation, _, _, _, info = self._spare_env.step(action)
+            observation, _, _, _, info = self._spare_env.step(self._encoding.value(action))
         self._replayed = observation, info
 
 
@@ -120,24 +120,25 @@ class EpisodesInProgress:
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart]) -> None:
         self._env = env
         self._draw = draw
+        self._encoding = ActionEncoding(env.single_action_space)
         self._next = [draw() for _ in range(env.num_envs)]
         self.starts = list(self._next)
-        self.actions: list[Actions] = [[] for _ in self._next]
+        self.actions: list[list[Row]] = [[] for _ in self._next]
         self.replayed = 0
         self._send_starts(range(env.num_envs))
         with self._starts_in_errors():
             self.observation, _ = env.reset()
         self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
-    def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Record actions [num_envs, branches] and step all environments with them.
+    def step(self, actions: NDArray[Any]) -> tuple[Any, ...]:
+        """Record actions, as rows [num_envs, width], and step all environments with them.
 
         Return the five results of the vector environment's step.
         """
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
         with self._starts_in_errors():
-            return self._env.step(actions)
+            return self._env.step(self._encoding.values(actions))
 
     def start_next(self, mask: NDArray[np.bool_]) -> None:
         """Record that the environments in ``mask`` [num_envs] have begun their next episodes.
@@ -195,8 +196,8 @@ class EpisodesInProgress:
 
     def _send_starts(self, rows: Iterable[int]) -> None:
         """Send the starts of their next episodes to the environments with the indices ``rows``."""
-        next_starts: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
+        next_starts: list[tuple[int, NDArray[Any]] | None] = [None] * self._env.num_envs
         for row in rows:
-            next_starts[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)
+            next_starts[row] = self._next[row].seed, self._encoding.flat(self._next[row].actions)
         with self._starts_in_errors():
             self._env.set_attr("next_start", next_starts)

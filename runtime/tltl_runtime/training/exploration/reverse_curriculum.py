@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.game.registry import STEALTH, game_named
-from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodeStart
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Actions
+from tltl_runtime.training.exploration.replayed_starts import EpisodeStart
 from tltl_runtime.training.exploration.search import FailedEpisode, SuccessfulEpisode
 
 _MAX_DEMONSTRATIONS = 6
@@ -66,7 +66,7 @@ class ReverseCurriculum:
     """Draws the starts of training episodes, and learns from the results of these episodes.
 
     Nothing else may draw from ``generator``, because equal seeds must give equal trainings.
-    ``segments`` is the number of segments of a demonstration.
+    ``segments`` is the number of segments of a demonstration, ``encoding`` that of the actions.
 
     ``demonstrations`` maps each end to the shortest known demonstrations with that end, including
     the agent's own successes. They are kept by end because a spec may be met in several ways, and
@@ -77,8 +77,9 @@ class ReverseCurriculum:
     ``failures`` are the last failed episodes from the level's start.
     """
 
-    def __init__(self, segments: int, generator: np.random.Generator) -> None:
+    def __init__(self, segments: int, generator: np.random.Generator, encoding: ActionEncoding) -> None:
         self._random = generator
+        self._encoding = encoding
         self._segments = segments
         self.demonstrations: dict[int, list[SuccessfulEpisode]] = {}
         self.rates: dict[int, NDArray[np.float64]] = {}
@@ -174,8 +175,13 @@ class ReverseCurriculum:
             **_arrays(
                 "way",
                 [(demonstration.seed, demonstration.actions, demonstration.end) for demonstration in demonstrations],
+                self._encoding.dtype,
             ),
-            **_arrays("failure", [(failure.seed, failure.actions, failure.state) for failure in self.failures]),
+            **_arrays(
+                "failure",
+                [(failure.seed, failure.actions, failure.state) for failure in self.failures],
+                self._encoding.dtype,
+            ),
             "rates": np.array(list(self.rates.values())),
             "passed": np.array([self.start_rate]),
             "lengths": self.lengths.copy(),
@@ -184,7 +190,7 @@ class ReverseCurriculum:
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Restore what :meth:`state` returned. Raises ValueError if the arrays are invalid."""
         for name in ("way", "failure"):
-            _check_episodes(name, state)
+            _check_episodes(name, state, self._encoding)
         self.demonstrations, self.rates = {}, {}
         for demonstration in _episodes("way", state):
             self.add(SuccessfulEpisode(*demonstration))
@@ -210,16 +216,16 @@ class ReverseCurriculum:
         return float(least + (most - least) * rate)
 
 
-def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]]) -> dict[str, NDArray[Any]]:
+def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]], dtype: np.dtype[Any]) -> dict[str, NDArray[Any]]:
     """Return the seeds, actions and ends (or states) of episodes as arrays.
 
-    The names of the arrays begin with ``name``.
+    The names of the arrays begin with ``name``. ``dtype`` is the type of actions.
     """
     return {
         f"{name}_seeds": np.array([seed for seed, _, _ in episodes], dtype=np.int64),
         f"{name}_ends": np.array([end for _, _, end in episodes], dtype=np.int64),
         f"{name}_lengths": np.array([len(actions) for _, actions, _ in episodes], dtype=np.int64),
-        f"{name}_actions": np.array([action for _, actions, _ in episodes for action in actions], dtype=np.int8),
+        f"{name}_actions": np.array([action for _, actions, _ in episodes for action in actions], dtype=dtype),
     }
 
 
@@ -240,7 +246,7 @@ def _check_array(
         raise ValueError(f"`{name}` must be {np.dtype(dtype)} of the shape {list(shape)}{kind}")
 
 
-def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]], encoding: ActionEncoding) -> None:
     """Raise ValueError if the arrays of episodes have a wrong type, shape or value.
 
     Seeds, ends and states must not be negative, episodes must not be empty, and actions must be
@@ -250,13 +256,15 @@ def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     for field in ("seeds", "ends", "lengths"):
         _check_array(f"{name}_{field}", arrays, np.int64, (count,))
     lengths = arrays[f"{name}_lengths"]
-    actions, branches = sum(lengths.tolist()), game_named(STEALTH).branches
-    _check_array(f"{name}_actions", arrays, np.int8, (actions, len(branches)) if actions else (0,))
+    actions = arrays.get(f"{name}_actions")
+    if actions is None:
+        raise ValueError(f"`{name}_actions` is missing")
+    try:
+        encoding.check(actions, sum(lengths.tolist()))
+    except ValueError as error:
+        raise ValueError(f"`{name}_actions` {error}") from None
     if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any() or (arrays[f"{name}_ends"] < 0).any():
         raise ValueError(f"`{name}_lengths`, `{name}_seeds` or `{name}_ends` contains a number that is too small")
-    choices = arrays[f"{name}_actions"].reshape(-1, len(branches))
-    if (choices < 0).any() or (choices >= np.array(branches)).any():
-        raise ValueError(f"`{name}_actions` contains a value that is not an action")
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:

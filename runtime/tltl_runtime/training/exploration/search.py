@@ -25,12 +25,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.training.exploration.replayed_starts import Actions, EpisodesInProgress, EpisodeStart
+from tltl_runtime.policies.spaces.values import batch_row
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Actions
+from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import record
 
 _REPEAT_PROBABILITY = 0.9
-"""The probability that a branch of the action repeats its choice in the next decision.
+"""The probability that the next decision repeats a choice or a number of the action.
 
 With independent choices, the player would hardly leave its place.
 """
@@ -46,8 +48,8 @@ No episode then begins at the level's start.
 _REPORT_INTERVAL_S = 0.5
 """The least time, in seconds, between two reports of progress."""
 
-PolicyFunction = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
-"""A function that returns the action [branches] for the observation of one environment."""
+PolicyFunction = Callable[[Any], NDArray[Any]]
+"""A function that returns an action, as a row [width], for the observation of one environment."""
 
 
 @record
@@ -170,18 +172,16 @@ class TrajectorySearch:
         """Search; yield the progress from time to time, and once at the end."""
         began = reported = time.perf_counter()
         episodes = EpisodesInProgress(self._env, self._draw)
-        choices = np.array(self._env.single_action_space.nvec)  # type: ignore[attr-defined]
-        shape = self._env.num_envs, len(choices)
-        action = self._random.integers(0, choices, size=shape)
+        action = self._random_actions()
         decisions_left = np.full(self._env.num_envs, _RANDOM_DECISIONS)
         by_policy = np.full(self._env.num_envs, self._policy is not None)
         observation, steps = episodes.observation, 0
         while steps < self._exploration.steps and len(self.demonstrations) < self._exploration.ways:
-            repeated = self._random.random(shape) < _REPEAT_PROBABILITY
-            action = np.where(repeated, action, self._random.integers(0, choices, size=shape))
+            repeated = self._random.random(action.shape) < _REPEAT_PROBABILITY
+            action = np.where(repeated, action, self._random_actions())
             if self._policy:
                 for row in np.flatnonzero(by_policy).tolist():
-                    action[row] = self._policy({name: values[row] for name, values in observation.items()})
+                    action[row] = self._policy(batch_row(observation, row))
             observation, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
             over = terminated | truncated
@@ -206,6 +206,14 @@ class TrajectorySearch:
                 reported = time.perf_counter()
                 yield self._progress(steps, episodes.replayed, reported - began, complete=False)
         yield self._progress(steps, episodes.replayed, time.perf_counter() - began, complete=True)
+
+    def _random_actions(self) -> NDArray[Any]:
+        """Draw actions uniformly, as rows [num_envs, width]; numbers before squashing have a deviation of 1."""
+        layout = ActionEncoding(self._env.single_action_space).layout
+        choices = self._random.integers(0, np.array(layout.sizes), size=(self._env.num_envs, len(layout.sizes)))
+        if not layout.number_count:
+            return choices
+        return np.hstack([choices, self._random.normal(size=(self._env.num_envs, layout.number_count))])
 
     def _record_cell(self, episodes: EpisodesInProgress, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Record the current cell of an environment; return whether it is new.

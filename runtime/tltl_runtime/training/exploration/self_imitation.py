@@ -20,6 +20,9 @@ from rsl_rl.algorithms import PPO
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
+from tltl_runtime.training.exploration.observation_encoding import ObservationEncoding
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 
@@ -31,10 +34,17 @@ class SelfImitation:
     """Draws self-imitation batches from the demonstrations of ``curriculum``.
 
     To get the observations, it replays the demonstrations in an environment that ``make`` makes.
+    ``layouts`` are those of the environment; None if the network reads its observations as they are.
     """
 
-    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]], curriculum: ReverseCurriculum) -> None:
+    def __init__(
+        self,
+        make: Callable[[], gymnasium.Env[Any, Any]],
+        curriculum: ReverseCurriculum,
+        layouts: SpaceLayouts | None = None,
+    ) -> None:
         self._make, self._curriculum = make, curriculum
+        self._observations_encoding = ObservationEncoding(layouts)
         self._env: gymnasium.Env[Any, Any] | None = None
         self._observed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
         """The demonstrations and their observations, by the ``id`` of the demonstration.
@@ -45,8 +55,8 @@ class SelfImitation:
     def draw(self) -> tuple[TensorDict, Tensor] | None:
         """Draw up to ``BATCH`` decisions to imitate.
 
-        Returns observations, float32 tensors [n, ...] by key, and actions [n, branches]; None if
-        there is nothing to imitate.
+        Returns observations, tensors [n, ...] by key, and actions, as rows [n, width]; None if there
+        is nothing to imitate.
         """
         decisions = self._curriculum.draw_decisions(BATCH)
         if not decisions:
@@ -61,14 +71,11 @@ class SelfImitation:
             if id(demonstration) not in self._observed:
                 self._observed[id(demonstration)] = demonstration, self._observations(demonstration)
         rows = [(self._observed[id(demonstration)][1], index) for demonstration, index in decisions]
-        observations = {
-            name: torch.from_numpy(np.stack([values[name][index] for values, index in rows])).to(torch.float32)
-            for name in rows[0][0]
-        }
+        observations = {name: np.stack([values[name][index] for values, index in rows]) for name in rows[0][0]}
         actions = torch.tensor(
             [demonstration.actions[index] for demonstration, index in decisions], dtype=torch.float32
         )
-        return TensorDict(observations, batch_size=[len(rows)]), actions
+        return self._observations_encoding.tensors(observations), actions
 
     def close(self) -> None:
         """Close the environment."""
@@ -81,15 +88,16 @@ class SelfImitation:
         The arrays are [n, ...] for n decisions.
         """
         self._env = self._env or self._make()
+        encoding = ActionEncoding(self._env.action_space)
         first, _ = self._env.reset(seed=demonstration.seed)
-        observations = [first, *(self._env.step(action)[0] for action in demonstration.actions[:-1])]
-        return {name: np.stack([observation[name] for observation in observations]) for name in first}
+        actions = map(encoding.value, encoding.flat(demonstration.actions[:-1]))
+        return self._observations_encoding.stacked([first, *(self._env.step(action)[0] for action in actions)])
 
 
 def imitate(ppo: PPO, observations: TensorDict, actions: Tensor) -> float:
     """Take an optimiser step that makes these actions likelier; return the loss.
 
-    ``observations`` [n, ...] and ``actions`` [n, branches] are a batch of decisions. The loss is
+    ``observations`` [n, ...] and ``actions`` [n, width] are a batch of decisions. The loss is
     the sum of the actions' negative log-likelihoods in nats, divided by ``BATCH``. The divisor
     stays the same for smaller batches, so that a small batch counts less.
     """

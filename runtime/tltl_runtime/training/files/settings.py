@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.policies.spaces.model_config import space_model_config
 from tltl_runtime.training.exploration.search import SearchSettings
 from tltl_runtime.training.files.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltl_runtime.training.files.settings_file import read_values
@@ -258,11 +260,13 @@ def algorithm_name(settings: TrainingSettings) -> str:
     return _GAIL if settings.imitates and name == _PPO else name
 
 
-def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
+def rsl_config(
+    settings: TrainingSettings, shapes: Shapes, branches: Sequence[int], layouts: SpaceLayouts | None = None
+) -> dict[str, Any]:
     """Return rsl-rl's configuration.
 
     ``shapes`` are the shapes of an observation by key. ``branches`` has the number of choices of
-    each branch of an action.
+    each branch of an action. With ``layouts``, these describe the observation and the action.
     """
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
@@ -281,8 +285,7 @@ def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[in
         "num_steps_per_env": settings.rollout.steps,
         "threads": settings.threads,
         "obs_groups": {"actor": groups, "critic": groups},
-        "actor": model_config(settings.network, shapes, branches),
-        "critic": model_config(settings.network, shapes),
+        **_model_configs(settings.network, shapes, branches, layouts),
         "algorithm": {
             "class_name": algorithm_name(settings),
             "num_learning_epochs": ppo.epochs,
@@ -299,3 +302,11 @@ def rsl_config(settings: TrainingSettings, shapes: Shapes, branches: Sequence[in
             **({"gail": gail} if settings.imitates else {}),
         },
     }
+
+
+def _model_configs(
+    network: Network, shapes: Shapes, branches: Sequence[int], layouts: SpaceLayouts | None
+) -> dict[str, Any]:
+    if layouts is None:
+        return {"actor": model_config(network, shapes, branches), "critic": model_config(network, shapes)}
+    return {name: space_model_config(network, layouts, is_actor=name == "actor") for name in ("actor", "critic")}

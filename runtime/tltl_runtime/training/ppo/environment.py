@@ -13,13 +13,17 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
+from tltl_runtime.training.exploration.observation_encoding import ObservationEncoding
 from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.imitation.imitation_data import ImitationData
 from tltl_runtime.vector import WorkerVectorEnv
+from tltlc.api import Diagnostic, TltlError
 
 
 class TrainingEnv(VecEnv):
@@ -28,9 +32,11 @@ class TrainingEnv(VecEnv):
     ``env`` has environments of :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
     autoreset.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on
-    ``device``. ``shapes`` are the shapes of one environment's observation. ``seed`` is the argument
-    of the vector environment's reset: a number, or one for each environment.
+    Observation groups are the keys of the observation, tensors [num_envs, ...] on ``device``.
+    ``shapes`` are the shapes of one environment's observation. ``layouts`` are the layouts of
+    observation and action; None if the network takes and gives their values as they are, and
+    ``branches`` then has the numbers of choices of an action. ``seed`` is the argument of the vector
+    environment's reset: a number, or one for each environment.
 
     With a ``curriculum``, episodes begin at the starts that it draws, and ``seed`` is not used.
     :meth:`pop_finished` then leaves out the episodes that do not begin at the level's start.
@@ -42,7 +48,8 @@ class TrainingEnv(VecEnv):
     subtracted from the reward. ``limit_steps`` is the spec's limit; None if it has no limit.
 
     Raises:
-        TypeError: the observation space is not a Dict, or the action space is not a MultiDiscrete.
+        TypeError: without ``layouts``, the observation space is not a Dict, or the action space is
+            not a MultiDiscrete.
     """
 
     def __init__(
@@ -55,16 +62,14 @@ class TrainingEnv(VecEnv):
         imitation_data: ImitationData | None = None,
         extra_penalty: Callable[[int], float] | None = None,
         limit_steps: int | None = None,
+        layouts: SpaceLayouts | None = None,
     ) -> None:
-        if not isinstance(env.single_action_space, spaces.MultiDiscrete):
-            raise TypeError(f"the action space must be a MultiDiscrete, not {env.single_action_space}")
-        if not isinstance(env.single_observation_space, spaces.Dict):
-            raise TypeError(f"the observation space must be a Dict, not {env.single_observation_space}")
+        self.shapes, self.branches = _plain_shapes(env) if layouts is None else (layouts.shapes, ())
         self.env = env
+        self.layouts = layouts
         self.num_envs = env.num_envs
-        self.branches = tuple(int(choices) for choices in env.single_action_space.nvec)
-        self.num_actions = len(self.branches)
-        self.shapes = {key: tuple(space.shape or ()) for key, space in env.single_observation_space.items()}
+        self._actions, self._encoding = ActionEncoding(env.single_action_space), ObservationEncoding(layouts)
+        self.num_actions = self._actions.layout.width
         self.device = device
         self.curriculum = curriculum
         self.self_imitation = self_imitation
@@ -88,15 +93,18 @@ class TrainingEnv(VecEnv):
         return self._observation
 
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
-        """Step all environments with actions [num_envs, branches].
+        """Step all environments with actions [num_envs, width], before their numbers are squashed.
 
         Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over,
         and extras. The extras are bools [num_envs]: ``time_outs`` says whether the episode ended at
         a limit or was cut off, ``successes`` whether it met the spec.
+
+        Raises:
+            TltlError: TLT0866, an action is not finite.
         """
-        choices = actions.to("cpu", torch.int64).numpy()
-        step = self._episodes.step if self._episodes else self.env.step
-        observation, reward, terminated, truncated, infos = step(choices)
+        rows = self._rows(actions)
+        results = self._episodes.step(rows) if self._episodes else self.env.step(self._actions.values(rows))
+        observation, reward, terminated, truncated, infos = results
         is_over = terminated | truncated
         summaries = self._summaries(infos["final_info"], np.flatnonzero(is_over)) if is_over.any() else {}
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
@@ -155,9 +163,26 @@ class TrainingEnv(VecEnv):
         """Return the number of steps of the episode that ended in this row, with the replayed ones."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
-    def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
-        tensors = {key: torch.from_numpy(values).to(self.device, torch.float32) for key, values in observation.items()}
-        return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
+    def _tensors(self, observation: Any) -> TensorDict:
+        return self._encoding.batch(observation, self.num_envs, self.device)
+
+    def _rows(self, actions: Tensor) -> NDArray[Any]:
+        """Return actions as rows [num_envs, width], in NumPy."""
+        try:
+            return self._actions.rows(actions.cpu().numpy())
+        except ValueError as error:
+            help_ = "train again with a smaller `learning_rate` or `max_gradient`"
+            raise TltlError([Diagnostic("TLT0866", f"the training has diverged: {error}", help=help_)]) from None
+
+
+def _plain_shapes(env: WorkerVectorEnv) -> tuple[dict[str, tuple[int, ...]], tuple[int, ...]]:
+    """Return the shapes of an observation by key, and the numbers of choices of an action."""
+    observation, action = env.single_observation_space, env.single_action_space
+    if not isinstance(action, spaces.MultiDiscrete):
+        raise TypeError(f"the action space must be a MultiDiscrete, not {action}")
+    if not isinstance(observation, spaces.Dict):
+        raise TypeError(f"the observation space must be a Dict, not {observation}")
+    return {key: tuple(space.shape or ()) for key, space in observation.items()}, tuple(map(int, action.nvec))
 
 
 def _update_curriculum(

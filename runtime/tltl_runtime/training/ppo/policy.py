@@ -37,6 +37,7 @@ def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
         network=run.settings.network,
         versions=versions(),
         training={},
+        spaces=env.layouts,
     )
 
 

@@ -6,16 +6,14 @@ search for demonstrations.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.policy import NotFiniteError, Policy
-from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress
@@ -40,6 +38,7 @@ from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
 from tltl_runtime.training.run.initial_policy import read_initial_policy
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_before_training
+from tltl_runtime.training.run.spaces import TrainingSpaces, env_function
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.api import Diagnostic, TltlError
@@ -72,8 +71,8 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
     return None
 
 
-def make_environments(run: TrainingRun) -> WorkerVectorEnv:
-    """Make the vector environment in which this process trains."""
+def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorEnv:
+    """Make the vector environment in which this process trains, and perhaps ``searches``."""
     settings, rollout = run.settings, run.settings.rollout
     return make_vec(
         run.level,
@@ -84,8 +83,8 @@ def make_environments(run: TrainingRun) -> WorkerVectorEnv:
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
-        wrapper=ReplayedStartEnv if settings.searches else None,
-        info={**TLTL_INFO, "cell": np.int64},
+        wrapper=ReplayedStartEnv if spaces.searches else None,
+        info={**TLTL_INFO, "cell": np.int64} if spaces.searches else TLTL_INFO,
     )
 
 
@@ -105,7 +104,7 @@ def load_imitation_data(
         return None
     imitation_data = None
     if group.rank == 0:
-        folder, make = demonstrations_of(run), _env_of(run)
+        folder, make = demonstrations_of(run), env_function(run)
         if run.demonstrations is None:
             record_expert(folder, run.settings.imitation.demonstrations, make, on_attempt)
         imitation_data = read_demonstrations(folder, make)
@@ -130,6 +129,7 @@ def prepare_environment(
     run: TrainingRun,
     group: ProcessGroup,
     device: str,
+    spaces: TrainingSpaces,
     vector_env: WorkerVectorEnv,
     checkpoint: Checkpoint | None,
     on_search: SearchCallback,
@@ -146,18 +146,27 @@ def prepare_environment(
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
-    if run.settings.searches:
-        curriculum = _curriculum(run, group, checkpoint)
+    if spaces.searches:
+        encoding = ActionEncoding(vector_env.single_action_space)
+        curriculum = _curriculum(run, group, checkpoint, encoding)
         progress = search_before_training(
             run, group, vector_env, curriculum, checkpoint, on_search, _policy_function(run, group, initial)
         )
         if run.settings.exploration.imitation:
-            self_imitation = SelfImitation(_env_of(run), curriculum)
+            self_imitation = SelfImitation(env_function(run), curriculum, spaces.layouts)
     seeds = stream(run, group, Purpose.ENVIRONMENTS, iteration).generate_state(vector_env.num_envs) >> 1
     reset_seeds = [int(seed) for seed in seeds]
     limit_steps = run.fspa.limit_steps
     env = TrainingEnv(
-        vector_env, reset_seeds, device, curriculum, self_imitation, imitation_data, penalty_rise(run), limit_steps
+        vector_env,
+        reset_seeds,
+        device,
+        curriculum,
+        self_imitation,
+        imitation_data,
+        penalty_rise(run),
+        limit_steps,
+        spaces.layouts,
     )
     return env, progress
 
@@ -171,10 +180,9 @@ def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | Non
         return None
     generator = np.random.default_rng(stream(run, group, Purpose.INITIAL))
 
-    def play(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
+    def play(observation: Any) -> NDArray[Any]:
         try:
-            choices: NDArray[np.int64] = policy.choose(observation, generator)
-            return choices
+            return policy.choose_row(observation, generator)
         except NotFiniteError as error:
             title = f"the policy that the training in `{run.folder}` begins with: {error}"
             help_ = "begin with another policy, or train without --from"
@@ -183,11 +191,13 @@ def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | Non
     return play
 
 
-def _curriculum(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None) -> ReverseCurriculum:
+def _curriculum(
+    run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None, encoding: ActionEncoding
+) -> ReverseCurriculum:
     """Return the curriculum of this process, with the demonstrations of the checkpoint."""
     iteration = checkpoint.iteration if checkpoint else 0
     generator = np.random.default_rng(stream(run, group, Purpose.STARTS, iteration))
-    curriculum = ReverseCurriculum(run.settings.exploration.parts, generator)
+    curriculum = ReverseCurriculum(run.settings.exploration.parts, generator, encoding)
     if checkpoint:
         # If there are more processes than before, the new ones begin with the state of older ones.
         rank = group.rank % len(checkpoint.processes)
@@ -196,16 +206,3 @@ def _curriculum(run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | 
         except (TypeError, ValueError) as error:
             raise checkpoint_error(run.folder / CHECKPOINT, f"`processes` {rank + 1}: {error}") from None
     return curriculum
-
-
-def _env_of(run: TrainingRun) -> Callable[[], TltlEnv]:
-    """Return a function that makes an environment of the training."""
-    return partial(
-        game_of(run.level).make_env,
-        run.level,
-        run.variant,
-        run.fspa,
-        sensors=run.sensors,
-        reward=run.settings.rewards,
-        params=run.params,
-    )

@@ -9,6 +9,7 @@ from contextlib import ExitStack, closing
 import torch
 from rsl_rl.algorithms import PPO
 
+from tltl_runtime.policies.compatibility import check_spaces
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.support.record_json import RecordJsonError
 from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
@@ -37,6 +38,7 @@ from tltl_runtime.training.run.preparation import (
 )
 from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
+from tltl_runtime.training.run.spaces import TrainingSpaces, training_spaces
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
@@ -71,8 +73,10 @@ def train(
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
-            not numbers; TLT0862, the device or a class does not exist, or the network is too large
-            for a policy file; TLT0864, the checkpoint cannot be resumed from; TLT0865, another
+            not numbers; TLT0843, the policy to begin with is of another game; TLT0844, no policy can
+            have the observations or actions of the game; TLT0862, the device or a class does not
+            exist, the network is too large for a policy file, or the game has no cells to search;
+            TLT0864, the checkpoint cannot be resumed from; TLT0865, another
             process trains in the folder; TLT0866, a loss is not finite; TLT0867, the folder holds a
             training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921,
             there are no demonstrations to imitate; TLT0922, the demonstrations have changed;
@@ -81,7 +85,8 @@ def train(
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
-    check_size(run.settings.network, run.fspa, run.sensors)
+    # A new training writes nothing if it cannot begin. A resumed one first checks that nothing has changed.
+    spaces = None if resume else _checked_spaces(run)
     with ExitStack() as stack:
         group, device = stack.enter_context(join_process_group(device_of(run.settings.device)))
         checkpoint = None
@@ -90,21 +95,31 @@ def train(
             checkpoint = start_or_resume(run, resume)
         checkpoint = group.broadcast(checkpoint)
         stack.enter_context(threads(1))
+        spaces = spaces or _checked_spaces(run)
         imitation_data = load_imitation_data(run, group, on_attempt)
         initial = initial_policy(run, group, checkpoint)
-        vector_env = stack.enter_context(closing(make_environments(run)))
+        vector_env = stack.enter_context(closing(make_environments(run, spaces)))
+        if initial:
+            check_spaces(initial.card, vector_env.single_observation_space, vector_env.single_action_space)
         env, searched = prepare_environment(
-            run, group, device, vector_env, checkpoint, on_search, imitation_data, initial
+            run, group, device, spaces, vector_env, checkpoint, on_search, imitation_data, initial
         )
         if env.self_imitation:
             stack.callback(env.self_imitation.close)
         torch.manual_seed(int(stream(run, group, Purpose.TORCH).generate_state(1)[0]))
-        config = rsl_config(run.settings, env.shapes, env.branches)
+        config = rsl_config(run.settings, env.shapes, env.branches, env.layouts)
         new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
             new_runner.load_actor(initial.weights())
         training = _Training(run, group, new_runner, checkpoint, searched, on_search)
         yield from training.reports()
+
+
+def _checked_spaces(run: TrainingRun) -> TrainingSpaces:
+    """Return what the environment of a training says of itself, and check that a policy for it fits a file."""
+    spaces = training_spaces(run)
+    check_size(run.settings.network, run.fspa, run.sensors, spaces.layouts)
+    return spaces
 
 
 class _Training:

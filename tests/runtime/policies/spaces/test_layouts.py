@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.runtime.policies.spaces.random_spaces import ACTIONS, OBSERVATIONS
+from tltl_runtime.game.sensors import MapSensor, Sensors
 from tltl_runtime.policies.spaces.action_layout import action_layout
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
 from tltl_runtime.policies.spaces.observation_layout import observation_layout
@@ -149,13 +150,14 @@ def test_bounds_that_say_nothing_are_none() -> None:
 
 def test_spaces_whose_values_the_network_takes_as_they_are_need_no_layout() -> None:
     vectors = spaces.Dict({"progress": spaces.Box(0, 1, (1,), np.float32), "map": KINDS["a map"][0]})
-    assert space_layouts(vectors, spaces.MultiDiscrete([3, 2])) is None
-    assert space_layouts(vectors, spaces.Discrete(3)) is not None
-    assert space_layouts(vectors, spaces.MultiDiscrete([3, 2], start=[0, 1])) is not None
+    sensors = Sensors((), (), MapSensor(tuple("abcdef"), 1.0, 9))
+    assert space_layouts(vectors, spaces.MultiDiscrete([3, 2]), sensors) is None
+    assert space_layouts(vectors, spaces.MultiDiscrete([3, 2])) is not None
+    assert space_layouts(vectors, spaces.Discrete(3), sensors) is not None
+    assert space_layouts(vectors, spaces.MultiDiscrete([3, 2], start=[0, 1]), sensors) is not None
     for other in ("a grid", "a choice", "bytes in a row"):
-        assert (
-            space_layouts(spaces.Dict({**vectors.spaces, "x": KINDS[other][0]}), spaces.MultiDiscrete([2])) is not None
-        )
+        more = spaces.Dict({**vectors.spaces, "x": KINDS[other][0]})
+        assert space_layouts(more, spaces.MultiDiscrete([2]), sensors) is not None
 
 
 # --- refusals ---------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from tltl_runtime.policies.spaces.encoder_plan import convolutions, encoded_widt
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.observation_layout import observation_layout
 from tltl_runtime.policies.spaces.space_actor import SpaceActor, planes_of
-from tltl_runtime.policies.spaces.values import action_value, observation_arrays
+from tltl_runtime.policies.spaces.values import action_value, observation_arrays, squashed
 
 
 @pytest.mark.hypothesis
@@ -34,7 +34,7 @@ def test_a_network_chooses_actions_of_any_space(
     assert outputs.shape == (layouts.action.output_width,)
     assert outputs.dtype == np.float32
     for generator in (None, np.random.default_rng(seed)):
-        flat = actor.choose(outputs, generator)
+        flat = squashed(layouts.action, actor.choose(outputs, generator))
         assert action.contains(action_value(layouts.action, flat))
 
 
