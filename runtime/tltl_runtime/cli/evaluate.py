@@ -20,6 +20,7 @@ from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.cli.support.writable_paths import check_writable
+from tltl_runtime.game.level_name import level_option
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import cli
 
@@ -154,7 +155,8 @@ def _replay_command(policy: Path | None, level: str | None, spec: str | None, se
     The caller adds options that select episodes.
     """
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
-    words += [word for name, value in (("--level", level), ("--spec", spec)) if value for word in (name, value)]
+    words += [] if level is None else [level_option(level), level]
+    words += [] if spec is None else ["--spec", spec]
     return join([*words, "--seed", str(seed)])
 
 

@@ -13,7 +13,7 @@ from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.plain_text import plain_text
-from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.level_name import level_option, split_level
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
@@ -111,8 +111,8 @@ def command(
         click.echo(_count_text(demonstrations, episodes))
         if demonstrations.count < episodes:
             return cli.exits.FINDINGS
-        level_option = f"--level {loaded.name if file == loaded.name else quote(file)}:{quote(variant)}"
-        arguments = f"{quote(spec)} {level_option}" if spec else level_option
+        place = f"{level_option(file)} {loaded.name if file == loaded.name else quote(file)}:{quote(variant)}"
+        arguments = f"{quote(spec)} {place}" if spec else place
         click.echo(f"to imitate them: tltlc train {arguments} --method imitation --demonstrations {quote(str(folder))}")
         return cli.exits.CLEAN
     return report.status

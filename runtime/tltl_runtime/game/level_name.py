@@ -95,6 +95,11 @@ def level_stem(level: str) -> str:
     return scene or Path(file).name.removesuffix(GAME_FILE).removesuffix(".toml")
 
 
+def level_option(level: str) -> str:
+    """Return the option with which commands get a level: ``--game`` for a scene, else ``--level``."""
+    return "--game" if is_scene(split_level(level)[0]) else "--level"
+
+
 def with_level_file(level: str, path: Path) -> str:
     """Return a level, named without a variant, whose file is at ``path`` instead."""
     scene = split_scene(level)[1] if is_scene(level) else None

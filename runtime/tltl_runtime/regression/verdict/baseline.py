@@ -147,9 +147,10 @@ def text_sha256(text: str) -> str:
 
 def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
     """Yield a message for each impossible value in an episode of a baseline."""
-    for key in ("arrivals", "way"):
-        if not getattr(episode, key):
-            yield f"`{key}` is empty, but must begin where the player begins"
+    if not episode.arrivals:
+        yield "`arrivals` is empty, but must begin with the start"
+    elif not episode.way and episode.arrivals[0].place is not None:
+        yield "`way` is empty, but must begin where the player begins"
     if episode.summary.seed is None:
         yield "`seed` is None, but a whole number was expected"
     if episode.summary.steps < 1:

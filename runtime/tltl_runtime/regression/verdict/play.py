@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, Setup
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.level_name import Variant, is_scene, level_option, split_scene
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import differences
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
@@ -119,7 +119,10 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
 
 def _replay_command(prepared: PreparedCase, request: EpisodeRequest) -> str:
     """Return the shell command that plays only the requested episode of the case."""
-    place = ["--level", f"{prepared.setup.level}:{prepared.setup.variant.text}"]
+    level = prepared.setup.level
+    if is_scene(level) and split_scene(level)[1] is None:
+        level = f"{level}:{prepared.level.name}"
+    place = [level_option(level), f"{level}:{prepared.setup.variant.text}"]
     spec = [] if prepared.case.spec is None else ["--spec", prepared.case.spec]
     episode = ["--seed", str(prepared.setup.seed), "--first", str(request.index), "--episodes", "1"]
     return join(["tltlc", "evaluate", str(prepared.case.policy), *place, *spec, *episode])
