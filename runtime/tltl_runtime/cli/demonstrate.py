@@ -67,14 +67,14 @@ def command(
         file, variant = split_level(level)
         game = game_of(file)
         loaded = game.load_level(file, variant or "v0")
-        if not game.has_expert:
-            raise no_expert_error(loaded)
         if film:
             films_of(loaded)
         player = "careless expert" if careless else "expert"
         env = game.recorder(game.make_env(file, variant or "v0", spec), player)
         played = succeeded = 0
         try:
+            if not game.has_expert(env):
+                raise no_expert_error(loaded)
             report.add(game.play_warnings(loaded, env.get_wrapper_attr("task").fspa))
             for episode in game.expert_episodes(env, range(seed, seed + episodes), careful=not careless):
                 path = _write(folder, episode, film, notation)

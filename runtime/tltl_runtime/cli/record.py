@@ -79,16 +79,20 @@ def command(
     The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
     """
     with cli.Report() as report, ignore_closed_pipe():
+        from tltl_runtime.game.capability_error import no_expert_error
         from tltl_runtime.game.registry import game_of
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
         file, variant = _level_and_variant(level, spec)
         game = game_of(file)
         loaded = game.load_level(file, variant)
-        _check_player(loaded, by)
+        if by == "keyboard":
+            keyboard_of(loaded)
         env = game.recorder(game.make_env(file, variant, spec), by)
         demonstrations: Demonstrations | None = None
         try:
+            if by == "expert" and not game.has_expert(env):
+                raise no_expert_error(loaded)
             task = env.get_wrapper_attr("task")
             folder = folder or Path("demonstrations") / f"{loaded.name}-{loaded.variant}-{task.fspa.name}"
             demonstrations = Demonstrations(folder, loaded, task)
@@ -144,16 +148,6 @@ def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]
         first, suffix = demonstrations.rejected[0], f" and {number - 1} more" if number > 1 else ""
         lines.append(plain_text(f"{count_text} of this level and spec: `{first.path.name}` ({first.reason}){suffix}"))
     return lines
-
-
-def _check_player(level: Level, by: str) -> None:
-    """Raise TltlError, TLT0731, if a level's game has no player ``by``, that is ``expert`` or ``keyboard``."""
-    if by == "keyboard":
-        keyboard_of(level)
-    elif not level.game.has_expert:
-        from tltl_runtime.game.capability_error import no_expert_error
-
-        raise no_expert_error(level)
 
 
 def _record_expert(env: EpisodeRecorder[Any], demonstrations: Demonstrations, requested: int, seed: int) -> None:

@@ -55,9 +55,6 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     keyboard: Keyboard[EpisodeT] | None = None
     """Lets a person play; None if only programs can play."""
 
-    has_expert: bool = False
-    """Whether a scripted expert can play the game: see :meth:`expert_episodes`."""
-
     modules: tuple[str, ...]
     """The modules that a process needs to play.
 
@@ -193,7 +190,8 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     ) -> TltlEnv:
         """Make an environment of a level with a spec, by default the spec that the level is made for.
 
-        After resets with the same seed, equal actions give equal episodes.
+        After resets with the same seed, equal actions give equal episodes. The environment has the
+        attribute ``level``.
 
         Raises:
             TltlError: the errors of :meth:`load_level`, :meth:`check_fit` and ``TltlEnv``; the level
@@ -206,6 +204,11 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
         ``player`` is the name of the player in the recordings.
         """
+
+    def has_expert(self, env: EpisodeRecorder[EpisodeT]) -> bool:
+        """Return whether a scripted expert can play an environment; by default False."""
+        del env
+        return False
 
     def expert_episodes(
         self, env: EpisodeRecorder[EpisodeT], seeds: Iterable[int], *, careful: bool = True

@@ -18,11 +18,14 @@ from PIL import Image
 import tltl_runtime.stealth.rendering.film as film
 from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
 from tltl_runtime.cli.replay import _VIEWS
+from tltl_runtime.cli.support import keyboard_play
 from tltl_runtime.cli.support.film_file import write_gif
 from tltl_runtime.cli.support.notation import NOTATIONS
 from tltl_runtime.game.trace import monitor_command
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
+from tltl_runtime.stealth.films import StealthFilms
+from tltl_runtime.stealth.keyboard_play import StealthKeyboard
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.stealth.rendering.camera import VIEWS
@@ -120,7 +123,8 @@ def test_a_broken_file_does_not_hide_other_files(tltlc, recorded: Path) -> None:
 
 
 def test_the_option_offers_all_views() -> None:
-    assert get_args(film.FilmView) == (*VIEWS, "plan") == _VIEWS
+    assert get_args(film.FilmView) == (*VIEWS, "plan") == _VIEWS == StealthFilms.views
+    assert StealthKeyboard.views == keyboard_play._VIEWS
 
 
 def test_the_option_offers_all_notations() -> None:
