@@ -42,10 +42,11 @@ def play_episodes(level: str, variant: str, care: str, episodes: int) -> Record:
 
     The barrier is ``""`` if none opens by chance. ``cpu_s`` is the CPU time per episode.
     """
+    from tltl_runtime.game.episode_summary import summary_of
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.episode_recorder import RecordEpisode
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
-    from tltl_runtime.stealth.recordings.episode_summary import opened_barriers, summary_of, was_chased
+    from tltl_runtime.stealth.recordings.figures import opened_barriers, was_chased
 
     env = RecordEpisode(make_env(level, variant))
     expert = Expert(env, careful=care == "careful")
