@@ -13,6 +13,7 @@ from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.blas_threads import blas_threads
+from tltl_runtime.policies.compatibility import check_spaces
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
@@ -119,6 +120,10 @@ class PolicyPlayer:
     """Lets the policy of an evaluation play the requested episodes, one after the other.
 
     Each player has an environment of its own.
+
+    Raises:
+        TltlError: TLT0843, the observations or actions of the environment are not those of the
+            policy; the errors of :meth:`~tltl_runtime.game.game.Game.make_env`.
     """
 
     def __init__(self, setup: Setup) -> None:
@@ -133,6 +138,7 @@ class PolicyPlayer:
             reward=RewardOptions(),
             params=setup.params,
         )
+        check_spaces(card, self._env.observation_space, self._env.action_space)
         self._recorder: EpisodeRecorder[Any] | None = None
         if setup.recorded is not None:
             self._env = self._recorder = self._game.recorder(self._env)
