@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.spaces.refusals import name_of
 from tltl_runtime.support.number_text import column, share
 from tltl_runtime.support.record_json import to_json
 from tltlc.api import formula_text, label_text
@@ -17,12 +18,14 @@ _ENDS: Final[Mapping[str, str]] = {
     "minutes": "by the limit of minutes",
 }
 """Why a training ended, in words, by the ``end`` of its record."""
+_KINDS: Final[Mapping[str, str]] = {"numbers": "numbers", "image": "image", "grid": "grid of categories"}
+"""The kinds of the parts of an observation, in words, apart from categories alone."""
 
 
 def summary(policy: Policy) -> dict[str, Any]:
-    """Return a summary of a policy as JSON data."""
+    """Return a summary of a policy as JSON data; ``spaces`` is in it only if the card has them."""
     card = policy.card
-    return {
+    values = {
         "level": card.level,
         "variant": card.variant,
         "level_hash": card.level_hash,
@@ -41,6 +44,7 @@ def summary(policy: Policy) -> dict[str, Any]:
         "versions": dict(card.versions),
         "training": to_json(card.training),
     }
+    return values if card.spaces is None else {**values, "spaces": to_json(card.spaces)}
 
 
 def summary_text(values: Mapping[str, Any]) -> str:
@@ -48,15 +52,18 @@ def summary_text(values: Mapping[str, Any]) -> str:
 
     Unprintable characters, which an untrusted file may have in its names, are replaced.
     """
-    sensors, network = values["sensors"], values["network"]
+    sensors, network, layouts = values["sensors"], values["network"], values.get("spaces")
     map_ = sensors["map"]
     layers = " + ".join(map(str, network["hidden"]))
-    if map_ is not None:
+    if map_ is not None or (layouts and any(part["kind"] in ("image", "grid") for part in layouts["observation"])):
         layers = f"convolution {' + '.join(map(str, network['channels']))}, then {layers}"
     rows = {
         "level": f"{values['level']} {values['variant']} (hash {values['level_hash'][:12]})",
         "spec": f"{values['spec']} (hash {values['spec_hash'][:12]}): {values['english']}",
-        "senses": ", ".join((*sensors["entities"], *sensors["variables"])) or "neither entities nor variables",
+        "senses": ", ".join(map(_observation_part, layouts["observation"]))
+        if layouts
+        else ", ".join((*sensors["entities"], *sensors["variables"])) or "neither entities nor variables",
+        "chooses": ", ".join(map(_action_part, layouts["action"]["parts"])) if layouts else "",
         "map": _map(map_) if map_ else "",
         "network": f"{layers} ({network['activation']}), {values['weights']:,} weights",
         "training": _training(values["training"]),
@@ -71,6 +78,21 @@ def summary_text(values: Mapping[str, Any]) -> str:
         name: "".join(char if char.isprintable() else "\ufffd" for char in text) for name, text in rows.items()
     }
     return "".join(column(f"  {name:9}", text) + "\n" for name, text in printable.items() if text)
+
+
+def _observation_part(part: Mapping[str, Any]) -> str:
+    """Describe a part of an observation: its key, its shape and its kind."""
+    if part["kind"] == "categories":
+        return f"{part['key']} ({' + '.join(map(str, part['sizes']))} categories)"
+    return f"{part['key']} ({' x '.join(map(str, part['shape']))} {_KINDS[part['kind']]})"
+
+
+def _action_part(part: Mapping[str, Any]) -> str:
+    """Describe a part of an action: its name, and its choices or the shape of its numbers."""
+    name = name_of(part["path"]) or "action"
+    if part["kind"] == "numbers":
+        return f"{name} ({' x '.join(map(str, part['shape'])) or '1'} numbers)"
+    return f"{name} ({' + '.join(map(str, part['sizes']))} choices)"
 
 
 def _map(sensor: Mapping[str, Any]) -> str:

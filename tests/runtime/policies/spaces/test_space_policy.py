@@ -19,6 +19,7 @@ from tltl_runtime.policies.file import check_size, from_bytes, to_bytes
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.policies.spaces.layouts import space_layouts
+from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.stealth.env import make_env
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -119,6 +120,17 @@ def test_a_network_that_is_too_large_for_a_file_is_refused() -> None:
     check_size(card.network, card.fspa, card.sensors, card.spaces)
     with pytest.raises(TltlError, match="TLT0862"):
         check_size(Network(hidden=(16_000, 16_000)), card.fspa, card.sensors, card.spaces)
+
+
+def test_a_summary_says_what_the_policy_reads_and_chooses() -> None:
+    values = summary(policy_of_spaces(GRID, MIXED))
+    assert values["spaces"]["action"]["parts"][1]["kind"] == "choice"
+    text = summary_text(values)
+    assert "body/0 (2 numbers), body/1 (1 numbers), direction (4 categories)," in text
+    assert "image (7 x 7 x 3 grid of categories)" in text
+    assert "chooses  go (2 numbers), use (3 choices)\n" in text
+    assert "network  convolution 3 + 4, then 8 (elu)," in text
+    assert "spaces" not in summary(policy_of(card_of()))
 
 
 def test_a_policy_plays_in_the_spaces_of_its_training() -> None:
