@@ -39,7 +39,9 @@ def raised(game: GameFile, code: str, what: str, error: BaseException, label: La
     """Return the diagnostic for an exception; the arguments are those of :func:`guarded`."""
     place, elsewhere = _place(game.folder.resolve(), error)
     title = f"{what} raises {exception_text(error)}"
-    help_ = f"the exception comes from {elsewhere}" if elsewhere else "correct the game where the label points"
+    help_ = "correct what the label points to"
+    if elsewhere:
+        help_ += f"; the exception comes from {elsewhere}"
     return Diagnostic(code, title, (place or label,), help_)
 
 

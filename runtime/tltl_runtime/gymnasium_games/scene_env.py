@@ -12,7 +12,7 @@ import gymnasium
 from gymnasium import spaces
 
 from tltl_runtime.gymnasium_games.game_argument import variant_of
-from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guarded
+from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guarded, raised
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, SceneVariant, read_game_file
 from tltl_runtime.gymnasium_games.game_modules import folder_first, import_function, import_module
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -181,21 +181,25 @@ def _from_id(game: GameFile, id_: str, options: dict[str, Any], own: SceneVarian
         close = suggestion(entry, gymnasium.registry, "")
         help_ = close if close.startswith("did you") else 'name the module that registers it: `import = ["MODULE"]`'
         raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
-    with guarded(game, CANNOT_START, f"the environment `{entry}`", own.label):
+    what = f"the environment `{entry}`"
+    with guarded(game, CANNOT_START, what, own.label):
         try:
             creator: Any = registered.entry_point
             if isinstance(creator, str):
                 creator = gymnasium.envs.registration.load_env_creator(creator)
             known = {key: value for key, value in options.items() if key not in _OWN_OPTIONS}
             if creator is not None:
-                _check_options(f"the environment `{entry}`", creator, 0, known, own)
+                _check_options(what, creator, 0, known, own)
             return gymnasium.make(entry, **{"disable_env_checker": True, **options})
+        except TypeError as error:
+            # `gymnasium.make` raises a TypeError with a long message from that of the environment.
+            raise TltlError([raised(game, CANNOT_START, what, error.__cause__ or error, own.label)]) from error
         except ModuleNotFoundError as error:
             missing = (error.name or "").partition(".")[0]
-            title = f"the module `{missing}` is not installed, and the environment `{entry}` needs it"
+            title = f"the module `{missing}` is not installed, and {what} needs it"
             raise TltlError([Diagnostic("TLT0730", title, (label,), f"install it: `pip install {missing}`")]) from error
         except gymnasium.error.DependencyNotInstalled as error:
-            title = f"the environment `{entry}` needs a package that is not installed"
+            title = f"{what} needs a package that is not installed"
             raise TltlError([Diagnostic("TLT0730", title, (label,), str(error))]) from error
 
 
