@@ -13,7 +13,8 @@ from tests.waiting import HANG_S
 
 ANYTHING = "…"
 _PART = re.compile(
-    r"^```(?:toml|tltl|hoa|cpp|cs|gdscript|js|lua|rs)\n(?P<text>(?:#|//|/\*|--) (?P<new>\w+\.\w+)(?: \*/)?\n.*?)^```$"
+    r"^```(?:toml|tltl|hoa|cpp|cs|gdscript|js|lua|python|rs)\n"
+    r"(?P<text>(?:#|//|/\*|--) (?P<new>[\w.]+\.\w+)(?: \*/)?\n.*?)^```$"
     r"|^```console\n(?P<session>.*?)^```$"
     r"|^<!-- in (?P<file>\S+): (?P<edit>.*?) -->$",
     re.DOTALL | re.MULTILINE,

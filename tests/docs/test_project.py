@@ -20,6 +20,7 @@ ROWS = [
 def test_the_example_is_read_as_documented(tmp_path: Path) -> None:
     (text,) = (block.text for block in blocks(PAGE) if block.kind == "toml")
     (tmp_path / "predicates").mkdir()
+    (tmp_path / "arena.game.toml").write_text("")
     (tmp_path / "tltl.toml").write_text(text)
     assert project.read_project(tmp_path / "tltl.toml") == project.Project(
         libraries=(tmp_path / "predicates",),
@@ -27,6 +28,7 @@ def test_the_example_is_read_as_documented(tmp_path: Path) -> None:
         notation="english",
         lint={"TLT0419": "allow", "TLT0424": "error"},
         formatting="letters",
+        game=tmp_path / "arena.game.toml",
     )
 
 

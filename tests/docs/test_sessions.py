@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
@@ -74,3 +75,15 @@ def test_the_guide_to_recorded_play_runs(tmp_path: Path) -> None:
 
 def test_the_guide_to_play_without_an_end_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "infinite.md").read_text(encoding="utf-8"), Shell(tmp_path)) >= 8
+
+
+class _SteadyShell(Shell):
+    """A shell in which every game is equally fast."""
+
+    def run(self, command: str) -> str:
+        return re.sub(r"[\d,]+ steps a second", "90,000 steps a second", super().run(command))
+
+
+def test_the_page_on_games_runs(tmp_path: Path) -> None:
+    pytest.importorskip("gymnasium")
+    assert run_page((DOCS / "games.md").read_text(encoding="utf-8"), _SteadyShell(tmp_path)) == 2
