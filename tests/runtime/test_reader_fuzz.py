@@ -18,11 +18,15 @@ from hypothesis import given
 
 from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, mutated_text, times
 from tests.interfaces.cli.conftest import ROOT
+from tests.runtime.gymnasium_games.games import GAME, GRID
+from tests.runtime.gymnasium_games.games import write as write_game
 from tests.runtime.training.runs import run_in
 from tltl_runtime.game.recording_check import check as check_episode
 from tltl_runtime.game.recording_summary import summary as episode_summary
 from tltl_runtime.game.recording_summary import summary_text as episode_summary_text
 from tltl_runtime.game.trace import monitor_command, trace_csv
+from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
+from tltl_runtime.gymnasium_games.scene_hash import scene_hash
 from tltl_runtime.policies.file import from_bytes as policy_from_bytes
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
@@ -127,6 +131,27 @@ def test_a_damaged_suite_is_read_or_rejected(seed: int, folder: Path) -> None:
     path = folder / "suite.toml"
     path.write_text(mutated_text(Random(seed), SUITE), encoding="utf-8", errors="replace")
     check(lambda: read_suite(path))
+
+
+@given(seed=SEEDS)
+@times(200)
+def test_a_damaged_game_file_is_read_or_rejected(seed: int, folder: Path) -> None:
+    random, path = Random(seed), write_game(folder)
+    path.write_text(mutated_text(random, GAME), encoding="utf-8", errors="replace")
+    for allow_outside in (False, True):
+        check(lambda allow_outside=allow_outside: scene_hashes(read_game_file(path, allow_outside=allow_outside)))  # type: ignore[misc]
+
+
+def scene_hashes(game: GameFile) -> list[str]:
+    return [scene_hash(game, scene.name, variant) for scene in game.scenes for variant in scene.variants]
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_the_damaged_python_files_of_a_game_are_hashed(seed: int, folder: Path) -> None:
+    path = write_game(folder)
+    (folder / "corridor.py").write_bytes(mutated_bytes(Random(seed), GRID.encode()))
+    check(lambda: scene_hashes(read_game_file(path)))
 
 
 @given(seed=SEEDS)
