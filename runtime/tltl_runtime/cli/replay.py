@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,8 +12,10 @@ import click
 
 from tltl_runtime.cli.support.film import FILMS, Film, write_film
 from tltl_runtime.cli.support.input_files import read_each
+from tltl_runtime.cli.support.level_options import game_option
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_file, summary_format
+from tltl_runtime.game.level_name import split_level
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -87,6 +90,7 @@ Examples:
     type=cli.FiniteRange(min=0.0),
     help="The end of a film or of the signals.",
 )
+@game_option("The scene that was recorded: --check and films play it again.")
 @notation_option
 @click.option("--check", "checked", is_flag=True, help="Check the recording: judge and play the episode again.")
 @summary_format
@@ -101,6 +105,7 @@ def command(
     size: tuple[int, int] | None,
     start: float | None,
     stop: float | None,
+    game: str | None,
     notation: Notation,
     checked: bool,
     format: str,  # noqa: A002
@@ -117,7 +122,7 @@ def command(
     film = Film(view, speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
     with cli.Report(format, results=True) as report:
-        for name, episode in read_each(files, _read, report):
+        for name, episode in read_each(files, partial(_read, game), report):
             fields = {"file": name, **summary(episode, notation)}
             if checked:
                 fields |= _check(episode, report)
@@ -135,11 +140,13 @@ def command(
     return report.status
 
 
-def _read(path: str) -> RecordedEpisode:
+def _read(game: str | None, path: str) -> RecordedEpisode:
+    """Read a recording; ``game`` says where its scene can be played again."""
     from tltl_runtime.game.registry import game_of_recording
 
-    episode: RecordedEpisode = game_of_recording(path).read_episode(Path(path))
-    return episode
+    recorded = game_of_recording(path)
+    episode: RecordedEpisode = recorded.read_episode(Path(path))
+    return episode if game is None else recorded.located(episode, *split_level(game))
 
 
 def _check(episode: RecordedEpisode, report: cli.Report) -> dict[str, bool | None]:
@@ -183,7 +190,7 @@ def _check_text(fields: dict[str, Any]) -> str:
     follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
     judged = f"\n  checked  the judgement {follows} from the signals"
     if fields["plays_again"] is None:
-        return f"{judged}; its game cannot play it again\n"
+        return f"{judged}; to play it again, say where its game is: --game\n"
     return f"{judged}; played again it is {'the same' if fields['plays_again'] else 'ANOTHER'} episode\n"
 
 

@@ -235,6 +235,17 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def episode_bytes(self, episode: EpisodeT) -> bytes:
         """Return the bytes of the file of an episode; equal episodes give equal bytes."""
 
+    def located(self, episode: EpisodeT, level: str, variant: str | None) -> EpisodeT:
+        """Return an episode that can be played again on ``level``, in ``variant`` or the recorded one.
+
+        By default the episode as it is: its recording contains the level.
+
+        Raises:
+            TltlError: there is no such level, or it is another one than that of the episode.
+        """
+        del level, variant
+        return episode
+
     def check_replay(self, episode: EpisodeT) -> tuple[Diagnostic, ...] | None:
         """Play the actions of an episode again; return TLT0824 if the episodes differ, else an empty tuple.
 

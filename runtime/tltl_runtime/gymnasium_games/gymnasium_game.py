@@ -25,15 +25,17 @@ from tltl_runtime.gymnasium_games.scene_episode_file import (
     scene_episode_from_bytes,
 )
 from tltl_runtime.gymnasium_games.scene_files import SceneFiles
+from tltl_runtime.gymnasium_games.scene_films import SceneFilms
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltlc.api import Fspa, RewardOptions
+from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError, replace
 
 
 class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     """All games that game files describe."""
 
     level_files = SceneFiles()
+    films = SceneFilms()
     modules = (__name__, "tltl_runtime.gymnasium_games.scene_recorder", "tltl_runtime.gymnasium_games.scene_env")
 
     def load_level(self, name: str, variant: str | Variant = "v0") -> SceneLevel:
@@ -81,6 +83,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
         return SceneRecorder(env, player)
 
+    def has_expert(self, env: EpisodeRecorder[SceneEpisode]) -> bool:
+        """Return whether the environment has an expert of its own: a method ``tltl_expert``."""
+        return env.has_wrapper_attr("tltl_expert")
+
     def expert_episodes(
         self, env: EpisodeRecorder[SceneEpisode], seeds: Iterable[int], *, careful: bool = True
     ) -> Iterator[SceneEpisode]:
@@ -106,6 +112,22 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     def episode_bytes(self, episode: SceneEpisode) -> bytes:
         """Return the bytes that a file of the episode contains."""
         return scene_episode_bytes(episode)
+
+    def located(self, episode: SceneEpisode, level: str, variant: str | None) -> SceneEpisode:
+        """Return an episode whose level has a place; raises TltlError, TLT0800, if ``level`` is another scene."""
+        if split_scene(level)[1] is None:
+            level = f"{level}:{episode.level.name}"
+        here = self.load_level(level, variant or episode.level.variant)
+        if here.name != episode.level.name:
+            title = f"the recording is of the scene `{episode.level.name}`, not of `{here.name}`"
+            raise TltlError([Diagnostic("TLT0800", title, help="name that scene after the game file, or leave it out")])
+        return replace(episode, level=replace(episode.level, place=here.place, variant=here.variant))
+
+    def check_replay(self, episode: SceneEpisode) -> tuple[Diagnostic, ...] | None:
+        """Play the actions of an episode again, and compare the signals; None if its level has no place."""
+        from tltl_runtime.gymnasium_games.scene_replay import check_replay
+
+        return check_replay(episode) if episode.level.place else None
 
     def cause(self, episode: SceneEpisode) -> Cause:
         """Return why an episode ended."""

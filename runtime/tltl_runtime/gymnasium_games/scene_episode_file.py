@@ -152,7 +152,7 @@ def _meta(episode: SceneEpisode) -> SceneMeta:
         has_positions=episode.positions is not None,
         layout=episode.layout,
         # Keep the file name only: the folder means nothing on another machine.
-        level=replace(level, spec=spec and replace(spec, file=Path(spec.file.name))),
+        level=replace(level, place="", spec=spec and replace(spec, file=Path(spec.file.name))),
     )
 
 

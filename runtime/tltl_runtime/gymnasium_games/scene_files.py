@@ -58,6 +58,7 @@ class SceneFiles(LevelFiles[SceneLevel]):
             spec=own.spec,
             content_hash=scene_hash(game, scene.name, variant.name),
             files=file_hashes(game, scene.name, variant.name),
+            place=f"{game.path}:{scene.name}",
         )
         return level, ()
 

@@ -28,7 +28,8 @@ class SceneLevel:
     ``game_name`` is the name of the game. ``options`` are the keyword arguments with which the
     environment is made. ``content_hash`` is the SHA-256, in hexadecimal, of everything in the game
     file and the scene's files that can change an episode. ``files`` has the name and the SHA-256 of
-    each of these files; the game file is the first.
+    each of these files; the game file is the first. ``place`` says where the scene can be played:
+    ``FILE.game.toml:SCENE``. It is empty for the level of a recording.
     """
 
     json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
@@ -40,6 +41,7 @@ class SceneLevel:
     spec: LevelSpec | None
     content_hash: str
     files: tuple[tuple[str, str], ...]
+    place: str = ""
 
     @property
     def game(self) -> GymnasiumGame:

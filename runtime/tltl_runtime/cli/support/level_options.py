@@ -28,10 +28,15 @@ def level_options(help_text: str) -> Callable[[Function], Function]:
                 raise click.UsageError("give --level or --game, not both", click.get_current_context())
             return command(*args, level=level if game is None else game, **options)
 
-        with_game = click.option("--game", metavar=_GAME, callback=_check_game, help="The scene of your own game.")
-        return click.option("--level", metavar="LEVEL[:VARIANT]", help=help_text)(with_game(with_level))  # type: ignore[return-value]
+        with_game = game_option("The scene of your own game, instead of a level.")(with_level)
+        return click.option("--level", metavar="LEVEL[:VARIANT]", help=help_text)(with_game)  # type: ignore[return-value]
 
     return decorate
+
+
+def game_option(help_text: str) -> Callable[[Function], Function]:
+    """Return a decorator for ``--game``. The command gets its value, of which the file may not exist, as ``game``."""
+    return click.option("--game", metavar=_GAME, callback=_check_game, help=help_text)
 
 
 def _check_game(ctx: click.Context, parameter: click.Parameter, game: str | None) -> str | None:

@@ -1,0 +1,51 @@
+"""The films of episodes of scenes: what the environment renders when the episode is played again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+
+import numpy as np
+
+from tltl_runtime.game.capability_error import capability_error
+from tltl_runtime.game.films import Films, Picture
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltlc.api import Diagnostic, Notation, TltlError, label_text
+
+
+class SceneFilms(Films[SceneEpisode]):
+    """Draws the frames that the environment renders, with a strip that says what remains to be done."""
+
+    views = ("game",)
+
+    def frames(
+        self, episode: SceneEpisode, times: Sequence[float], view: str, size: tuple[int, int], notation: Notation
+    ) -> Iterator[Picture]:
+        """Play the episode again, and yield a picture for each time.
+
+        Raises:
+            TltlError: TLT0731, the environment renders no pictures; TLT0800, the level has no place;
+                the errors of playing the episode again.
+        """
+        del view
+        from tltl_runtime.gymnasium_games.frame_strip import with_strip
+        from tltl_runtime.gymnasium_games.scene_replay import play_again, replayed_env
+
+        if not episode.level.place:
+            title = f"a film of `{episode.level.name}` needs its game, which plays the episode again"
+            help_ = f"say where the game is: `--game {episode.level.game_name}.game.toml`"
+            raise TltlError([Diagnostic("TLT0800", title, help=help_)])
+        wanted = np.searchsorted(episode.times, np.array(times) + 1e-9, side="right") - 1
+        with closing(replayed_env(episode, "rgb_array")) as env:
+            for row, _ in enumerate(play_again(env, episode)):
+                count = int(np.count_nonzero(wanted == row))
+                if not count:
+                    continue
+                frame = env.render()
+                if not isinstance(frame, np.ndarray) or frame.ndim != 3:
+                    advice = "write the signals instead: `tltlc replay RECORDING -o NAME.csv`"
+                    raise capability_error(episode.level, "renders no pictures (`render_mode` `rgb_array`)", advice)
+                state = int(episode.states[row])
+                text = f"{episode.times[row]:.2f} s  state {state}: {label_text(episode.fspa, state, notation)}"
+                picture = with_strip(frame, text, size)
+                yield from (picture for _ in range(count))

@@ -1,0 +1,63 @@
+"""Play recorded episodes of scenes again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from typing import Any
+
+import gymnasium
+
+from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.game.recorder import judging_wrapper
+from tltl_runtime.game.recording_check import replay_difference
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltl_runtime.policies.spaces.action_layout import action_layout
+from tltl_runtime.policies.spaces.values import action_value
+from tltlc.api import Diagnostic, TltlError
+
+
+def check_replay(episode: SceneEpisode) -> tuple[Diagnostic, ...]:
+    """Play the actions of an episode again; return TLT0824 if a signal of the spec differs, else an empty tuple.
+
+    The level of the episode must have a place.
+
+    Raises:
+        TltlError: the errors of making and playing the environment; TLT0822, its actions are others.
+    """
+    names = [signal.name for signal in episode.fspa.signals]
+    with closing(replayed_env(episode)) as env:
+        judge = judging_wrapper(env)
+        for row, _ in enumerate(play_again(env, episode)):
+            if [float(judge.sample[name]) for name in names] != episode.signals[row].tolist():
+                return (replay_difference(episode, row, versions()),)
+            if judge.taken is not None and judge.taken.done and row < len(episode.actions):
+                return (replay_difference(episode, row, versions()),)
+    return ()
+
+
+def replayed_env(episode: SceneEpisode, render_mode: str | None = None) -> gymnasium.Env[Any, Any]:
+    """Make the environment in which an episode was recorded; its level must have a place.
+
+    Raises:
+        TltlError: the errors of making the environment; TLT0822, the actions of the recording are not
+            those of the environment.
+    """
+    level = episode.level
+    env = level.game.make_env(
+        level.place, level.variant, episode.fspa, params=dict(episode.params), render_mode=render_mode
+    )
+    if action_layout(env.action_space) != episode.layout:
+        env.close()
+        title = f"the recording has other actions than the scene `{level.name}` has now"
+        raise TltlError([Diagnostic("TLT0822", title, help="record the episode again")])
+    return env
+
+
+def play_again(env: gymnasium.Env[Any, Any], episode: SceneEpisode) -> Iterator[None]:
+    """Reset an environment with the seed of an episode and take its actions; yield after each of these moments."""
+    env.reset(seed=episode.seed)
+    yield
+    for flat in episode.actions:
+        env.step(action_value(episode.layout, flat))
+        yield
