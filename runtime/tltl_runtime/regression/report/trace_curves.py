@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from typing import Final
+from typing import Final, Literal
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.explain.explain import Finding
@@ -23,13 +23,15 @@ class TraceCurves:
     """A recorded trace or episode as it is drawn.
 
     ``atoms`` has the values of all atoms, in [-1, 1], for each of the ``steps`` samples. ``arrivals``
-    are the entries into states of the automaton. ``ended`` says in words how it ended.
+    are the entries into states of the automaton. ``ended`` says in words how it ended. ``kind`` says
+    what it is; the ``name`` of an episode is its number.
     """
 
     name: str
     ended: str
     atoms: tuple[tuple[float, ...], ...]
     arrivals: tuple[Arrival, ...]
+    kind: Literal["trace", "episode"] = "trace"
 
     @property
     def steps(self) -> int:
@@ -50,10 +52,11 @@ def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[in
 def episode_curves(index: int, episode: RecordedEpisode) -> TraceCurves:
     """Return the curves of a recorded episode; ``index`` is its number."""
     return TraceCurves(
-        name=f"episode {index}",
+        name=str(index),
         ended=episode.level.game.cause(episode).text,
         atoms=tuple(map(tuple, episode.atoms.tolist())),
         arrivals=arrivals_of(episode),
+        kind="episode",
     )
 
 

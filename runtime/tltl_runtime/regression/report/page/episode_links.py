@@ -55,16 +55,17 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
 
 def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) -> Markup | None:
     """Return links to the pictures of the drawn ``traces`` of a finding; None if it has none."""
-    links = [
-        _Link(Path(traces[index].name).name, f"#{anchor(slug, index)}", f"show the trace {traces[index].name}")
-        for index in finding.episodes
-        if index in traces
-    ]
-    if not links:
+    shown = {index: traces[index] for index in finding.episodes if index in traces}
+    if not shown:
         return None
-    named = "a trace that does not" if finding.others else "trace"
-    if len(links) > 1:
-        named = "traces that do not" if finding.others else "traces"
+    kind = next(iter(shown.values())).kind
+    named = f"{'an' if kind == 'episode' else 'a'} {kind} that does not" if finding.others else kind
+    if len(shown) > 1:
+        named = f"{kind}s that do not" if finding.others else f"{kind}s"
+    links = [
+        _Link(Path(curves.name).name, f"#{anchor(slug, index)}", f"show the {kind} {curves.name}")
+        for index, curves in shown.items()
+    ]
     return render("episode_links.html", label=f"show {named}", links=links)
 
 

@@ -37,6 +37,7 @@ class _Chart:
 
     anchor: str
     name: str
+    is_episode: bool
     ended: str
     picture: Markup
 
@@ -44,7 +45,7 @@ class _Chart:
 def trace_charts(fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str) -> Markup:
     """Return the pictures of traces. ``slug`` is the case's short name in addresses within the page."""
     charts = [
-        _Chart(anchor(slug, index), curves.name, curves.ended, _chart(fspa, curves))
+        _Chart(anchor(slug, index), curves.name, curves.kind == "episode", curves.ended, _chart(fspa, curves))
         for index, curves in sorted(traces.items())
     ]
     return render("trace_charts.html", charts=charts)

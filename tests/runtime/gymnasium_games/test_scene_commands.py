@@ -1,0 +1,155 @@
+"""The commands on a game of one's own: train, evaluate, replay, baseline, regress."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.gymnasium_games import games
+
+Run = Callable[..., Outcome]
+SETTINGS = """\
+[rollout]
+envs = 4
+steps = 16
+workers = 1
+[network]
+hidden = [16]
+[exploration]
+ways = 0
+"""
+SUITE = """\
+seed = 3
+episodes = 25
+
+[[case]]
+game = "corridor.game.toml"
+scene = "short"
+policy = "run"
+
+[[case]]
+game = "corridor.game.toml"
+scene = "short"
+variant = "v1"
+policy = "run"
+"""
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("corridor")
+    games.write(folder)
+    (folder / "settings.toml").write_text(SETTINGS)
+    (folder / "suite.toml").write_text(SUITE)
+    return folder
+
+
+@pytest.fixture(name="trained")
+def _trained(folder: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Path:  # noqa: F811
+    """The folder of the game, with a training of a few steps in it."""
+    monkeypatch.chdir(folder)
+    if not (folder / "run").exists():
+        options = ("--steps", "192", "--config", "settings.toml", "--out", "run")
+        result = tltlc("train", "--game", "corridor.game.toml:short", *options)
+        assert result.status == 1, result.err
+        assert "training fetch on short v0, seed 0, in run" in result.err
+    return folder
+
+
+@pytest.mark.usefixtures("trained")
+def test_a_policy_is_evaluated_and_its_episodes_play_again(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    out = tmp_path / "out"
+    result = tltlc("evaluate", "run", "--episodes", "2", "--record", "all", "--out", out)
+    assert result.status == 0, result.err
+    assert "corridor.game.toml:short v0, spec fetch, seed 0: run/policy.safetensors" in result.out
+    recording = out / "short-v0-0-0-sampled.episode.npz"
+    replayed = tltlc("replay", recording, "--check", "--game", "corridor.game.toml", "--format", "json")
+    assert replayed.status == 0, replayed.err
+    (fields,) = json.loads(replayed.out)
+    assert (fields["follows_from_spec"], fields["plays_again"], fields["level"]) == (True, True, "short")
+    without = tltlc("replay", recording, "--check")
+    assert "to play it again, say where its game is: --game" in without.out
+    trace = tltlc("replay", recording, "-o", tmp_path / "it.csv")
+    assert trace.status == 0
+    assert tltlc("monitor", "corridor.tltl:fetch", tmp_path / "it.csv").status in (0, 1)
+    film = tltlc("replay", recording, "--game", "corridor.game.toml", "-o", tmp_path / "it.gif")
+    assert film.status == 0, film.err
+    with Image.open(tmp_path / "it.gif") as picture:
+        assert picture.size == (640, 480)
+        assert picture.n_frames > 1  # type: ignore[attr-defined]
+
+
+@pytest.mark.usefixtures("trained")
+def test_a_film_needs_the_game(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    tltlc("evaluate", "run", "--episodes", "1", "--record", "all", "--out", tmp_path)
+    recording = tmp_path / "short-v0-0-0-sampled.episode.npz"
+    result = tltlc("replay", recording, "-o", tmp_path / "it.gif")
+    assert result.status == 2
+    assert "error[TLT0800]: a film of `short` needs its game, which plays the episode again" in result.err
+    assert "say where the game is: `--game corridor.game.toml`" in result.err
+    assert not (tmp_path / "it.gif").exists()
+
+
+def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None:  # noqa: F811
+    recorded = tltlc("baseline", "suite.toml", "--workers", "1")
+    assert recorded.status in (0, 1), recorded.err
+    baseline = json.loads((trained / "suite.baseline.json").read_text())
+    assert {reference["played"]["place"] for reference in baseline["references"]} == {"corridor.game.toml:short"}
+    result = tltlc("regress", "suite.toml", "--out", tmp_path, "--json", tmp_path / "report.json", "--workers", "1")
+    assert result.status in (0, 1), result.err
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert [case["name"] for case in report["cases"]] == ["short:v0", "short:v1"]
+    assert report["cases"][0]["pass_rate"] == report["cases"][0]["baseline"]["pass_rate"]
+    page = (tmp_path / "report.html").read_text()
+    assert "<h3>Episodes</h3>" in page
+    assert "<h3>Map</h3>" not in page
+    assert "<figcaption>episode 0:" in page
+
+
+def test_a_changed_file_of_the_game_selects_its_cases(tltlc: Run, trained: Path, tmp_path: Path) -> None:  # noqa: F811
+    if not (trained / "suite.baseline.json").exists():
+        tltlc("baseline", "suite.toml", "--workers", "1")
+    both = tltlc("regress", "suite.toml", "--changed", "corridor.tltl", "--out", tmp_path, "--workers", "1")
+    assert "2 cases" in both.out, both.err
+    none = tltlc("regress", "suite.toml", "--changed", "unknown.py", "--out", tmp_path, "--workers", "1")
+    assert "short:v0" not in none.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("train", "--game", "corridor.toml"), "`corridor.toml` is not a game file"),
+        (("evaluate", "run", "--game", "missing.game.toml"), "TLT0001"),
+        (("evaluate", "run", "--game", "corridor.game.toml:shorts"), "did you mean `short`?"),
+        (("train", "--game", "corridor.game.toml:short", "--level", "vault"), "give --level or --game, not both"),
+        (("train", "--game", "corridor.game.toml:long"), "TLT0721"),
+    ],
+)
+@pytest.mark.usefixtures("trained")
+def test_wrong_scenes_are_reported(tltlc: Run, arguments: tuple[str, ...], message: str) -> None:  # noqa: F811
+    result = tltlc(*arguments)
+    assert result.status >= 1
+    assert message in result.err
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('game = "corridor.toml"', "must be the path of a file `NAME.game.toml`"),
+        ('game = "missing.game.toml"', "there is no game `missing.game.toml`"),
+        ('game = "corridor.game.toml"\nscene = "short"\nvariant = "v7"', "has no variant `v7`"),
+    ],
+)
+@pytest.mark.usefixtures("trained")
+def test_wrong_cases_are_reported(tltlc: Run, tmp_path: Path, text: str, message: str) -> None:  # noqa: F811
+    folder = Path.cwd()
+    suite = folder / "wrong.toml"
+    suite.write_text(f'[[case]]\n{text}\npolicy = "run"\n')
+    result = tltlc("regress", "wrong.toml", "--out", tmp_path)
+    assert result.status in (1, 2)
+    assert message in result.err
