@@ -13,7 +13,15 @@ from gymnasium import spaces
 
 from tests.runtime.policies.spaces.space_policies import policy_of_spaces
 from tests.runtime.training.runs import checkpoint_of
-from tests.runtime.training.tiny_game import GAME, HIDDEN_TEXT, WITH_CELLS, LineEnv, line_run, only_game
+from tests.runtime.training.tiny_game import (
+    GAME,
+    HIDDEN_TEXT,
+    WITH_CELLS,
+    LineEnv,
+    line_run,
+    only_game,
+    write_demonstrations,
+)
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import PolicyPlayer, Setup
 from tltl_runtime.game.level_name import Variant
@@ -120,6 +128,29 @@ def test_a_training_begins_with_the_weights_of_a_policy(
     run = line_run(tmp_path / "run", network__hidden=(64,), stop__steps=64)
     (report,) = train(replace(run, initial=initial_policy_of(path, read_policy(path))))
     assert report.window.pass_rate > 0.8
+
+
+def test_an_agent_imitates_demonstrations(tmp_path: Path) -> None:
+    folder = write_demonstrations(tmp_path / "demonstrations", 40)
+    run = line_run(
+        tmp_path / "run",
+        method="imitation",
+        network__hidden=(64,),
+        rollout__envs=16,
+        rollout__steps=64,
+        ppo__learning_rate=3e-3,
+        ppo__epochs=20,
+        imitation__cloning=0.7,
+        stop__steps=10 * 16 * 64,
+    )
+    reports = list(train(replace(run, demonstrations=str(folder))))
+    assert reports[-1].imitated is not None
+    assert reports[-1].imitated.episodes == 40
+    cloning = [report.iteration.losses["cloning"] for report in reports if "cloning" in report.iteration.losses]
+    assert len(cloning) == 7
+    assert cloning[-1] < cloning[0] - 1
+    assert reports[6].window.pass_rate > 2 * reports[0].window.pass_rate
+    assert math.isfinite(reports[-1].iteration.losses["discriminator"])
 
 
 # --- refusals ---------------------------------------------------------------------------------------

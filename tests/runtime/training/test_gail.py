@@ -63,7 +63,7 @@ def algorithm_of(run: TrainingRun) -> Gail:
     vector_env = make_environments(run, spaces := TrainingSpaces(None, searches=False))
     torch.manual_seed(0)
     env, _ = prepare_environment(
-        run, processes, "cpu", spaces, vector_env, None, print, load_imitation_data(run, processes, print), None
+        run, processes, "cpu", spaces, vector_env, None, print, load_imitation_data(run, processes, spaces, print), None
     )
     algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     vector_env.close()

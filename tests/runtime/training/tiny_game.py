@@ -6,6 +6,7 @@ measured in thousands, so that only a scaled observation is of use.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +21,10 @@ from gymnasium import spaces
 from tests.runtime.training.runs import SMALL
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.game.sensors import NO_SENSORS
+from tltl_runtime.policies.spaces.action_layout import action_layout
+from tltl_runtime.policies.spaces.values import flat_action
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.files.run_file import TrainingRun
@@ -44,6 +48,7 @@ class LineEnv(gymnasium.Env[Any, Any]):
     """A line from -1 to 1. In each step the player moves by up to 0.5, and may press one of two buttons."""
 
     tltl_clock_s = 0.1
+    level: Any = None
 
     def __init__(self, variant: str = "v0") -> None:
         self._has_cells = variant == WITH_CELLS
@@ -112,15 +117,41 @@ class LineGame(Game[Any, Any]):
 
     def make_env(self, level: Any, variant: Any = "v0", spec: Any = None, **options: Any) -> TltlEnv:
         text = variant if isinstance(variant, str) else variant.text
-        return TltlEnv(LineEnv(text), spec or SPEC, reward=options.get("reward"), params=options.get("params"))
+        line = LineEnv(text)
+        line.level = self.load_level(level, text)
+        return TltlEnv(line, spec or SPEC, reward=options.get("reward"), params=options.get("params"))
 
     def recorder(self, env: Any, player: str = "unknown") -> Any:
         raise NotImplementedError
+
+    def read_episode(self, path: Path) -> Any:
+        recording = json.loads(path.read_text(encoding="utf-8"))
+        level = self.load_level("line")
+        return SimpleNamespace(**{**recording, "actions": np.array(recording["actions"])}, level=level)
 
 
 # Methods that these tests never call.
 LineGame.__abstractmethods__ = frozenset()  # type: ignore[attr-defined]
 GAME = LineGame()
+
+
+def write_demonstrations(folder: Path, count: int) -> Path:
+    """Record episodes that meet the spec, and return their folder; a recording has flat actions."""
+    folder.mkdir()
+    env = GAME.make_env("line")
+    layout = action_layout(env.action_space)
+    for seed in range(count):
+        env.reset(seed=seed)
+        line: Any = env.unwrapped
+        actions, is_over = [], False
+        while not is_over:
+            move = np.array([np.clip(line._target - line._x, -0.5, 0.5)], np.float32)
+            action = {"press": line._light, "move": (move,)}
+            actions.append(flat_action(layout, action).tolist())
+            *_, is_over, _, _ = env.step(action)
+        recording = {"seed": seed, "player": "me", "actions": actions}
+        (folder / f"{seed}{SUFFIX}").write_text(json.dumps(recording), encoding="utf-8")
+    return folder
 
 
 @contextmanager

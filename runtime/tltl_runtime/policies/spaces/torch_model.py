@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import torch
 from rsl_rl.models import MLPModel
@@ -23,6 +23,9 @@ from tltl_runtime.policies.spaces.encoder_plan import (
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltl_runtime.policies.spaces.space_actor import FARTHEST
+
+_NUMBERS: Final = "~numbers"
+"""The key of all numbers together. No part of an observation has it, because keys escape a tilde."""
 
 
 class SpaceModel(MLPModel):
@@ -51,12 +54,21 @@ class SpaceModel(MLPModel):
 
     def get_latent(self, obs: Mapping[str, Tensor], masks: Any = None, hidden_state: Any = None) -> Tensor:
         """Return what the fully connected layers get [batch, width]."""
+        return self.encoded(self.inputs(obs))
+
+    def inputs(self, obs: Mapping[str, Tensor]) -> dict[str, Tensor]:
+        """Return the parts of observations as floats [batch, ...]: scaled numbers, one-hot vectors, and planes."""
         parts = self._layouts.observation
-        latent = [self.normalizer(_numbers(parts, obs))] if self.normalizer is not None else []
-        latent += [_one_hot(part, obs[part.key]) for part in parts if part.kind == "categories"]
-        for index, part in map_parts(self._layouts):
-            latent.append(self.encoders[str(index)](_planes(part, obs[part.key])).flatten(1))
-        return torch.cat(latent, -1)
+        inputs = {} if self.normalizer is None else {_NUMBERS: self.normalizer(_numbers(parts, obs))}
+        inputs |= {part.key: _one_hot(part, obs[part.key]) for part in parts if part.kind == "categories"}
+        return inputs | {part.key: _planes(part, obs[part.key]) for _, part in map_parts(self._layouts)}
+
+    def encoded(self, inputs: Mapping[str, Tensor]) -> Tensor:
+        """Return what the fully connected layers get [batch, width] for the result of :meth:`inputs`."""
+        encoders = {part.key: self.encoders[str(index)] for index, part in map_parts(self._layouts)}
+        return torch.cat(
+            [encoders[key](values).flatten(1) if key in encoders else values for key, values in inputs.items()], -1
+        )
 
     def update_normalization(self, obs: Mapping[str, Tensor]) -> None:
         """Update the running mean and deviation of numbers without bounds from a batch of observations.

@@ -7,13 +7,16 @@ A batch of a Dict or Tuple space is a mapping or tuple of batches, as in Gymnasi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.policies.spaces.action_layout import ActionLayout, ActionPart
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
+
+_NEAR_BOUND: Final = 1 - 1e-6
+"""The greatest share of the way to a bound that is turned back: the bound itself would be infinitely far."""
 
 
 def observation_arrays(
@@ -80,6 +83,19 @@ def squashed(layout: ActionLayout, outputs: NDArray[Any]) -> NDArray[np.float64]
             flat[..., column] = low + (high - low) * (np.tanh(flat[..., column]) + 1) / 2
         flat[..., column] = np.clip(flat[..., column], low, high)
     return flat
+
+
+def unsquashed(layout: ActionLayout, flat: NDArray[Any]) -> NDArray[np.float64]:
+    """Return the outputs of a policy that :func:`squashed` maps to flat actions [..., width].
+
+    A number at or near its bound comes from a finite output, about 7 away from 0.
+    """
+    outputs: NDArray[np.float64] = np.array(flat, np.float64)
+    for column, (low, high) in enumerate(layout.bounds, start=len(layout.sizes)):
+        if low is not None and high is not None:
+            share = (outputs[..., column] - low) / (high - low) if high > low else np.full(outputs.shape[:-1], 0.5)
+            outputs[..., column] = np.arctanh(np.clip(2 * share - 1, -_NEAR_BOUND, _NEAR_BOUND))
+    return outputs
 
 
 def _array(part: ObservationPart, value: Any, count: int | None) -> NDArray[Any]:

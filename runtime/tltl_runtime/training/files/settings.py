@@ -270,9 +270,12 @@ def rsl_config(
     """
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
+    discriminator = replace(settings.network, hidden=(imitation.encoding,) * 2)
     gail = {
         "branches": tuple(branches),
-        "discriminator": model_config(replace(settings.network, hidden=(imitation.encoding,) * 2), shapes),
+        "discriminator": model_config(discriminator, shapes),
+        "layouts": layouts,
+        "network": discriminator,
         "discriminator_rate": imitation.discriminator_rate,
         "gradient_penalty": imitation.gradient_penalty,
         "strength": imitation.strength,

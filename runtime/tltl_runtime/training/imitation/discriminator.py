@@ -50,8 +50,7 @@ class Discriminator(nn.Module):
 
     def forward(self, decisions: Decisions) -> Tensor:
         """Return the logits [n] of the probabilities that decisions are from demonstrations."""
-        logits: Tensor = self.network(self._inputs(decisions)).squeeze(-1)
-        return logits
+        return self._logits(self._inputs(decisions))
 
     def reward(self, decisions: Decisions) -> Tensor:
         """Return the rewards [n] of these decisions: ``-log(1 - D)``, which is at least 0.
@@ -84,11 +83,19 @@ class Discriminator(nn.Module):
             key: torch.lerp(first[key], second[key], share.view(-1, *[1] * (first[key].dim() - 1))).requires_grad_()
             for key in first
         }
-        gradients = torch.autograd.grad(self.network(mixed).sum(), [*mixed.values()], create_graph=True)
+        gradients = torch.autograd.grad(self._logits(mixed).sum(), [*mixed.values()], create_graph=True)
         squares = torch.stack([gradient.flatten(1).square().sum(1) for gradient in gradients]).sum(0)
         # The square root is not differentiable at 0.
         norms = (squares + 1e-12).sqrt()
         return (norms - 1.0).square().mean()
+
+    def update_normalization(self, decisions: Decisions) -> None:
+        """Update the scales of inputs without bounds from the agent's decisions; there are none here."""
+
+    def _logits(self, inputs: Mapping[str, Tensor]) -> Tensor:
+        """Return the logits [n] for the network's inputs."""
+        logits: Tensor = self.network(inputs).squeeze(-1)
+        return logits
 
     def _inputs(self, decisions: Decisions) -> dict[str, Tensor]:
         """Return the network's inputs by key. The key ``action`` has the one-hot actions."""

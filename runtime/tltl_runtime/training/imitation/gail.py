@@ -45,6 +45,7 @@ from torch import Tensor, nn
 from tltl_runtime.training.exploration.self_imitation import BATCH, imitate
 from tltl_runtime.training.imitation.discriminator import Decisions, Discriminator
 from tltl_runtime.training.imitation.imitation_data import ImitationData
+from tltl_runtime.training.imitation.space_discriminator import SpaceDiscriminator
 
 _Losses = dict[str, float]
 
@@ -79,8 +80,7 @@ class Gail(PPO):
         The limit that is reached first counts. Both are computed from the limits when the training
         begins, and stay if the limits change later.
         """
-        example = storage.observations[0].to("cpu")
-        self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
+        self.discriminator = _discriminator(gail, storage.observations[0].to("cpu")).to(self.device)
         if not self.is_multi_gpu:
             self.discriminator.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self._discriminator_optimizer = torch.optim.Adam(self.discriminator.parameters(), lr=gail["discriminator_rate"])
@@ -120,7 +120,7 @@ class Gail(PPO):
         """
         storage = self.storage
         discriminator_losses = self._train_discriminator()
-        losses = {**self._train_critic(), **self._clone_actor()} if self.is_cloning else super().update()
+        losses = self._clone() if self.is_cloning else super().update()
         storage.clear()
         self.steps += storage.num_envs * storage.num_transitions_per_env * self.gpu_world_size
         return {**losses, **discriminator_losses}
@@ -173,6 +173,7 @@ class Gail(PPO):
         Each minibatch is compared with equally many decisions of demonstrations.
         """
         observations, actions = self._rollout()
+        self.discriminator.update_normalization((observations, actions))
         losses, demonstration_probabilities, agent_probabilities = [], [], []
         for rows in torch.randperm(len(actions), device=self.device).tensor_split(self.num_mini_batches):
             agent_decisions: Decisions = observations[rows], actions[rows]
@@ -191,6 +192,13 @@ class Gail(PPO):
             "discriminator_theirs": _mean(demonstration_probabilities),
             "discriminator_agents": _mean(agent_probabilities),
         }
+
+    def _clone(self) -> _Losses:
+        """Train the critic and clone the actor, with the scales that the rollout gives, as PPO does."""
+        observations, _ = self._rollout()
+        self.actor.update_normalization(observations)
+        self.critic.update_normalization(observations)
+        return {**self._train_critic(), **self._clone_actor()}
 
     def _train_critic(self) -> _Losses:
         """Train only the critic, on the rollout of the actor that is being cloned."""
@@ -213,6 +221,13 @@ class Gail(PPO):
             for observations, actions in self.imitation_data.shuffled_batches(BATCH):
                 total += imitate(self, observations, actions) * BATCH
         return {"cloning": total / (self.num_learning_epochs * len(self.imitation_data.actions))}
+
+
+def _discriminator(gail: Mapping[str, Any], example: TensorDict) -> Discriminator:
+    """Return a new discriminator; ``example`` is a batch of observations."""
+    if gail["layouts"] is None:
+        return Discriminator(example, gail["branches"], gail["discriminator"])
+    return SpaceDiscriminator(gail["layouts"], gail["network"])
 
 
 def _mean(values: list[float]) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,11 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.policies.spaces.values import unsquashed
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
+from tltl_runtime.training.exploration.observation_encoding import ObservationEncoding
 from tltl_runtime.training.imitation.demonstrations import (
     PLAYER,
     Attempt,
@@ -25,15 +29,13 @@ from tltl_runtime.training.imitation.demonstrations import (
 )
 from tltlc.api import Diagnostic, TltlError, record
 
-_Observation = Mapping[str, NDArray[Any]]
-
 
 @record
 class ImitationData:
     """All decisions of the demonstrations.
 
-    ``observations`` are those of the environment, float32 tensors [n, ...] by key, and ``actions``
-    is [n, branches].
+    ``observations`` are those of the environment, tensors [n, ...] by key, and ``actions`` is
+    [n, width], with numbers before they are squashed.
     """
 
     observations: TensorDict
@@ -80,8 +82,13 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
         env.close()
 
 
-def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationData:
+def read_demonstrations(
+    folder: Path, make: Callable[[], TltlEnv], layouts: SpaceLayouts | None = None
+) -> ImitationData:
     """Read the demonstrations in a folder; replay each one in an environment from ``make``.
+
+    ``layouts`` are those of the environment; None if the network reads its observations as they are.
+    With them, a recording has flat actions.
 
     A recording is left out if it is of another level, does not meet the spec in the replay, or
     cannot be read.
@@ -91,8 +98,8 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationD
     """
     env = make()
     game = env.get_wrapper_attr("level").game
-    observed: list[_Observation] = []
-    actions: list[NDArray[np.uint8]] = []
+    observed: list[Any] = []
+    actions: list[NDArray[Any]] = []
     players: set[str] = set()
     left_out: list[str] = []
     try:
@@ -102,7 +109,7 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationD
             except TltlError as error:
                 left_out.append(f"{path.name}: {error_text(error)}")
                 continue
-            result = _replayed_observations(env, episode)
+            result = _replayed_observations(env, episode, layouts)
             if isinstance(result, str):
                 left_out.append(f"{path.name}: {result}")
                 continue
@@ -113,13 +120,11 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> ImitationD
         env.close()
     if not actions:
         raise nothing_to_imitate(folder, left_out)
-    observations = {
-        name: torch.from_numpy(np.stack([observation[name] for observation in observed])).float()
-        for name in observed[0]
-    }
+    encoding = ObservationEncoding(layouts)
+    rows = np.concatenate(actions)
     return ImitationData(
-        TensorDict(observations, batch_size=[len(observed)]),
-        torch.from_numpy(np.concatenate(actions)).float(),
+        encoding.tensors(encoding.stacked(observed)),
+        torch.from_numpy(rows if layouts is None else unsquashed(layouts.action, rows)).float(),
         ImitationSummary(len(actions), len(observed), tuple(sorted(players)), tuple(left_out)),
     )
 
@@ -141,7 +146,7 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
     return TltlError([Diagnostic("TLT0921", title, help=help_)])
 
 
-def _replayed_observations(env: TltlEnv, episode: RecordedEpisode) -> list[_Observation] | str:
+def _replayed_observations(env: TltlEnv, episode: RecordedEpisode, layouts: SpaceLayouts | None) -> list[Any] | str:
     """Replay an episode; return the observation before each decision.
 
     If the episode does not count as a demonstration, return the reason instead.
@@ -150,9 +155,11 @@ def _replayed_observations(env: TltlEnv, episode: RecordedEpisode) -> list[_Obse
     if episode.level.game is not level.game or level.game.level_hash(episode.level) != level.game.level_hash(level):
         return f"it is of another level, `{episode.level.name}:{episode.level.variant}` as it was then"
     observation, info = env.reset(seed=episode.seed)
-    observed: list[_Observation] = []
+    encoding = ActionEncoding(env.action_space)
+    actions = episode.actions.tolist() if layouts is None else map(encoding.value, episode.actions)
+    observed: list[Any] = []
     is_over = False
-    for action in episode.actions.tolist():
+    for action in actions:
         if is_over:
             break
         observed.append(observation)

@@ -89,7 +89,7 @@ def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorE
 
 
 def load_imitation_data(
-    run: TrainingRun, group: ProcessGroup, on_attempt: Callable[[Attempt], None]
+    run: TrainingRun, group: ProcessGroup, spaces: TrainingSpaces, on_attempt: Callable[[Attempt], None]
 ) -> ImitationData | None:
     """Return the data to imitate; None if the agent does not learn from demonstrations.
 
@@ -107,7 +107,7 @@ def load_imitation_data(
         folder, make = demonstrations_of(run), env_function(run)
         if run.demonstrations is None:
             record_expert(folder, run.settings.imitation.demonstrations, make, on_attempt)
-        imitation_data = read_demonstrations(folder, make)
+        imitation_data = read_demonstrations(folder, make, spaces.layouts)
     return group.broadcast(imitation_data)
 
 

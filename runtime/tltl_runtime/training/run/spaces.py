@@ -30,8 +30,8 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
     """Make an environment of the training, and return what it says of itself.
 
     Raises:
-        TltlError: TLT0844, no policy can have its spaces; TLT0862, the settings ask for a search, or
-            for an imitation, that is not possible there; the errors of ``make_env``.
+        TltlError: TLT0844, no policy can have its spaces; TLT0862, the settings ask for a search
+            that is not possible there; the errors of ``make_env``.
     """
     env = env_function(run)()
     try:

@@ -96,7 +96,7 @@ def train(
         checkpoint = group.broadcast(checkpoint)
         stack.enter_context(threads(1))
         spaces = spaces or _checked_spaces(run)
-        imitation_data = load_imitation_data(run, group, on_attempt)
+        imitation_data = load_imitation_data(run, group, spaces, on_attempt)
         initial = initial_policy(run, group, checkpoint)
         vector_env = stack.enter_context(closing(make_environments(run, spaces)))
         if initial:
