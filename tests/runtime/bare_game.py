@@ -13,7 +13,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from tltl_runtime.game.episode import Cause
+from tltl_runtime.game.episode import Cause, EndKind
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.game.level import LevelSpec, default_spec
@@ -216,7 +216,7 @@ class BareGame(Game[BareLevel, BareEpisode]):
         return pickle.dumps(episode)
 
     def cause(self, episode: BareEpisode) -> Cause:
-        kind = "success" if episode.success else "limit"
+        kind: EndKind = "success" if episode.success else "limit"
         end = float(episode.times[-1])
         return Cause(kind, (), end, (float(episode.positions[-1][0]), 0.0, 0.0), f"{kind} after {end:.1f} s")
 

@@ -13,12 +13,15 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime import bare_game
 from tests.runtime.bare_game import SPEC, BareEpisode, BareGame, ExpertGame, walk
 from tltl_runtime.cli.support.evaluation_files import EvaluationFiles
+from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, Setup
 from tltl_runtime.game import registry
 from tltl_runtime.game.episode import trajectory
 from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.sensors import Sensors
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policy
+from tltlc.api import TltlError
 
 Run = Callable[..., Outcome]
 NO_EXPERT = (
@@ -159,3 +162,26 @@ def test_an_evaluation_writes_and_mentions_no_pictures(recorded: BareEpisode) ->
     assert files.write("{}") == "out: 1 recording, evaluation.json"
     names = ["corridor-v0-7-0-sampled.episode.npz", "evaluation.json"]
     assert sorted(path.name for path in Path("out").iterdir()) == names
+
+
+def test_the_defaults_say_that_the_game_has_nothing(recorded: BareEpisode) -> None:
+    game, level, fspa = BareGame(), recorded.level, recorded.fspa
+    sensors = Sensors(("exit",), (), None)
+    assert (dict(game.choices), game.branches, game.params(level)) == ({}, (), {})
+    assert (game.landmarks(level), game.solids(level), game.barriers(level)) == ({}, {}, {})
+    assert list(game.missing_sensors(level, sensors)) == game.unreachable_entities(level, fspa) == []
+    assert not game.is_infeasible(level, fspa)
+    assert game.play_warnings(level, fspa) == []
+    assert game.level_fault(RuntimeError()) is None
+    assert game.observers(recorded, 0.0, 9.0) == game.shut_barriers(recorded) == ()
+    assert game.choose_sensors(level) == game.choose_sensors(level, level.sensors) == level.sensors
+    with pytest.raises(TltlError, match="TLT0815"):
+        game.choose_sensors(level, sensors)
+    env = game.recorder(game.make_env("corridor"))
+    with pytest.raises(TltlError, match="TLT0731"):
+        game.expert_episodes(env, [0])
+
+
+def test_other_errors_of_a_game_without_faults_are_bugs() -> None:
+    with pytest.raises(RuntimeError, match="broken"), level_faults():
+        raise RuntimeError("broken")
