@@ -126,7 +126,7 @@ def command(
         loaded_policy, recording = from_bytes(data, str(path)), (recorded or "failures") if folder else None
         sha256 = hashlib.sha256(data).hexdigest()
         if name is None:
-            check_level_is_shipped(loaded_policy.card.level, path, "tltlc evaluate")
+            check_level_is_shipped(loaded_policy.card, path, "tltlc evaluate")
         setup = set_up(loaded_policy, name, variant, spec, seed, recording)
         # The spec of a level often has the level's name: do not repeat it.
         labels = tuple(dict.fromkeys((loaded_policy.card.level, loaded_policy.card.fspa.name)))

@@ -91,6 +91,17 @@ class GameFile:
         """The name of the game: the name of its file without ``.game.toml``."""
         return self.path.name.removesuffix(SUFFIX)
 
+    def scene_for(self, spec: Path, name: str) -> Scene | None:
+        """Return the first scene that is made for the spec called ``name`` in the file ``spec``, or the only scene.
+
+        None if there are several scenes, and none is made for the spec.
+        """
+        for scene in self.scenes:
+            own = scene.variants[FIRST_VARIANT].spec
+            if own is not None and own.file.resolve() == spec.resolve() and own.name in ("", name):
+                return scene
+        return self.scenes[0] if len(self.scenes) == 1 else None
+
     @property
     def folder(self) -> Path:
         """The folder of the file: paths in the file are relative to it, and modules are searched in it first."""

@@ -128,6 +128,7 @@ def test_a_changed_file_of_the_game_selects_its_cases(tltlc: Run, trained: Path,
         (("evaluate", "run", "--game", "corridor.game.toml:shorts"), "did you mean `short`?"),
         (("train", "--game", "corridor.game.toml:short", "--level", "vault"), "give --level or --game, not both"),
         (("train", "--game", "corridor.game.toml:long"), "TLT0721"),
+        (("evaluate", "run/policy.safetensors"), "--game FILE.game.toml:short`"),
     ],
 )
 @pytest.mark.usefixtures("trained")
@@ -153,3 +154,16 @@ def test_wrong_cases_are_reported(tltlc: Run, tmp_path: Path, text: str, message
     result = tltlc("regress", "wrong.toml", "--out", tmp_path)
     assert result.status in (1, 2)
     assert message in result.err
+
+
+def test_the_game_of_a_project_needs_no_option(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path, tltl__toml='game = "corridor.game.toml"\n', settings__toml=SETTINGS)
+    options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
+    assert "training fetch on short v0" in tltlc("train", "corridor.tltl:fetch", *options).err
+    (tmp_path / "other.tltl").write_text("clock 10 Hz signal door_open: bool spec other { reach door_open limit 9 s }")
+    assert "`other` does not name a level: name one with --level" in tltlc("train", "other.tltl").err
+    (tmp_path / "named.tltl").write_text(
+        "clock 10 Hz signal door_open: bool spec named { level long reach door_open limit 9 s }"
+    )
+    assert "training named on long v0" in tltlc("train", "named.tltl", *options[:-1], "named").err

@@ -55,7 +55,7 @@ def level_of_policy(named: Path, initial: InitialPolicyOptions) -> tuple[str, st
     """
     path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
-        check_level_is_shipped(initial.card.level, path, _COMMAND)
+        check_level_is_shipped(initial.card, path, _COMMAND)
         name, variant = initial.card.level, initial.card.variant
     return name, variant or "v0"
 

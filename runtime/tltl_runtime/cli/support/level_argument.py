@@ -6,6 +6,7 @@ import re
 from difflib import get_close_matches
 from pathlib import Path
 from shlex import quote
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,6 +14,9 @@ from tltl_runtime.game.level_name import GAME_FILE, is_scene, level_file, split_
 from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.spec.task import read_spec
 from tltlc.api import Diagnostic, TltlError, fileio
+
+if TYPE_CHECKING:
+    from tltl_runtime.gymnasium_games.game_file import GameFile
 
 
 def names_level(text: str) -> bool:
@@ -77,24 +81,42 @@ def check_level_exists(level: str, variant: str, command: str) -> None:
 
 
 def own_level(spec: str, how: str = "with --level") -> str:
-    """Return the level that a spec names: a file beside the spec, or a level of the package.
+    """Return the level that a spec names: a file beside the spec, a scene of the project's game, or a shipped level.
 
-    ``how`` says in messages how to name a level.
+    If the spec names no level, return the scene of the project's game that is made for the spec, or the
+    only scene. ``how`` says in messages how to name a level.
 
     Raises:
-        UsageError: the spec names no level.
-        TltlError: TLT0800, the level does not exist.
+        UsageError: the spec names no level, and no scene is made for it.
+        TltlError: TLT0800, the level does not exist; the game file of the project is invalid.
     """
     fspa, _ = read_spec(spec)
+    path = fileio.split_spec_name(spec)[0]
+    game = _project_game(path)
     if fspa.level is None:
+        scene = None if game is None else game.scene_for(Path(path), fspa.name)
+        if game is not None and scene is not None:
+            return f"{game.path}:{scene.name}"
         message = f"`{fspa.name}` does not name a level: name one {how}"
         raise click.UsageError(message, click.get_current_context())
-    beside = Path(fileio.split_spec_name(spec)[0]).parent / f"{fspa.level}.toml"
+    beside = Path(path).parent / f"{fspa.level}.toml"
     if fileio.is_file(beside):
         return str(beside)
+    if game is not None and fspa.level in [scene.name for scene in game.scenes]:
+        return f"{game.path}:{fspa.level}"
     if fspa.level not in shipped_levels():
         title = (
             f"there is no level `{fspa.level}`: `{beside}` does not exist, and no level of that name comes with tltlc"
         )
         raise TltlError([Diagnostic("TLT0800", title, help=f"name its file {how}")])
     return fspa.level
+
+
+def _project_game(spec: str) -> GameFile | None:
+    """Return the game that the project of a spec's file names; None if it names none."""
+    path = fileio.project_for(spec).game
+    if path is None:
+        return None
+    from tltl_runtime.gymnasium_games.game_file import read_game_file
+
+    return read_game_file(path)

@@ -6,8 +6,9 @@ from pathlib import Path
 from shlex import quote
 
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
-from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.level_name import GAME_FILE, split_level
 from tltl_runtime.game.registry import game_of, shipped_levels
+from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.training.files.metrics import METRICS, read_metrics
 from tltl_runtime.training.files.run_file import POLICY, RUN, named_trainings, read_level_and_variant, resume_command
@@ -50,11 +51,16 @@ def policy_file(policy: Path) -> Path:
     return _shipped_policy_file(split_level(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
 
 
-def check_level_is_shipped(level: str, policy: Path, command: str) -> None:
-    """Raise TltlError, TLT0800, if a policy was trained on a user's level.
+def check_level_is_shipped(card: Card, policy: Path, command: str) -> None:
+    """Raise TltlError, TLT0800, if a policy was trained on a user's level, or in a user's game.
 
-    The policy's file does not contain the path of that level.
+    The policy's file does not contain the path of that level or game.
     """
+    level = card.level
+    if card.spaces is not None:
+        title = f"the policy was trained in the scene `{level}` of a game of your own, and does not say where it is"
+        help_ = f"name its game file: `{command} {quote(str(policy))} --game FILE{GAME_FILE}:{level}`"
+        raise TltlError([Diagnostic("TLT0800", title, help=help_)])
     if level not in shipped_levels():
         title = f"there is no level `{level}`: the policy was trained on a level of your own"
         help_ = f"name its file: `{command} {quote(str(policy))} --level {level}.toml`"
