@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, SUFFIX, GameFile, Scene, SceneVariant
+from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, SUFFIX, GameFile, GameScene, SceneVariant
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
@@ -41,7 +41,7 @@ def parse_game(text: str) -> GameArgument:
     return GameArgument(Path(path), scene, variant)
 
 
-def scene_of(game: GameFile, name: str | None) -> Scene:
+def scene_of(game: GameFile, name: str | None) -> GameScene:
     """Return the scene with this name; without a name, the first one.
 
     Raises:

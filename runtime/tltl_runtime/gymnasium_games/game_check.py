@@ -14,8 +14,8 @@ from tltl_runtime.gymnasium_games.game_file import GameFile
 from tltl_runtime.gymnasium_games.plays import (
     SEED,
     STEPS,
-    Difference,
-    Moment,
+    PlayDifference,
+    PlayedMoment,
     drawn_actions,
     first_difference,
     first_other_observation,
@@ -94,7 +94,9 @@ def _clock_s(env: SceneEnv) -> float | None:
     return float(env.get_wrapper_attr("tltl_clock_s")) if env.has_wrapper_attr("tltl_clock_s") else None
 
 
-def _differences(name: str, label: Label, first: Sequence[Moment], second: Sequence[Moment]) -> Iterator[Diagnostic]:
+def _differences(
+    name: str, label: Label, first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]
+) -> Iterator[Diagnostic]:
     """Yield TLT0783 for the first signal and the first observation that differ in two plays."""
     help_ = "draw all random numbers from `self.np_random`, which `super().reset(seed=seed)` seeds"
     difference = first_difference(first, second)
@@ -107,7 +109,7 @@ def _differences(name: str, label: Label, first: Sequence[Moment], second: Seque
         yield Diagnostic("TLT0783", title, (label,), help_, "warning")
 
 
-def _difference_text(difference: Difference) -> str:
+def _difference_text(difference: PlayDifference) -> str:
     if not difference.name:
         return f"the episode ends {_when(difference.step)} in one play only"
     first, second = _signal_text(difference.first), _signal_text(difference.second)
@@ -134,7 +136,7 @@ def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reprodu
     """
     actions = drawn_actions(env, _BEFORE_SNAPSHOT + _AFTER_SNAPSHOT, seed=SEED + 1)
     play(env, actions[:_BEFORE_SNAPSHOT], SEED + 1)
-    before = Moment(0, None, dict(env.tltl_signals()), False)
+    before = PlayedMoment(0, None, dict(env.tltl_signals()), False)
     with guarded(game, RAISES, "the game's `tltl_snapshot`", label):
         snapshot = env.get_wrapper_attr("tltl_snapshot")()
     if not isinstance(snapshot, bytes):
@@ -145,7 +147,7 @@ def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reprodu
     with guarded(game, RAISES, "the game's `tltl_restore`", label):
         env.get_wrapper_attr("tltl_restore")(snapshot)
     help_ = "save everything that changes in an episode, also the state of `self.np_random`"
-    difference = first_difference([before], [Moment(0, None, dict(env.tltl_signals()), False)])
+    difference = first_difference([before], [PlayedMoment(0, None, dict(env.tltl_signals()), False)])
     if difference is not None:
         title = (
             f"`tltl_restore` does not give back what `tltl_snapshot` saved in `{name}`: {_restored_text(difference)}"
@@ -167,7 +169,7 @@ def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reprodu
         yield Diagnostic("TLT0784", title, (label,), help_)
 
 
-def _restored_text(difference: Difference) -> str:
+def _restored_text(difference: PlayDifference) -> str:
     after = f" after {_steps_text(difference.step)}" if difference.step else ""
     if not difference.name:
         return f"the episode ends{after} in one play only"
@@ -179,14 +181,14 @@ def _steps_text(steps: int) -> str:
     return f"{steps} step{'' if steps == 1 else 's'}"
 
 
-def _until_end(moments: Sequence[Moment]) -> list[Moment]:
+def _until_end(moments: Sequence[PlayedMoment]) -> list[PlayedMoment]:
     """Return the moments up to the end of the episode: a snapshot need not determine the next episode."""
     end = next((index for index, moment in enumerate(moments) if moment.ended), len(moments))
     return list(moments[: end + 1])
 
 
 def _outside_space(
-    space: spaces.Space[Any], name: str, label: Label, moments: Sequence[Moment]
+    space: spaces.Space[Any], name: str, label: Label, moments: Sequence[PlayedMoment]
 ) -> Iterator[Diagnostic]:
     """Yield TLT0785 for the first observation that is not in the observation space."""
     for moment in moments:

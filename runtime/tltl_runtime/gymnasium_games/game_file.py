@@ -57,7 +57,7 @@ class SceneVariant:
 
 
 @record
-class Scene:
+class GameScene:
     """A scene of a game, with its variants by name; the first one is ``v0``."""
 
     name: str
@@ -83,7 +83,7 @@ class GameFile:
     signals: FunctionName | None
     clock_s: float | None
     observation: tuple[str, ...]
-    scenes: tuple[Scene, ...]
+    scenes: tuple[GameScene, ...]
     labels: Mapping[str, Label]
 
     @property
@@ -161,12 +161,12 @@ class _Reader:
         game.report_unknown_keys(dict.fromkeys(_SCENE_KEYS, "[[scene]]"))
         return result
 
-    def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[Scene, ...]:
+    def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[GameScene, ...]:
         """Read the scenes; if there are none, return one that is named after the file, labelled ``around``."""
         if not tables:
             first = SceneVariant({}, (), None, around)
-            return (Scene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}),)
-        scenes: dict[str, Scene] = {}
+            return (GameScene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}),)
+        scenes: dict[str, GameScene] = {}
         for table in tables:
             scene = self._scene(table)
             if scene.name and scene.name in scenes:
@@ -175,7 +175,7 @@ class _Reader:
             scenes[scene.name] = scene
         return tuple(scenes.values())
 
-    def _scene(self, table: CheckedTable) -> Scene:
+    def _scene(self, table: CheckedTable) -> GameScene:
         name = table.text("name")
         if name and not fileio.is_plain_name(name):
             table.log.append(wrong_value(table.entries["name"], "name", "a word of letters, digits and `_`"))
@@ -192,7 +192,7 @@ class _Reader:
             variants[variant] = self._variant(own, first)
             own.report_unknown_keys()
         table.report_unknown_keys(dict.fromkeys(_GAME_KEYS, "[game]"))
-        return Scene(name, variants)
+        return GameScene(name, variants)
 
     def _variant(self, table: CheckedTable, base: SceneVariant) -> SceneVariant:
         """Read the keys of a variant; ``base`` has the values of keys that it does not set.

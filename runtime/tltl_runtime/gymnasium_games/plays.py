@@ -19,7 +19,7 @@ SEED: Final = 1
 
 
 @record
-class Moment:
+class PlayedMoment:
     """What a game shows after a reset or a step.
 
     ``step`` counts the steps of the play, from 1; it is 0 after the first reset. ``sample`` has the
@@ -33,15 +33,15 @@ class Moment:
 
 
 @record
-class Play:
+class ScenePlay:
     """A play: its moments, those after resets included, and the seconds that it took."""
 
-    moments: tuple[Moment, ...]
+    moments: tuple[PlayedMoment, ...]
     seconds: float
 
 
 @record
-class Difference:
+class PlayDifference:
     """The first difference of two plays: what differs after ``step``, and its value in each play."""
 
     step: int
@@ -57,7 +57,7 @@ def drawn_actions(env: SceneEnv, count: int = STEPS, seed: int = SEED) -> list[A
     return [space.sample() for _ in range(count)]
 
 
-def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> Play:
+def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> ScenePlay:
     """Reset an environment with a seed and take the actions; reset it again when an episode ends.
 
     Raises:
@@ -67,10 +67,10 @@ def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> Play:
     observation, _ = env.reset(seed=seed)
     moments = [_moment(env, 0, observation, ended=False)]
     moments += go_on(env, actions)
-    return Play(tuple(moments), time.perf_counter() - start)
+    return ScenePlay(tuple(moments), time.perf_counter() - start)
 
 
-def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[Moment]:
+def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[PlayedMoment]:
     """Take actions from the present state on, and return the moments after them and after resets.
 
     Raises:
@@ -87,19 +87,19 @@ def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[Moment]:
     return moments
 
 
-def first_difference(first: Sequence[Moment], second: Sequence[Moment]) -> Difference | None:
+def first_difference(first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]) -> PlayDifference | None:
     """Return the first signal that differs, or that an episode ends in one play only; None if there is none."""
     for one, other in zip(first, second, strict=False):
         if one.ended != other.ended:
-            return Difference(one.step, "", one.ended, other.ended)
+            return PlayDifference(one.step, "", one.ended, other.ended)
         for name in (*one.sample, *(name for name in other.sample if name not in one.sample)):
             values = one.sample.get(name), other.sample.get(name)
             if not is_same(*values):
-                return Difference(one.step, name, *values)
+                return PlayDifference(one.step, name, *values)
     return None
 
 
-def first_other_observation(first: Sequence[Moment], second: Sequence[Moment]) -> int | None:
+def first_other_observation(first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]) -> int | None:
     """Return the first step after which the observations of two plays differ; None if there is none."""
     pairs = zip(first, second, strict=False)
     return next((one.step for one, other in pairs if not is_same(one.observation, other.observation)), None)
@@ -117,8 +117,8 @@ def is_same(first: Any, second: Any) -> bool:
     return bool(np.array_equal(one, other, equal_nan=one.dtype.kind in "fc" and other.dtype.kind in "fc"))
 
 
-def _moment(env: SceneEnv, step: int, observation: Any, *, ended: bool) -> Moment:
-    return Moment(step, _copied(observation), _copied(env.tltl_signals()), ended)
+def _moment(env: SceneEnv, step: int, observation: Any, *, ended: bool) -> PlayedMoment:
+    return PlayedMoment(step, _copied(observation), _copied(env.tltl_signals()), ended)
 
 
 def _copied(value: Any) -> Any:

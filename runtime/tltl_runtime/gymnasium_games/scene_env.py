@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from math import inf
 from pathlib import Path
 from typing import Any, Final, SupportsFloat
@@ -63,7 +64,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
         """Take a step in the game; raises TltlError, TLT0781, if the game raises an exception."""
         self._steps += 1
-        with guarded(self._game, RAISES, f"step {self._steps} of the game", self._label):
+        with guarded(self._game, RAISES, f"step {self._steps} of the episode", self._label):
             observation, reward, terminated, truncated, info = self.env.step(action)
             return self._kept(observation), reward, terminated, truncated, info
 
@@ -79,6 +80,16 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             help_ = "return the value of each signal by its name: `{'has_key': True}`"
             raise TltlError([Diagnostic(RAISES, title, (label,), help_)])
         return sample
+
+    def render(self) -> Any:
+        """Return a frame; raises TltlError, TLT0781, if the game raises an exception."""
+        with guarded(self._game, RAISES, "the game's `render`", self._label):
+            return self.env.render()
+
+    def close(self) -> None:
+        """End the game; raises TltlError, TLT0781, if the game raises an exception."""
+        with guarded(self._game, RAISES, "the game's `close`", self._label):
+            self.env.close()
 
     def _kept(self, observation: Any) -> Any:
         return {key: observation[key] for key in self._keys} if self._keys else observation
@@ -137,7 +148,7 @@ def make_base_env(
             TLT0780, the environment cannot be made; TLT0803, the observation has no such key.
     """
     own = variant_of(game, scene, variant)
-    options = dict(own.options) if render_mode is None else {**own.options, "render_mode": render_mode}
+    options = deepcopy(dict(own.options)) | ({} if render_mode is None else {"render_mode": render_mode})
     with folder_first(game):
         for module in game.modules:
             import_module(game, module, "import")

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from math import inf, isclose
 from typing import Any, Final, SupportsFloat
 
-from tltl_runtime.gymnasium_games.plays import Moment
+from tltl_runtime.gymnasium_games.plays import PlayedMoment
 from tltl_runtime.spec.spec_places import SpecPlaces
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, MonitorError, Signal, TltlError, monitors, record
@@ -25,7 +25,7 @@ class Supply:
     """
 
     scene: str
-    moments: Sequence[Moment]
+    moments: Sequence[PlayedMoment]
     params: Mapping[str, SupportsFloat] | None
     clock_s: float | None
 

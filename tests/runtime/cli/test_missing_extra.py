@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.runtime.gymnasium_games.games import write
 from tests.waiting import HANG_S
 
 LEARNING = ("torch", "rsl_rl", "tensordict", "tensorboard", "onnx", "onnxscript")
@@ -66,6 +67,14 @@ def test_levels_are_judged_without_the_packages_that_learn(tmp_path: Path) -> No
     assert "review   25 of 25" in done.stdout
     retrained = run_without(LEARNING, "regress suite.toml --retrain", tmp_path)
     assert (retrained.returncode, "needs `torch`" in retrained.stderr) == (4, True), retrained.stderr
+
+
+def test_games_are_checked_and_listed_without_what_learns_and_without_physics(tmp_path: Path) -> None:
+    write(tmp_path)
+    without = (*LEARNING, "pybullet", "pygame", "matplotlib", "safetensors", "jinja2")
+    for command in ("check --game corridor.game.toml", "list games"):
+        done = run_without(without, command, tmp_path)
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
 
 
 def test_missing_files_are_reported_before_what_plays_is_imported(tmp_path: Path) -> None:

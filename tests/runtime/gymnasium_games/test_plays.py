@@ -11,7 +11,7 @@ from tests.runtime.gymnasium_games import games
 from tltl_runtime.gymnasium_games.capabilities import capabilities
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.plays import (
-    Moment,
+    PlayedMoment,
     drawn_actions,
     first_difference,
     first_other_observation,
@@ -40,15 +40,15 @@ def test_equal_seeds_give_equal_actions_and_plays(env: SceneEnv) -> None:
 
 
 def test_the_first_difference_is_found(env: SceneEnv) -> None:
-    moments = [Moment(step, {"x": np.array([step])}, {"a": 1.0, "b": step > 2}, False) for step in range(5)]
-    changed = [*moments[:3], Moment(3, {"x": np.array([3])}, {"a": 1.0, "b": False, "c": 0}, False), *moments[4:]]
+    moments = [PlayedMoment(step, {"x": np.array([step])}, {"a": 1.0, "b": step > 2}, False) for step in range(5)]
+    changed = [*moments[:3], PlayedMoment(3, {"x": np.array([3])}, {"a": 1.0, "b": False, "c": 0}, False), *moments[4:]]
     difference = first_difference(moments, changed)
     assert difference is not None
     assert (difference.step, difference.name, difference.first, difference.second) == (3, "b", True, False)
-    difference = first_difference(moments, [*moments[:4], Moment(4, None, {}, True)])
+    difference = first_difference(moments, [*moments[:4], PlayedMoment(4, None, {}, True)])
     assert difference is not None
     assert (difference.step, difference.name) == (4, "")
-    assert first_other_observation(moments, [*moments[:2], Moment(2, {"x": np.array([7])}, {}, False)]) == 2
+    assert first_other_observation(moments, [*moments[:2], PlayedMoment(2, {"x": np.array([7])}, {}, False)]) == 2
 
 
 VALUES = st.recursive(

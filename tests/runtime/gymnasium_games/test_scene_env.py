@@ -78,6 +78,21 @@ def test_the_function_that_makes_an_environment_can_be_pickled(folder: Path) -> 
     )
 
 
+def test_worker_processes_make_scenes(folder: Path) -> None:
+    from tltl_runtime.vector import WorkerVectorEnv
+
+    games.write(folder)
+    game = games.GAME.replace('"cell", "has_key"', '"cell"')
+    make = partial(make_scene_env, games.write(folder, corridor__game__toml=game), "short")
+    envs = WorkerVectorEnv([make] * 2, workers=2)
+    try:
+        observations, _ = envs.reset(seed=[5, 6])
+        own = [make().reset(seed=seed)[0]["cell"] for seed in (5, 6)]
+        np.testing.assert_array_equal(observations["cell"], own)
+    finally:
+        envs.close()
+
+
 def test_a_render_mode_reaches_the_game(folder: Path) -> None:
     env = make_scene_env(games.write(folder), "short", render_mode="rgb_array")
     env.reset(seed=0)
@@ -149,8 +164,48 @@ def test_an_exception_in_play_is_an_error_with_its_place(folder: Path) -> None:
     with pytest.raises(TltlError) as error:
         env.step(0)
     message = render(error.value.diagnostics)
-    assert "error[TLT0781]: step 1 of the game raises IndexError: list index out of range" in message
+    assert "error[TLT0781]: step 1 of the episode raises IndexError: list index out of range" in message
     assert "[][action]" in message
+
+
+@pytest.mark.parametrize("method", ["reset", "render", "close"])
+def test_an_exception_of_another_method_is_an_error(folder: Path, method: str) -> None:
+    broken = f"{games.GRID}\n\ndef fail(*_, **__):\n    raise OSError('gone')\n\n\nCorridor.{method} = fail\n"
+    env = make_base_env(read_game_file(games.write(folder, corridor__py=broken)), "short")
+    with pytest.raises(TltlError) as error:
+        getattr(env, method)()
+    assert f"the game's `{method}` raises OSError: gone" in render(error.value.diagnostics)
+
+
+def test_a_game_cannot_change_the_options_of_the_next_one(folder: Path) -> None:
+    greedy = games.GRID.replace("def make(scene, length=5, render_mode=None):", "def make(scene, length, sizes):")
+    greedy = greedy.replace("return Corridor(length, render_mode)", "return Corridor(sizes.pop())")
+    text = games.GAME.replace("{ length = 4 }", "{ length = 4, sizes = [6, 7] }")
+    game = read_game_file(games.write(folder, corridor__py=greedy, corridor__game__toml=text))
+    assert [make_base_env(game, "short").unwrapped.length for _ in range(2)] == [7, 7]  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("clock", ["0", "'fast'", "float('nan')", "-1.0"])
+def test_a_wrong_clock_of_the_game_is_an_error(folder: Path, clock: str) -> None:
+    text = games.GRID.replace(
+        "class Corridor(gymnasium.Env):", f"class Corridor(gymnasium.Env):\n    tltl_clock_s = {clock}"
+    )
+    assert "`tltl_clock_s` is" in error_of(games.write(folder, corridor__py=text))
+
+
+@pytest.mark.parametrize("params", ["[1]", "{'a': 'b'}", "{'a': None}", "1 / 0"])
+def test_wrong_params_of_the_game_are_an_error(folder: Path, params: str) -> None:
+    text = games.GRID.replace(
+        "    def render(self):", f"    def tltl_params(self):\n        return {params}\n\n    def render(self):"
+    )
+    assert "the game's `tltl_params` raises" in error_of(games.write(folder, corridor__py=text))
+
+
+def test_an_observation_with_a_key_of_the_spec_is_an_error(folder: Path) -> None:
+    text = games.GRID.replace('"cell": spaces', '"progress": spaces').replace('{"cell": np', '{"progress": np')
+    game = games.GAME.replace('observation = ["cell", "has_key"]\n', "")
+    message = error_of(games.write(folder, corridor__py=text, corridor__game__toml=game))
+    assert "the observation has the key `progress`, which the spec adds to it" in message
 
 
 @pytest.mark.parametrize(
