@@ -29,6 +29,7 @@ FORMATS = {
     "conformance corpus": "tltlc/tools/conformance/corpus.py",
     "policy": "runtime/tltl_runtime/policies/file.py",
     "episode": "runtime/tltl_runtime/stealth/recordings/file.py",
+    "episode of a scene": "runtime/tltl_runtime/gymnasium_games/scene_episode_file.py",
     "baseline": "runtime/tltl_runtime/regression/verdict/baseline.py",
     "report of a regression run": "runtime/tltl_runtime/regression/report/report_json.py",
     "cached result of a regression case": "runtime/tltl_runtime/regression/suite_run.py",

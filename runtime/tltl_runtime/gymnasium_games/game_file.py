@@ -91,7 +91,7 @@ class GameFile:
         """The name of the game: the name of its file without ``.game.toml``."""
         return self.path.name.removesuffix(SUFFIX)
 
-    def scene_for(self, spec: Path, name: str) -> Scene | None:
+    def scene_for(self, spec: Path, name: str) -> GameScene | None:
         """Return the first scene that is made for the spec called ``name`` in the file ``spec``, or the only scene.
 
         None if there are several scenes, and none is made for the spec.

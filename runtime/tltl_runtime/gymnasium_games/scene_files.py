@@ -8,7 +8,7 @@ from pathlib import Path
 from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant, split_scene
 from tltl_runtime.gymnasium_games.game_argument import scene_of, variant_of
-from tltl_runtime.gymnasium_games.game_file import GameFile, Scene, read_game_file
+from tltl_runtime.gymnasium_games.game_file import GameFile, GameScene, read_game_file
 from tltl_runtime.gymnasium_games.scene_hash import file_hashes, scene_hash
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.spec_files import spec_files
@@ -80,7 +80,7 @@ class SceneFiles(LevelFiles[SceneLevel]):
         yield self.path(name).parent / file_name
 
 
-def _scene(name: str) -> tuple[GameFile, Scene]:
+def _scene(name: str) -> tuple[GameFile, GameScene]:
     path, scene = split_scene(name)
     game = read_game_file(Path(path))
     return game, scene_of(game, scene)
