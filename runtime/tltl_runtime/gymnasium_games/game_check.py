@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from gymnasium import spaces
 
-from tltl_runtime.gymnasium_games.capabilities import Capability, capabilities
+from tltl_runtime.gymnasium_games.capabilities import ATTRIBUTES, Capability, capabilities
 from tltl_runtime.gymnasium_games.game_errors import RAISES, guarded
 from tltl_runtime.gymnasium_games.game_file import GameFile
 from tltl_runtime.gymnasium_games.plays import (
@@ -55,8 +55,9 @@ class SceneReport:
 def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
     """Start a variant of a scene, and play it twice with the same seed and actions.
 
-    The diagnostics of the report: TLT0783, warning, the plays differ; TLT0784, error, a restored
-    snapshot differs; TLT0785, warning, an observation is not in the observation space.
+    The diagnostics of the report: TLT0783, warning, the plays differ; TLT0784, a restored snapshot
+    differs (error), or only one of the two methods exists (warning); TLT0785, warning, an
+    observation is not in the observation space.
 
     Raises:
         TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
@@ -75,7 +76,10 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
     params = env.get_wrapper_attr("tltl_params")() if "params" in offered else None
     first, second = play(env, actions), play(env, actions)
     differences = [*_differences(name, label, first.moments, second.moments)]
-    restored = [*_restored(game, env, name, label, reproducible=not differences)] if "snapshot" in offered else []
+    if "snapshot" in offered:
+        restored = [*_restored(game, env, name, label, reproducible=not differences)]
+    else:
+        restored = [*_half_snapshot(env, label)]
     return SceneReport(
         scene=scene,
         variant=variant,
@@ -167,6 +171,14 @@ def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reprodu
             f"after `tltl_restore`, equal actions give other observations in `{name}`, first after {_steps_text(step)}"
         )
         yield Diagnostic("TLT0784", title, (label,), help_)
+
+
+def _half_snapshot(env: SceneEnv, label: Label) -> Iterator[Diagnostic]:
+    """Yield TLT0784, a warning, if the game can save its state but not restore it, or the other way round."""
+    there = [name for name in ATTRIBUTES["snapshot"] if env.has_wrapper_attr(name)]
+    for missing in set(ATTRIBUTES["snapshot"]) - set(there) if there else ():
+        title = f"the game has `{there[0]}`, but no `{missing}`, so its state cannot be restored"
+        yield Diagnostic("TLT0784", title, (label,), f"add `{missing}`, or remove `{there[0]}`", "warning")
 
 
 def _restored_text(difference: PlayDifference) -> str:

@@ -125,6 +125,11 @@ def test_libraries_outside_are_rejected(folder: Path) -> None:
     assert messages("import common\nspec x = F a\n") == []
 
 
+def test_a_game_outside_is_rejected(folder: Path) -> None:
+    (folder / "tltl.toml").write_text('game = "../other.game.toml"\n', encoding="utf-8")
+    assert messages("import secret\n") == refusal("../other.game.toml")
+
+
 @needs_links
 def test_libraries_are_read_if_the_folder_of_the_server_was_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
