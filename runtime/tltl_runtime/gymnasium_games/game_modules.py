@@ -15,7 +15,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, guarded
-from tltl_runtime.gymnasium_games.game_file import FunctionName, GameFile
+from tltl_runtime.gymnasium_games.game_file import SUFFIX, FunctionName, GameFile
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Label, TltlError
 
@@ -39,7 +39,7 @@ def folder_first(game: GameFile) -> Iterator[None]:
     own = _top_names(folder)
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] in own and not _is_from(module, folder):
-            if not any(_is_from(module, other) for other in _folders):
+            if not any(_is_from(module, other) for other in _folders) and not _is_of_a_game(module):
                 continue
             del sys.modules[name]
     _folders.add(folder)
@@ -117,6 +117,12 @@ def _top_names(folder: Path) -> set[str]:
         for entry in entries
         if (entry.suffix == ".py" or (entry.is_dir() and "." not in entry.name and entry.name != "__pycache__"))
     }
+
+
+def _is_of_a_game(module: ModuleType) -> bool:
+    """Whether a game file lies beside a module: a process may have imported it before it read that file."""
+    file = getattr(module, "__file__", None)
+    return file is not None and any(Path(file).parent.glob(f"*{SUFFIX}"))
 
 
 def _is_from(module: ModuleType, folder: Path) -> bool:
