@@ -63,14 +63,14 @@ class SceneFiles(LevelFiles[SceneLevel]):
         return level, ()
 
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
-        """Yield the game file, the files of the scene, and its spec."""
+        """Yield the game file, the files of the scene, the Python files that the game imports, and the spec."""
         yield self.path(name)
         try:
             game, scene = _scene(name)
             own = variant_of(game, scene.name, variant.name)
+            yield from (game.folder / file for file, _ in file_hashes(game, scene.name, variant.name))
         except TltlError:
             return
-        yield from own.files
         if own.spec is not None:
             yield from spec_files(own.spec.file)
 

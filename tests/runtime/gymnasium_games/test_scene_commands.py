@@ -114,8 +114,9 @@ def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None
 def test_a_changed_file_of_the_game_selects_its_cases(tltlc: Run, trained: Path, tmp_path: Path) -> None:  # noqa: F811
     if not (trained / "suite.baseline.json").exists():
         tltlc("baseline", "suite.toml", "--workers", "1")
-    both = tltlc("regress", "suite.toml", "--changed", "corridor.tltl", "--out", tmp_path, "--workers", "1")
-    assert "2 cases" in both.out, both.err
+    for file in ("corridor.tltl", "corridor.py", "corridor.game.toml"):
+        both = tltlc("regress", "suite.toml", "--changed", file, "--out", tmp_path, "--workers", "1")
+        assert "2 cases" in both.out, both.err
     none = tltlc("regress", "suite.toml", "--changed", "unknown.py", "--out", tmp_path, "--workers", "1")
     assert "short:v0" not in none.out
 
