@@ -146,9 +146,12 @@ class Runner(OnPolicyRunner):
         return {"imitation": sum(losses) / len(losses)} if losses else {}
 
     def _check(self, observation: Any, rewards: Tensor, dones: Tensor) -> None:
-        """Raise TltlError, TLT0854, if the environment gave values that are not numbers."""
+        """Raise TltlError, TLT0854, if the environment gave values that are not finite numbers."""
         try:
             check_nan(observation, rewards, dones)
+            for key, values in observation.items():
+                if values.is_floating_point() and values.isinf().any():
+                    raise ValueError(f"the part `{key}` of the observation has infinite values")
         except ValueError as error:
             title = f"iteration {self.current_learning_iteration + 1}: {error}"
             help_ = "fix the environment, or the sensor or signal that gives these values"

@@ -14,6 +14,7 @@ from gymnasium import spaces
 from tests.runtime.policies.spaces.space_policies import policy_of_spaces
 from tests.runtime.training.runs import checkpoint_of
 from tests.runtime.training.tiny_game import (
+    ENDLESS,
     GAME,
     HIDDEN_TEXT,
     WITH_CELLS,
@@ -194,6 +195,10 @@ def test_a_policy_of_another_game_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(TltlError, match=r"TLT0843.*another game"):
         PolicyPlayer(Setup(other, "line", Variant("v0"), run.fspa, 0))
+
+
+def test_an_observation_that_is_infinite_ends_the_training(tmp_path: Path) -> None:
+    assert "the part `target` of the observation has infinite values" in refusal(line_run(tmp_path / "run", ENDLESS))
 
 
 def test_an_action_that_is_not_finite_ends_the_training(tmp_path: Path) -> None:

@@ -76,7 +76,8 @@ def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path
 def test_the_inverse_temperature_rises_only_after_the_warm_up() -> None:
     last = nn.Linear(2, 2)
     runner = Runner.__new__(Runner)
-    runner.cfg, runner.alg = {"warm_up": 2}, SimpleNamespace(actor=SimpleNamespace(mlp=[nn.Linear(2, 2), last]))
+    actor = SimpleNamespace(mlp=[nn.Linear(2, 2), last], distribution=None)
+    runner.cfg, runner.alg = {"warm_up": 2}, SimpleNamespace(actor=actor)
     before = deep_copy(last.state_dict())
     for runner.current_learning_iteration in (1, 2):
         runner.scale_inverse_temperature(1.5)
@@ -112,7 +113,7 @@ def test_an_initial_policy_that_gives_no_numbers_is_rejected(
         raise NotFiniteError("it gives no numbers")
 
     run = tuned(tmp_path / "run", policy, exploration__ways=4, exploration__steps=400)
-    monkeypatch.setattr(Policy, "choose", refuse)
+    monkeypatch.setattr(Policy, "choose_row", refuse)
     with pytest.raises(TltlError, match=r"TLT0854: the policy that the training in `.*run` begins with: it gives no n"):
         list(train(run))
 

@@ -40,6 +40,8 @@ spec press_there { limit 8 steps  reach there and right }
 """
 HIDDEN_TEXT = "text"
 """The variant whose observation has a text, which no policy can read."""
+ENDLESS = "endless"
+"""The variant whose target is infinitely far in some episodes."""
 WITH_CELLS = "cells"
 """The variant that says in which cell the player is."""
 
@@ -51,7 +53,7 @@ class LineEnv(gymnasium.Env[Any, Any]):
     level: Any = None
 
     def __init__(self, variant: str = "v0") -> None:
-        self._has_cells = variant == WITH_CELLS
+        self._has_cells, self._is_endless = variant == WITH_CELLS, variant == ENDLESS
         parts: dict[str, spaces.Space[Any]] = {
             "light": spaces.Discrete(2, start=1),
             "body": spaces.Tuple((spaces.Box(-1, 1, (1,), np.float32), spaces.MultiBinary(1))),
@@ -85,7 +87,7 @@ class LineEnv(gymnasium.Env[Any, Any]):
         observation: dict[str, Any] = {
             "light": np.int64(self._light + 1),
             "body": (np.array([self._x], np.float32), np.array([self._pressed >= 0], np.int8)),
-            "target": np.array([1000 * self._target + 5000]),
+            "target": np.array([np.inf if self._is_endless and self._target > 0.7 else 1000 * self._target + 5000]),
         }
         return observation | ({"mission": "go"} if self._has_text else {})
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -153,3 +154,23 @@ def test_running_scales_are_those_of_all_batches_together() -> None:
     deviation = every.std(0, correction=0)[1:]
     torch.testing.assert_close(normalizer.deviation, torch.cat([torch.tensor([2.0]), deviation]))
     assert normalizer.count.item() == len(every)
+
+
+def test_processes_scale_by_what_all_of_them_have_seen(tmp_path: Path) -> None:
+    torch.multiprocessing.spawn(_update_in_a_process, (tmp_path,), nprocs=2)
+    first, second = (torch.load(tmp_path / f"{rank}.pt") for rank in range(2))
+    every = torch.arange(12.0)
+    for state in (first, second):
+        torch.testing.assert_close(state["mean"], every.mean().reshape(1))
+        torch.testing.assert_close(state["deviation"], every.std(correction=0).reshape(1))
+        assert state["count"].item() == 12
+
+
+def _update_in_a_process(rank: int, folder: Path) -> None:
+    torch.distributed.init_process_group("gloo", init_method=f"file://{folder}/group", rank=rank, world_size=2)
+    layouts = SpaceLayouts(observation_layout(spaces.Box(-np.inf, np.inf, (1,))), action_layout(MIXED))
+    normalizer = Normalizer(layouts)
+    for batch in torch.arange(12.0).reshape(2, 2, 3)[rank]:
+        normalizer.update(batch.unsqueeze(-1))
+    torch.save(normalizer.state_dict(), folder / f"{rank}.pt")
+    torch.distributed.destroy_process_group()
