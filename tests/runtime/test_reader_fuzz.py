@@ -20,6 +20,9 @@ from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, 
 from tests.interfaces.cli.conftest import ROOT
 from tests.runtime.gymnasium_games.games import GAME, GRID
 from tests.runtime.gymnasium_games.games import write as write_game
+from tests.runtime.policies.spaces.space_policies import policy_of_spaces
+from tests.runtime.policies.spaces.test_space_policy import GRID as GRID_SPACES
+from tests.runtime.policies.spaces.test_space_policy import MIXED
 from tests.runtime.training.runs import run_in
 from tltl_runtime.game.recording_check import check as check_episode
 from tltl_runtime.game.recording_summary import summary as episode_summary
@@ -29,6 +32,7 @@ from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
 from tltl_runtime.gymnasium_games.scene_hash import scene_hash
 from tltl_runtime.policies.file import from_bytes as policy_from_bytes
 from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.file import to_bytes as policy_to_bytes
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.policies.summary import summary as policy_summary
@@ -240,11 +244,14 @@ def _other_array(random: Random, array: np.ndarray[Any, Any]) -> np.ndarray[Any,
 
 
 @cache
-def _policy() -> tuple[dict[str, Any], str, dict[str, Any], bytes]:
-    """The header of a policy file, the key of its card, the card, and the rest of the file."""
+def _policy(of_spaces: bool) -> tuple[dict[str, Any], str, dict[str, Any], bytes]:
+    """The header of a policy file, the key of its card, the card, and the rest of the file.
+
+    With ``of_spaces``, it is the policy of another game than the stealth game.
+    """
     path = shipped_policy("cover_and_hide")
     assert path is not None
-    data = path.read_bytes()
+    data = policy_to_bytes(policy_of_spaces(GRID_SPACES, MIXED)) if of_spaces else path.read_bytes()
     end = 8 + int.from_bytes(data[:8], "little")
     header = json.loads(data[8:end])
     (key,) = header["__metadata__"]
@@ -260,7 +267,7 @@ def _read_policy(header: bytes, rest: bytes) -> None:
 @given(seed=SEEDS)
 @times(60)
 def test_a_policy_with_damaged_bytes_is_read_or_rejected(seed: int) -> None:
-    random, (header, _, _, rest) = Random(seed), _policy()
+    random, (header, _, _, rest) = Random(seed), _policy(seed % 2 == 1)
     text = json.dumps(header).encode()
     if random.random() < 0.7:
         _read_policy(mutated_bytes(random, text), rest)
@@ -271,7 +278,7 @@ def test_a_policy_with_damaged_bytes_is_read_or_rejected(seed: int) -> None:
 @given(seed=SEEDS)
 @times(60)
 def test_a_policy_with_a_damaged_header_is_read_or_rejected(seed: int) -> None:
-    random, (header, key, card, rest) = Random(seed), _policy()
+    random, (header, key, card, rest) = Random(seed), _policy(seed % 2 == 1)
     if random.random() < 0.7:
         text = json.dumps({**header, "__metadata__": {key: mutated_json(random, card)}})
     else:

@@ -185,6 +185,7 @@ def test_overlays_are_for_levels_of_the_stealth_game(folder: Path) -> None:
         "corridor.game.toml",
         "corridor.py",
         "corridor.tltl",
+        "tltl.toml",
     ]
     assert folder
 
