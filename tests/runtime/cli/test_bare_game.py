@@ -73,7 +73,7 @@ def test_what_the_game_lacks_is_one_plain_error(
     error: str,
 ) -> None:
     result = tltlc(*arguments)
-    assert (result.status, result.out, result.err.rstrip("\n") + "\n") == (1, "", error)
+    assert (result.status, result.out, result.err.rstrip("\n") + "\n") == (2, "", error)
     assert [path.name for path in Path().iterdir()] == ["far.tltl"]
 
 
@@ -105,7 +105,7 @@ def test_a_film_is_refused_before_the_expert_plays(
 ) -> None:
     monkeypatch.setattr(bare_game, "GAME", ExpertGame())
     result = tltlc("demonstrate", "corridor", "-o", "runs", "--film", "gif")
-    assert (result.status, result.out) == (1, "")
+    assert (result.status, result.out) == (2, "")
     assert result.err.startswith("error[TLT0731]: the game of `corridor` has no films\n")
     assert not Path("runs").exists()
 
@@ -146,7 +146,7 @@ def test_the_signals_of_a_recording_can_be_judged(tltlc: Run, recorded: BareEpis
 )
 def test_a_picture_of_a_recording_is_one_plain_error(tltlc: Run, name: str, lack: str) -> None:  # noqa: F811
     result = tltlc("replay", "run.episode.npz", "-o", name)
-    assert (result.status, result.out) == (1, "")
+    assert (result.status, result.out) == (2, "")
     assert result.err.startswith(f"error[TLT0731]: the game of `corridor` {lack}\n  help: write the signals instead: ")
     assert not Path(name).exists()
 
