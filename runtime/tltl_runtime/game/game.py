@@ -19,6 +19,7 @@ from tltl_runtime.game.keyboard import Keyboard
 from tltl_runtime.game.level import UnreachableEntity
 from tltl_runtime.game.level_check import LevelCheck
 from tltl_runtime.game.level_files import LevelFiles, LevelT
+from tltl_runtime.game.level_maps import LevelMaps
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.pictures import Pictures
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
@@ -48,6 +49,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     pictures: Pictures[LevelT, EpisodeT] | None = None
     """Draws episodes; None if the game draws none."""
+
+    maps: LevelMaps[LevelT, EpisodeT] | None = None
+    """Draws maps of levels with bounds, for pages; None if the game has none."""
 
     films: Films[EpisodeT] | None = None
     """Draws films of episodes; None if the game has none."""

@@ -24,8 +24,7 @@ _MODULES: Final = {
 """The modules of the games. The ``GAME`` in a module is the game.
 
 They are imported by their names, so that commands, evaluation, training and regression tests need
-not import a particular game. The maps of ``regression.report.page.stealth`` still import the stealth
-game themselves.
+not import a particular game.
 """
 
 _GAMES_BY_FORMAT: Final = {STEALTH_FORMAT: STEALTH, SCENE_FORMAT: GYMNASIUM}

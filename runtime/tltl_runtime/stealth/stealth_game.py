@@ -29,6 +29,7 @@ from tltl_runtime.stealth.capabilities.vocabulary import params
 from tltl_runtime.stealth.films import StealthFilms
 from tltl_runtime.stealth.keyboard_play import StealthKeyboard
 from tltl_runtime.stealth.level import StealthLevel, fixed_places
+from tltl_runtime.stealth.level_maps import StealthMaps
 from tltl_runtime.stealth.levels import file
 from tltl_runtime.stealth.levels.dependencies import file_candidates, level_dependencies
 from tltl_runtime.stealth.levels.identity import level_hash
@@ -92,6 +93,7 @@ class StealthGame(Game[StealthLevel, Episode]):
     choices = CHOICES
     level_files = StealthLevelFiles()
     pictures = StealthPictures()
+    maps = StealthMaps()
     films = StealthFilms()
     keyboard = StealthKeyboard()
     modules = (__name__, "tltl_runtime.stealth.episode_recorder")

@@ -8,9 +8,9 @@ import pytest
 
 from tests.runtime.regression.handmade import ROOM, an_episode, changed
 from tltl_runtime.game.geometry import Box, Region
+from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
-from tltl_runtime.regression.explain.mentions import Mentions
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text

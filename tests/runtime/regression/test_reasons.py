@@ -8,7 +8,7 @@ import pytest
 
 from tests.runtime.regression.handmade import PLAYED, summaries
 from tltl_runtime.game.level import default_spec
-from tltl_runtime.regression.explain.mentions import Mentions
+from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite.suite import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity

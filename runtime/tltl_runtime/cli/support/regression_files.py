@@ -15,7 +15,7 @@ from tltl_runtime.game.game import Game
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.junit import junit
-from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport
+from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport, maps_of
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
 from tltl_runtime.regression.report.trace_curves import episode_curves, example_curves
@@ -26,7 +26,7 @@ from tltl_runtime.regression.verdict.level_texts import baseline_level
 from tltl_runtime.regression.verdict.play import PreparedCase
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import TltlError, fileio, record
+from tltlc.api import TltlError, fileio, record, replace
 
 PAGE: Final = "report.html"
 """The name of the page in the folder of a run."""
@@ -166,7 +166,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         return ReportedCase(case.report)
     level = case.prepared.level
     episodes = _episodes(case.report, level.game, case_folder(suite, case.report.name, folder / CASES))
-    return ReportedCase(
+    reported = ReportedCase(
         report=case.report,
         level=level,
         fspa=case.prepared.setup.fspa,
@@ -174,8 +174,10 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         before=case.reference.episodes,
         baseline_level=_baseline_level(case.prepared, case.reference),
         curve=_curve(case, folder),
-        curves={index: episode_curves(index, episodes[index]) for index in episodes} if level.bounds is None else {},
     )
+    if maps_of(reported) is not None:
+        return reported
+    return replace(reported, curves={index: episode_curves(index, episodes[index]) for index in episodes})
 
 
 def _baseline_level(ready: PreparedCase, reference: Reference) -> Level | None:

@@ -12,10 +12,11 @@ from typing import Final
 
 from tltl_runtime.game.geometry import Region
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, region_text
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
-from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions, phrase, region_text
 from tltl_runtime.regression.explain.path_points import positions_along
+from tltl_runtime.regression.explain.phrase import phrase
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_phrase
 from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, record

@@ -9,8 +9,8 @@ from typing import Final, TypeVar
 from tltl_runtime.game.episode import EndKind
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
-from tltl_runtime.regression.explain.mentions import Phrase, phrase, quoted_names, things_phrase
 from tltl_runtime.regression.explain.nearest_miss import approach_phrase, remaining_text
+from tltl_runtime.regression.explain.phrase import Phrase, phrase, quoted_names, things_phrase
 from tltl_runtime.regression.explain.places import blocking_solids, place_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
 from tltl_runtime.regression.explain.trace_ends import trace_end_text

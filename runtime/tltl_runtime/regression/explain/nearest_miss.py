@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
-from tltl_runtime.regression.explain.mentions import Phrase, phrase, things_phrase
+from tltl_runtime.regression.explain.phrase import Phrase, phrase, things_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
 from tltl_runtime.support.number_text import number
 from tltlc.api import Fspa, label_text

@@ -9,7 +9,8 @@ from typing import Final
 
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.mentions import Mentions, Phrase, phrase, region_text, things_phrase
+from tltl_runtime.game.mentions import Mentions, region_text
+from tltl_runtime.regression.explain.phrase import Phrase, phrase, things_phrase
 
 _NEAR_M: Final = 2.5
 """A place is near an entity if the distance between them is at most this, in metres."""

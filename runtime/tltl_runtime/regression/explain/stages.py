@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
-from tltl_runtime.regression.explain.mentions import Mentions, Phrase, union
+from tltl_runtime.game.mentions import Mentions, union
+from tltl_runtime.regression.explain.phrase import Phrase
 from tltl_runtime.spec.goals import distance_signals
 from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.game.level_name import level_stem
+from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, union
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
-from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions, Phrase, union
+from tltl_runtime.regression.explain.phrase import Phrase
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import Case

@@ -7,7 +7,8 @@ from statistics import fmean
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_files import file_kind
-from tltl_runtime.regression.explain.mentions import Mentions, Phrase
+from tltl_runtime.game.mentions import Mentions
+from tltl_runtime.regression.explain.phrase import Phrase
 from tltl_runtime.regression.suite.changed_keys import ChangedKeys, changed_keys
 from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity

@@ -13,11 +13,12 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.game.films import Picture
+from tltl_runtime.game.palette import state_colour
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import FilmView, View
 from tltl_runtime.stealth.rendering.interpolation import interpolate
-from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop, state_colour
+from tltl_runtime.stealth.rendering.plan import BARRIERS, backdrop
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.api import Notation, label_text

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 from numpy.typing import NDArray
 
-from tltl_runtime.spec.episode_summary import End
+from tltl_runtime.game.palette import ENDS, INK, state_colour
 from tltl_runtime.stealth.capabilities.reach import Reach
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.level import Box, Enemy, Point, StealthLevel
@@ -28,17 +28,8 @@ SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "w
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
 _SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
 _BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
-_STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30d", "#0284c7", "#ea580c")
-INK: Final = "#0f172a"
 SWITCH, EXIT, MOVER, ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
 _UNREACHED: Final = (0.86, 0.0, 0.0, 0.3)
-ENDS: Final[dict[End, tuple[str, str]]] = {
-    "success": ("D", "#16a34a"),
-    "violation": ("X", "#dc2626"),
-    "limit": ("s", "#64748b"),
-    "stopped": ("o", "#64748b"),
-}
-"""The marker and colour for each end of an episode."""
 
 DPI: Final = 100
 _METRES_PER_INCH: Final = 2.0
@@ -138,11 +129,6 @@ def backdrop(
         return float(x), size[1] - float(y)
 
     return np.asarray(canvas.buffer_rgba())[..., :3].copy(), pixel
-
-
-def state_colour(state: int) -> str:
-    """Return the colour of a state of the automaton, as ``#rrggbb``."""
-    return _STATES[state % len(_STATES)]
 
 
 def _add_reach(axes: Any, reach: Reach) -> None:

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.palette import ENDS, state_colour
 from tltl_runtime.stealth.level import StealthLevel
 from tltl_runtime.stealth.rendering.plan import (
     DPI,
-    ENDS,
     LETTERS_PER_INCH,
     LINE,
     MOST_LISTED,
@@ -22,7 +22,6 @@ from tltl_runtime.stealth.rendering.plan import (
     level_axes,
     natural_size,
     png,
-    state_colour,
     state_label,
 )
 from tltlc.api import Fspa

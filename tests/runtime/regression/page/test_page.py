@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
+from tests.runtime.game.test_packing import unstepped
 from tests.runtime.regression.handmade import changed, summaries
 from tests.runtime.regression.page import samples
-from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.regression.report.case_report import CaseReport

@@ -10,9 +10,9 @@ from xml.etree import ElementTree
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import coordinate
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.traffic import Traffic
+from tltl_runtime.support.markup import coordinate
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, label_text, record, replace
 
 _LAYOUT_LIMIT_S: Final = 10.0

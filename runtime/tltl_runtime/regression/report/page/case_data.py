@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.game.geometry import Box
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.packing import runs, x_steps, y_steps
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
-from tltl_runtime.regression.report.page.contents import ReportedCase
+from tltl_runtime.regression.report.page.contents import ReportedCase, maps_of
 from tltl_runtime.regression.report.page.heat import Heat, failed_ends, time_spent
-from tltl_runtime.regression.report.page.packing import runs, x_steps, y_steps
 from tltlc.api import label_text
 
 _RESOLUTION_CM: Final = 5
@@ -24,52 +25,51 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
     ``slug`` is the case's short name in addresses within the page.
     """
-    level, fspa = case.level, case.fspa
-    bounds = None if level is None else level.bounds
-    if level is None or fspa is None or bounds is None:
+    level, fspa, maps = case.level, case.fspa, maps_of(case)
+    if level is None or fspa is None or maps is None:
         return None
-    # Drawing a level needs the packages of the game; a page of traces does not.
-    from tltl_runtime.regression.report.page.stealth.level_map import map_data
-    from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
-
+    before = level if case.baseline_level is None or case.baseline_level.bounds is None else case.baseline_level
     return {
         "slug": slug,
-        "map": map_data(level),
+        "map": maps.map_data(level),
         "states": [label_text(fspa, state.id) for state in fspa.states],
-        "now": _episodes_data(bounds, case.report.episodes),
-        "before": _episodes_data((case.baseline_level or level).bounds or bounds, case.before),
-        "episodes": [recording_data(index, case.episodes[index]) for index in sorted(case.episodes)],
+        "now": _episodes_data(level, maps.metre(level), case.report.episodes),
+        "before": _episodes_data(before, maps.metre(before), case.before),
+        "episodes": [maps.episode_data(index, case.episodes[index]) for index in sorted(case.episodes)],
     }
 
 
-def _episodes_data(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
+def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
+    """Return the trajectories of episodes whose places are known; ``metre`` is that of :class:`LevelMaps`."""
+    bounds, placed = level.bounds, [episode for episode in episodes if episode.way]
+    assert bounds is not None
     return {
-        "trajectories": [_trajectory(bounds, episode) for episode in episodes],
-        "time": _heat_data(time_spent(bounds, episodes)),
-        "failed": _heat_data(failed_ends(bounds, episodes)),
+        "trajectories": [_trajectory(bounds, metre, episode) for episode in placed],
+        "time": _heat_data(time_spent(bounds, placed, metre), metre),
+        "failed": _heat_data(failed_ends(bounds, placed, metre), metre),
     }
 
 
-def _trajectory(bounds: Box, episode: ExplainedEpisode) -> dict[str, Any]:
+def _trajectory(bounds: Box, metre: float, episode: ExplainedEpisode) -> dict[str, Any]:
     """Return the trajectory of an episode on the map, and how the episode ended."""
     place = episode.place or episode.arrivals[-1].place
-    assert place is not None, "an episode of a level has places"
+    assert place is not None, "an episode with a way has places"
     return {
         "index": episode.summary.index,
         "unit": _RESOLUTION_CM,
         "end": episode.summary.end,
         "cause": episode.cause,
         "by": list(episode.by),
-        "x": x_steps(bounds, [x for x, *_ in episode.way], _RESOLUTION_CM),
-        "y": y_steps(bounds, [y for _, y, *_ in episode.way], _RESOLUTION_CM),
+        "x": x_steps(bounds, [x for x, *_ in episode.way], _RESOLUTION_CM * metre),
+        "y": y_steps(bounds, [y for _, y, *_ in episode.way], _RESOLUTION_CM * metre),
         "state": runs(state for *_, state, _ in episode.way),
-        "place": [x_steps(bounds, place[:1]), y_steps(bounds, place[1:2])],
+        "place": [x_steps(bounds, place[:1], metre), y_steps(bounds, place[1:2], metre)],
     }
 
 
-def _heat_data(heat: Heat) -> dict[str, Any]:
+def _heat_data(heat: Heat, metre: float) -> dict[str, Any]:
     return {
-        "cell": round(100 * heat.cell),
+        "cell": round(100 * heat.cell / metre),
         "columns": heat.columns,
         "cells": [number for pair in heat.values for number in pair],
         "most": max((value for _, value in heat.values), default=0),

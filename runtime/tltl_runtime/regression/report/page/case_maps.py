@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from markupsafe import Markup
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_maps import LevelMaps
 from tltl_runtime.regression.report.page.contents import ReportedCase
+from tltl_runtime.regression.report.page.mentions import report_mentions
 from tltl_runtime.regression.report.page.render import render
 from tltlc.api import record, replace
 
@@ -28,29 +31,25 @@ class _DrawnMap:
     is_of_unknown_baseline: bool = False
 
 
-def case_maps(case: ReportedCase, level: Level) -> Markup:
+def case_maps(case: ReportedCase, level: Level, level_maps: LevelMaps[Any, Any]) -> Markup:
     """Return the map of ``level``, the key to its signs, and an empty legend.
 
-    The page's script fills in the legend. If the level of the baseline looks different, its map is
-    included, too; the page then shows one of the two maps.
+    ``level_maps`` draws the maps. The page's script fills in the legend. If the level of the baseline
+    looks different, its map is included, too; the page then shows one of the two maps.
     """
-    return render("case_maps.html", maps=tuple(_maps(case, level)))
+    return render("case_maps.html", maps=tuple(_maps(case, level, level_maps)))
 
 
-def _maps(case: ReportedCase, level: Level) -> Iterator[_DrawnMap]:
-    # These need the packages of the game, which a page of recorded traces does not.
-    from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_key
-    from tltl_runtime.regression.report.page.stealth.mentions import report_mentions
-
-    old_level, mentioned = case.baseline_level, report_mentions(level, case.report)
-    map_now, key_now = level_map(level, mentioned), map_key(level, mentioned)
+def _maps(case: ReportedCase, level: Level, maps: LevelMaps[Any, Any]) -> Iterator[_DrawnMap]:
+    old_level, mentioned = case.baseline_level, report_mentions(maps, level, case.report)
+    map_now, key_now = maps.picture(level, mentioned), maps.key(level, mentioned)
     if old_level is None or not case.before:
         yield _DrawnMap("both", map_now, key_now, is_of_unknown_baseline=bool(case.before))
         return
-    mentioned_before = report_mentions(old_level, case.report)
-    if level_map(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
+    mentioned_before = report_mentions(maps, old_level, case.report)
+    if maps.picture(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
         yield _DrawnMap("both", map_now, key_now)
         return
     yield _DrawnMap("now", map_now, key_now, f"The level as it is now: {level.name} {level.variant}.")
     caption = f"The level as it was when the baseline was recorded: {old_level.name} {old_level.variant}."
-    yield _DrawnMap("before", level_map(old_level, mentioned_before), map_key(old_level, mentioned_before), caption)
+    yield _DrawnMap("before", maps.picture(old_level, mentioned_before), maps.key(old_level, mentioned_before), caption)

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.automaton import AutomatonPicture, counts_table, picture
 from tltl_runtime.regression.report.page.case_maps import case_maps
-from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase
+from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, maps_of
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
 from tltl_runtime.regression.report.page.episode_links import episode_links, trace_links
 from tltl_runtime.regression.report.page.player_panel import player_panel
@@ -73,11 +73,6 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
     )
 
 
-def has_map(case: ReportedCase) -> bool:
-    """Whether the page shows a map of a case: it has a level, whose game says where things are."""
-    return case.level is not None and case.level.bounds is not None
-
-
 def not_run_section(case: NotRun, slug: str) -> Markup:
     """Return the section of a case that was not judged in this run, with the reason."""
     return render("not_run_section.html", case=case, slug=slug)
@@ -110,7 +105,7 @@ def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:
-        links = (episode_links(finding, case.episodes, slug) if has_map(case) else None) or trace_links(
+        links = (episode_links(finding, case.episodes, slug) if maps_of(case) else None) or trace_links(
             finding, case.curves, slug
         )
         yield _Reason(finding.text, links)
@@ -118,7 +113,7 @@ def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
 
 
 def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> _Drawings | None:
-    fspa, level = case.fspa, case.level if has_map(case) else None
+    fspa, level, level_maps = case.fspa, case.level, maps_of(case)
     if fspa is None or automaton is None:
         return None
     noun = "traces" if case.report.traces else "episodes"
@@ -126,8 +121,8 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
     return _Drawings(
         automaton=None if automaton.svg is None else picture(fspa, automaton.svg, now, before),
         notes=automaton.notes,
-        maps=None if level is None else case_maps(case, level),
-        player=None if level is None else player_panel(fspa, case.episodes),
+        maps=None if level is None or level_maps is None else case_maps(case, level, level_maps),
+        player=None if level_maps is None else player_panel(fspa, case.episodes, level_maps.values),
         charts=trace_charts(fspa, case.curves, slug) if case.curves else None,
         curves=progress_curves(case.episodes) if case.episodes else None,
         distribution=progress_distribution(case.report.episodes, case.before),

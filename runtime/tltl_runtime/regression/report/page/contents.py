@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_maps import LevelMaps
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.trace_curves import TraceCurves
@@ -35,6 +37,18 @@ class ReportedCase:
     baseline_level: Level | None = None
     curve: bytes = b""
     curves: Mapping[int, TraceCurves] = EMPTY
+
+
+def maps_of(case: ReportedCase) -> LevelMaps[Any, Any] | None:
+    """Return what draws the map of a case; None if its page shows no map.
+
+    A case with a map has a level with bounds, and its game draws maps and says where the player was
+    in each episode.
+    """
+    level = case.level
+    if level is None or level.bounds is None or not all(episode.way for episode in case.report.episodes):
+        return None
+    return level.game.maps
 
 
 @record

@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
-from tltl_runtime.regression.report.page.markup import coordinate, element
+from tltl_runtime.support.markup import coordinate, element
 from tltl_runtime.support.number_text import percent
 
 _WIDTH, _HEIGHT = 420, 190

@@ -12,10 +12,10 @@ from tltl_runtime.regression.explain.path_points import POSITION_INTERVAL_S, pos
 from tltlc.api import record
 
 TIME_CELL: Final = 0.5
-"""The side, in metres, of the cells in which the time spent is measured."""
+"""The side, in metres of the map, of the cells in which the time spent is measured."""
 
 ENDS_CELL: Final = 1.0
-"""The side, in metres, of the cells in which the ends of failed episodes are counted."""
+"""The side, in metres of the map, of the cells in which the ends of failed episodes are counted."""
 
 
 @record
@@ -31,17 +31,20 @@ class Heat:
     values: tuple[tuple[int, float], ...]
 
 
-def time_spent(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
-    """Return the mean number of seconds that an episode spends in each cell."""
+def time_spent(bounds: Box, episodes: Sequence[ExplainedEpisode], metre: float = 1.0) -> Heat:
+    """Return the mean number of seconds that an episode spends in each cell.
+
+    ``metre`` is the length in the level, in metres, of a metre on the map.
+    """
     positions = [position for episode in episodes for position in positions_along(episode.way)]
-    return _grid(bounds, TIME_CELL, positions, POSITION_INTERVAL_S / max(1, len(episodes)))
+    return _grid(bounds, TIME_CELL * metre, positions, POSITION_INTERVAL_S / max(1, len(episodes)))
 
 
-def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode]) -> Heat:
-    """Return the number of failed episodes that ended in each cell."""
+def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode], metre: float = 1.0) -> Heat:
+    """Return the number of failed episodes that ended in each cell; ``metre`` is as in :func:`time_spent`."""
     return _grid(
         bounds,
-        ENDS_CELL,
+        ENDS_CELL * metre,
         [episode.place[:2] for episode in episodes if not episode.summary.success and episode.place is not None],
         1.0,
     )

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import base64
 import hashlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from markupsafe import Markup
 
+from tltl_runtime.game.palette import state_colour
 from tltl_runtime.regression.report.page.automaton import AutomatonPicture, draw_automaton
 from tltl_runtime.regression.report.page.case_data import case_data
-from tltl_runtime.regression.report.page.case_section import case_section, has_map, not_run_section
-from tltl_runtime.regression.report.page.contents import SuiteReport
-from tltl_runtime.regression.report.page.markup import script_json
+from tltl_runtime.regression.report.page.case_section import case_section, not_run_section
+from tltl_runtime.regression.report.page.contents import SuiteReport, maps_of
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.summary import summary
 from tltl_runtime.regression.suite.slugs import slugs
+from tltl_runtime.support.markup import script_json
 from tltlc.api import Fspa
 
 _FOLDER: Final = Path(__file__).parent
@@ -36,14 +38,15 @@ def html_report(suite: SuiteReport) -> str:
     pictures: dict[Fspa | None, AutomatonPicture] = {
         fspa: draw_automaton(fspa) for fspa in automata if fspa is not None
     }
-    has_maps = any(map(has_map, suite.cases))
+    maps = dict.fromkeys(filter(None, map(maps_of, suite.cases)))
+    colours = {name: colour for drawn in maps for name, colour in drawn.colours().items()}
     script = "\n".join(_file_text(name) for name in _SCRIPTS)
     return render(
         "report.html",
         suite=suite.suite,
         digest=_digest(script),
-        style=Markup(_style(has_maps=has_maps)),
-        has_maps=has_maps,
+        style=Markup(_style(colours)),
+        has_maps=bool(maps),
         summary=summary(suite, names),
         sections=[
             *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
@@ -54,24 +57,20 @@ def html_report(suite: SuiteReport) -> str:
     )
 
 
-def _style(*, has_maps: bool) -> str:
+def _style(colours: Mapping[str, str]) -> str:
     style = _file_text("report.css")
-    if not has_maps:
+    if not colours:
         return style
-    # The colours of maps need the packages of the game, which a page of recorded traces does not.
-    from tltl_runtime.regression.report.page.stealth.colours import colours
-
-    return f"{colours()}\n{style}"
+    properties = " ".join(f"--map-{name}: {colour};" for name, colour in colours.items())
+    return f":root {{ {properties} }}\n{style}"
 
 
 def _data(cases: list[dict[str, Any] | None]) -> dict[str, Any]:
     drawn_cases = [case for case in cases if case is not None]
     if not drawn_cases:
         return {"colours": [], "cases": []}
-    from tltl_runtime.regression.report.page.stealth.colours import state_colours
-
     states = max(len(case["states"]) for case in drawn_cases)
-    return {"colours": state_colours(states), "cases": drawn_cases}
+    return {"colours": list(map(state_colour, range(states))), "cases": drawn_cases}
 
 
 def _file_text(name: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from markupsafe import Markup
@@ -15,14 +15,15 @@ _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
 """How an episode failed, by its ``end``, in the words of the map's legend."""
 
 
-def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode]) -> Markup:
+def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode], values: Sequence[str]) -> Markup:
     """Return the playback panel of a case; the page's script loads the ``episodes`` into it.
 
-    If there are no episodes, the panel says so.
+    ``values`` are the names of the bars beside progress. If there are no episodes, the panel says so.
     """
     return render(
         "player_panel.html",
         outcomes=[(index, _outcome(episodes[index])) for index in sorted(episodes)],
+        bars=("progress", *values),
         atoms=[atom.name for atom in fspa.atoms],
     )
 

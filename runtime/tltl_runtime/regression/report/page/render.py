@@ -12,7 +12,7 @@ from typing import Final
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import prose
+from tltl_runtime.support.markup import prose
 
 _FOLDER: Final = Path(__file__).parent / "templates"
 

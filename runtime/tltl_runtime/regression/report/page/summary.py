@@ -9,10 +9,10 @@ from markupsafe import Markup
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.page.contents import SuiteReport
-from tltl_runtime.regression.report.page.markup import coordinate
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.retraining_result import OUTCOMES
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
+from tltl_runtime.support.markup import coordinate
 from tltl_runtime.support.number_text import percent
 from tltlc.api import record
 

@@ -12,9 +12,9 @@ from typing import Final
 
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import coordinate, element
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.trace_curves import TraceCurves
+from tltl_runtime.support.markup import coordinate, element
 from tltlc.api import Fspa, label_text, record
 
 _WIDTH: Final = 860

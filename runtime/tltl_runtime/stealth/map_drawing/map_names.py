@@ -7,8 +7,8 @@ from math import hypot
 from typing import Final
 
 from tltl_runtime.game.geometry import Region
-from tltl_runtime.regression.explain.mentions import Mentions, region_text
-from tltl_runtime.regression.report.page.map_scale import MapScale, Rect
+from tltl_runtime.game.map_scale import MapScale, Rect
+from tltl_runtime.game.mentions import Mentions, region_text
 from tltl_runtime.stealth.level import StealthLevel
 from tltlc.api import record, replace
 

@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.regression.report.page.packing import runs, steps, x_steps, y_steps
+from tltl_runtime.game.packing import runs, steps, x_steps, y_steps
 from tltl_runtime.stealth.level import Box
 
 

@@ -6,15 +6,18 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.explain.explain import Finding
-from tltl_runtime.regression.explain.mentions import Mentions
 from tltl_runtime.regression.explain.places import place_phrase
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.report.page.stealth.level_map import level_map, map_data, map_key
-from tltl_runtime.regression.report.page.stealth.mentions import description_mentions, report_mentions
+from tltl_runtime.regression.report.page.mentions import report_mentions
 from tltl_runtime.stealth.level import Box, Solid
+from tltl_runtime.stealth.level_maps import StealthMaps
 from tltl_runtime.stealth.levels.file import level_names, load_level
+from tltl_runtime.stealth.map_drawing.level_map import level_map, map_data, map_key
 from tltlc.core.record import replace
+
+MAPS = StealthMaps()
 
 
 @pytest.mark.parametrize("name", level_names())
@@ -97,7 +100,7 @@ def test_things_named_in_the_reasons_are_highlighted() -> None:
 def test_a_description_mentions_a_thing_by_its_name_or_a_key(sentence: str) -> None:
     level = load_level("navigation")
     walls = tuple(replace(level.solids[0], name=name) for name in ("far_wall", "wall_", "far"))
-    assert description_mentions(replace(level, solids=walls), sentence).things == ("far_wall",)
+    assert MAPS.mentions(replace(level, solids=walls), sentence).things == ("far_wall",)
 
 
 def test_only_descriptions_are_searched_for_names() -> None:
@@ -113,15 +116,17 @@ def test_only_descriptions_are_searched_for_names() -> None:
         mentions=Mentions(("s1",)),
         descriptions=("Moves `corridor_block_2`.",),
     )
-    assert report_mentions(level, report) == Mentions(("s1", "corridor_block_1", "corridor_block_2"), ("corridor",))
+    assert report_mentions(MAPS, level, report) == Mentions(
+        ("s1", "corridor_block_1", "corridor_block_2"), ("corridor",)
+    )
 
 
 def test_a_description_mentions_the_longest_name_of_a_region() -> None:
     level = load_level("navigation")
     regions = tuple(replace(level.regions[0], name=name) for name in ("left", "left_part", "middle"))
     named = replace(level, regions=regions)
-    assert description_mentions(named, "Shuts the left part for the middle-aged guard").regions == ("left_part",)
-    assert description_mentions(named, "Near the left and the middle.").regions == ("left", "middle")
+    assert MAPS.mentions(named, "Shuts the left part for the middle-aged guard").regions == ("left_part",)
+    assert MAPS.mentions(named, "Near the left and the middle.").regions == ("left", "middle")
 
 
 def test_a_patrol_there_and_back_is_drawn_once() -> None:

@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Final
+from collections.abc import Sequence
 
+from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, union
 from tltlc.api import record
-
-
-@record
-class Mentions:
-    """The names of the things and regions of a level that a text mentions.
-
-    ``things`` are entities and solids, or keys of their tables in the files of a level.
-    """
-
-    things: tuple[str, ...] = ()
-    regions: tuple[str, ...] = ()
-
-
-NO_MENTIONS: Final = Mentions()
 
 
 @record
@@ -55,18 +41,3 @@ def quoted_names(names: Sequence[str]) -> str:
     """Return a list of names between backquotes: ```a`, `b` and `c```. There is at least one."""
     *before, last = (f"`{name}`" for name in names)
     return f"{', '.join(before)} and {last}" if before else last
-
-
-def region_text(name: str) -> str:
-    """Return the name of a region as sentences and maps write it."""
-    return name.replace("_", " ")
-
-
-def union(mentions: Iterable[Mentions]) -> Mentions:
-    """Return all names in ``mentions``, each once, in order."""
-    things: dict[str, None] = {}
-    regions: dict[str, None] = {}
-    for part in mentions:
-        things |= dict.fromkeys(part.things)
-        regions |= dict.fromkeys(part.regions)
-    return Mentions(tuple(things), tuple(regions))

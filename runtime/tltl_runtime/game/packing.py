@@ -39,7 +39,7 @@ def runs(values: Iterable[T]) -> list[list[T | int]]:
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
-def x_steps(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
+def x_steps(bounds: Box, xs: Sequence[float], centimetres: float = 1) -> str:
     """Encode x coordinates, given in metres, with :func:`steps`.
 
     The encoded numbers are distances from the western bound, in units of ``centimetres``.
@@ -47,7 +47,7 @@ def x_steps(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
     return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
 
-def y_steps(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
+def y_steps(bounds: Box, ys: Sequence[float], centimetres: float = 1) -> str:
     """Encode y coordinates, given in metres, with :func:`steps`.
 
     The encoded numbers are distances southwards from the northern bound, in units of

@@ -8,22 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.geometry import Box, Point
-from tltl_runtime.regression.report.page.packing import runs, steps, x_steps, y_steps
+from tltl_runtime.game.packing import runs, steps, x_steps, y_steps
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 
 
-def recording_data(index: int, episode: RecordedEpisode) -> dict[str, Any]:
+def recording_data(index: int, episode: Episode) -> dict[str, Any]:
     """Return an episode as JSON data for the report page; ``index`` is its number within its case.
 
     For an episode of n steps, each list has n + 1 values, the first before step 1; lists about atoms
     have n. Lengths are in centimetres on the map, angles in degrees, times in milliseconds, health
     and robustness in hundredths, progress in thousandths. The functions of
-    :mod:`~tltl_runtime.regression.report.page.packing` encode the values.
+    :mod:`~tltl_runtime.game.packing` encode the values.
     """
-    assert isinstance(episode, Episode)
     snapshots, bounds = episode.snapshots, episode.level.bounds
     return {
         "index": index,

@@ -1,6 +1,7 @@
-"""The coordinates on the map of a level: centimetres from the north-western corner of its bounds.
+"""The coordinates on the map of a level: centimetres of the map from the north-western corner of its bounds.
 
-x points east, y south.
+x points east, y south. A metre on the map is a metre in the level, unless the level is too large or
+too small for that.
 """
 
 from __future__ import annotations
@@ -16,16 +17,18 @@ Rect = tuple[int, int, int, int]
 class MapScale:
     """Converts the metres of a level to the centimetres of its map.
 
-    ``size`` is the width and the height of the map, in centimetres.
+    ``metre`` is the length in the level, in metres, of a metre on the map. ``size`` is the width and
+    the height of the map, in centimetres.
     """
 
-    def __init__(self, bounds: Box) -> None:
+    def __init__(self, bounds: Box, metre: float = 1.0) -> None:
         (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
-        self.size = (round(100 * (east - self.west)), round(100 * (self.north - south)))
+        self._per_metre = 100 / metre
+        self.size = (round(self._per_metre * (east - self.west)), round(self._per_metre * (self.north - south)))
 
     def at(self, point: Sequence[float]) -> tuple[int, int]:
         """Return the map coordinates of a point."""
-        return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
+        return round(self._per_metre * (point[0] - self.west)), round(self._per_metre * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:
         """Return the map coordinates of a box's centre."""

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from tests.runtime.game.test_packing import unstepped
 from tests.runtime.regression.page import samples
-from tests.runtime.regression.page.test_packing import unstepped
-from tltl_runtime.regression.report.page.stealth.recording_data import recording_data
+from tltl_runtime.stealth.map_drawing.recording_data import recording_data
 from tltl_runtime.stealth.recordings.episode import Episode
 
 

@@ -15,15 +15,14 @@ from typing import Any, Final
 from markupsafe import Markup
 
 from tltl_runtime.game.geometry import Box
-from tltl_runtime.game.level import Level
-from tltl_runtime.regression.explain.mentions import NO_MENTIONS, Mentions
-from tltl_runtime.regression.report.page.map_scale import MapScale
-from tltl_runtime.regression.report.page.markup import element
-from tltl_runtime.regression.report.page.stealth.map_names import MapLabel, map_labels
+from tltl_runtime.game.map_scale import MapScale
+from tltl_runtime.game.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Mover, StealthLevel
+from tltl_runtime.stealth.map_drawing.map_names import MapLabel, map_labels
 from tltl_runtime.stealth.rendering.plan import patrol_path
 from tltl_runtime.stealth.world.geometry import box_around
+from tltl_runtime.support.markup import element
 
 _MARGIN: Final = 30
 _LAYERS: Final = ("heat", "trajectories", "ends", "live")
@@ -45,12 +44,11 @@ _SIGNS: Final = {
 """The signs on a map: the CSS class of each, and its meaning in the legend."""
 
 
-def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
+def level_map(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Draw the map of a level. The page's script fills its layers ``heat``, ``trajectories``, ``ends`` and ``live``.
 
     Things and regions that the report mentions are highlighted.
     """
-    assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
     width, height = scale.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
@@ -69,9 +67,8 @@ def level_map(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
     )
 
 
-def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
+def map_key(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     """Return the legend of a map, with the signs that occur on it."""
-    assert isinstance(level, StealthLevel)
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
         "switch": level.switches,
@@ -86,14 +83,13 @@ def map_key(level: Level, mentions: Mentions = NO_MENTIONS) -> Markup:
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
 
 
-def map_data(level: Level) -> dict[str, Any]:
+def map_data(level: StealthLevel) -> dict[str, Any]:
     """Return the data that the page's script needs to draw onto the map of a level, as JSON.
 
     ``blocks``, barriers and ``movers`` (moving boxes) may block sight. Each block is a rectangle on
     the map and two heights. ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes``
     is the height of its eyes. Lengths are in centimetres, angles in degrees.
     """
-    assert isinstance(level, StealthLevel)
     scale = MapScale(level.bounds)
     return {
         "blocks": [_block(scale, solid.box) for solid in level.solids if solid.kind != "floor"],

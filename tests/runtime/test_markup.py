@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from markupsafe import Markup
 
-from tltl_runtime.regression.report.page.markup import coordinate, element, prose, script_json
+from tltl_runtime.support.markup import coordinate, element, prose, script_json
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),

@@ -1,0 +1,1 @@
+"""Maps of levels as SVG, and recorded episodes as data, for pages."""
