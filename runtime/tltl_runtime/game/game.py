@@ -149,6 +149,14 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         del level
         return {}
 
+    def played_level(self, level: LevelT, episode: EpisodeT) -> LevelT:
+        """Return a level with what an ``episode`` showed of it, for reports; by default nothing more.
+
+        A game may know where things are only when it is played.
+        """
+        del episode
+        return level
+
     def unreachable_entities(self, level: LevelT, fspa: Fspa) -> list[UnreachableEntity]:
         """Return each entity of a spec that no player can reach; none if the level is too large to search.
 

@@ -45,7 +45,7 @@ class Array:
 
     It has NumPy's ``dtype``, a shape, a unit, and the range of its values from ``low`` to ``high``.
     A shape contains numbers, and names of axes whose lengths depend on the episode. ``doc`` says
-    what the values are.
+    what the values are. With ``gaps``, values may also be not-a-number.
     """
 
     name: str
@@ -55,6 +55,7 @@ class Array:
     doc: str
     low: float = -inf
     high: float = inf
+    gaps: bool = False
 
     def actual_shape(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Return the shape, with the lengths in ``sizes`` in place of the axes' names."""
@@ -169,7 +170,8 @@ class RecordingArchive:
             valid = bool((values.view(np.uint8) <= 1).all())
         else:
             # The comparisons reject not-a-number; isfinite also rejects infinities.
-            valid = bool(((values >= array.low) & (values <= array.high) & np.isfinite(values)).all())
+            fit = (values >= array.low) & (values <= array.high) & np.isfinite(values)
+            valid = bool((fit | np.isnan(values) if array.gaps else fit).all())
         if not valid:
             raise ERRORS.broken_error(self._name, f"the array `{array.name}` has invalid values")
         return values

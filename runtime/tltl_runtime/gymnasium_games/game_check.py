@@ -61,7 +61,7 @@ def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
 
     Raises:
         TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
-            raises an exception.
+            raises an exception, or says where things are in a way that cannot be used.
     """
     env = make_base_env(game, scene, variant)
     try:
@@ -75,6 +75,7 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
     offered, actions = capabilities(env), drawn_actions(env)
     params = env.get_wrapper_attr("tltl_params")() if "params" in offered else None
     first, second = play(env, actions), play(env, actions)
+    _check_places(env)
     differences = [*_differences(name, label, first.moments, second.moments)]
     if "snapshot" in offered:
         restored = [*_restored(game, env, name, label, reproducible=not differences)]
@@ -92,6 +93,13 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
         restores=not restored if "snapshot" in offered else None,
         diagnostics=(*differences, *restored, *_outside_space(env.observation_space, name, label, first.moments)),
     )
+
+
+def _check_places(env: SceneEnv) -> None:
+    """Raise TltlError, TLT0781, if the game says where things are, and what it says cannot be used."""
+    env.reset(seed=SEED)
+    env.scene_positions()
+    env.scene_outline()
 
 
 def _clock_s(env: SceneEnv) -> float | None:

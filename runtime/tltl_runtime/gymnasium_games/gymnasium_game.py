@@ -6,6 +6,7 @@ Each of its levels is a scene of a game file, which says how the environment is 
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -14,6 +15,7 @@ import gymnasium
 
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
+from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_name import Variant, parse_variant, split_scene
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice
@@ -49,6 +51,21 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Do nothing: which signals a scene has is only known when it is played."""
+
+    def landmarks(self, level: SceneLevel) -> dict[str, Point]:
+        """Return the places of the entities that did not move in an episode, by name."""
+        return dict(level.landmarks)
+
+    def solids(self, level: SceneLevel) -> dict[str, Box]:
+        """Return the boxes of the outline by name; those that share a name are left out."""
+        boxes = () if level.outline is None else level.outline.boxes
+        counts = Counter(item.name for item in boxes)
+        return {item.name: item.box for item in boxes if counts[item.name] == 1}
+
+    def played_level(self, level: SceneLevel, episode: SceneEpisode) -> SceneLevel:
+        """Return a scene with the outline and the landmarks of an episode."""
+        landmarks = {} if episode.entities is None else episode.entities.still()
+        return replace(level, outline=episode.level.outline, landmarks=tuple(landmarks.items()))
 
     def make_env(
         self,

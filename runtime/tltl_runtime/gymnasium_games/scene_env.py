@@ -12,16 +12,23 @@ from typing import Any, Final, SupportsFloat
 import gymnasium
 from gymnasium import spaces
 
+from tltl_runtime.game.geometry import Point
+from tltl_runtime.game.outline import Outline
+from tltl_runtime.gymnasium_games.entity_positions import PLAYER, PositionsError, read_positions
 from tltl_runtime.gymnasium_games.game_argument import variant_of
 from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guarded, raised
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, SceneVariant, read_game_file
 from tltl_runtime.gymnasium_games.game_modules import folder_first, import_function, import_module
+from tltl_runtime.gymnasium_games.outline_reader import OutlineError, read_outline
+from tltl_runtime.gymnasium_games.value_text import type_text
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
 
 _OWN_OPTIONS: Final = ("max_episode_steps", "disable_env_checker", "render_mode")
 """Options of ``gymnasium.make`` itself, which the environment need not know."""
+
+_PLAYER_HELP: Final = f"return two or three numbers for it: `{{'{PLAYER}': (1.0, 2.0)}}`"
 
 
 class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
@@ -76,7 +83,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         with guarded(self._game, RAISES, name, label):
             sample = self.env.get_wrapper_attr("tltl_signals")() if self._signals is None else self._signals(self.env)
         if not isinstance(sample, Mapping):
-            title = f"{name} returns {_type_text(sample)}, not a mapping"
+            title = f"{name} returns {type_text(sample)}, not a mapping"
             help_ = "return the value of each signal by its name: `{'has_key': True}`"
             raise TltlError([Diagnostic(RAISES, title, (label,), help_)])
         return sample
@@ -90,6 +97,40 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         """End the game; raises TltlError, TLT0781, if the game raises an exception."""
         with guarded(self._game, RAISES, "the game's `close`", self._label):
             self.env.close()
+
+    def scene_positions(self) -> dict[str, Point] | None:
+        """Return the positions of the entities that are there now, by name, in metres.
+
+        None if the game does not say them. Raises TltlError, TLT0781, if they cannot be used, or if
+        there is no ``player`` after the reset.
+        """
+        if not self.env.has_wrapper_attr("tltl_positions"):
+            return None
+        with guarded(self._game, RAISES, "the game's `tltl_positions`", self._label):
+            value = self.env.get_wrapper_attr("tltl_positions")()
+        try:
+            places = read_positions(value)
+            if PLAYER not in places and not self._steps:
+                raise PositionsError(f"gives no position of `{PLAYER}` after the reset", _PLAYER_HELP)
+        except PositionsError as error:
+            title = f"the game's `tltl_positions` {error}"
+            raise TltlError([Diagnostic(RAISES, title, (self._label,), error.help)]) from None
+        return places
+
+    def scene_outline(self) -> Outline | None:
+        """Return the outline of the scene in this episode.
+
+        None if the game does not say it. Raises TltlError, TLT0781, if it cannot be used.
+        """
+        if not self.env.has_wrapper_attr("tltl_outline"):
+            return None
+        with guarded(self._game, RAISES, "the game's `tltl_outline`", self._label):
+            value = self.env.get_wrapper_attr("tltl_outline")()
+        try:
+            return read_outline(value, self._game.folder)
+        except OutlineError as error:
+            title = f"the outline that `tltl_outline` returns {error}"
+            raise TltlError([Diagnostic(RAISES, title, (self._label,), error.help)]) from None
 
     def _kept(self, observation: Any) -> Any:
         return {key: observation[key] for key in self._keys} if self._keys else observation
@@ -174,7 +215,7 @@ def _from_function(
     with guarded(game, CANNOT_START, name, own.label):
         env = function(scene, **options)
     if not isinstance(env, gymnasium.Env):
-        title = f"{name} returns {_type_text(env)}, not a gymnasium.Env"
+        title = f"{name} returns {type_text(env)}, not a gymnasium.Env"
         help_ = "return an environment of the package `gymnasium`"
         raise TltlError([Diagnostic(CANNOT_START, title, (game.labels["python"],), help_)])
     return env
@@ -248,7 +289,7 @@ def _check_offers(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVarian
     with guarded(game, CANNOT_START, name, own.label):
         params = env.get_wrapper_attr("tltl_params")()
         if not isinstance(params, Mapping):
-            raise TypeError(f"it returns {_type_text(params)}, not a mapping from names to numbers")
+            raise TypeError(f"it returns {type_text(params)}, not a mapping from names to numbers")
         for value in params.values():
             float(value)
 
@@ -279,8 +320,3 @@ def _check_keys(space: spaces.Space[Any], label: Label) -> None:
         title = f"the observation has the key `{min(conflicts)}`, which the spec adds to it"
         help_ = 'rename it in the game, or name the keys to keep: `observation = ["KEY"]` in `[game]`'
         raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
-
-
-def _type_text(value: object) -> str:
-    name = type(value).__name__
-    return "None" if value is None else f"an {name}" if name[0].lower() in "aeiou" else f"a {name}"

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.gymnasium_games.entity_positions import EntityPositions
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.policies.spaces.action_layout import ActionLayout
 from tltl_runtime.spec.episode_summary import End
@@ -56,3 +57,5 @@ class SceneEpisode:
     """The options by which the rewards were computed."""
     versions: Mapping[str, str] = EMPTY
     """The versions of Python and of the packages that played the episode."""
+    entities: EntityPositions | None = None
+    """Where the entities beside the player were; None if the game does not say it."""

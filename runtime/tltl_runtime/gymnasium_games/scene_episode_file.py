@@ -9,6 +9,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.game.outline import outline_problem
 from tltl_runtime.game.recording_archive import (
     ERRORS,
     MAX_BYTES,
@@ -18,6 +19,7 @@ from tltl_runtime.game.recording_archive import (
     RecordingArchive,
     archive_bytes,
 )
+from tltl_runtime.gymnasium_games.entity_positions import EntityPositions
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.policies.spaces.action_layout import ActionLayout
@@ -40,6 +42,17 @@ ARRAYS: Final = (
     Array("rewards", "<f8", ("n",), "1", "of the steps"),
 )
 POSITION: Final = Array("position", "<f8", ("n + 1", 3), "m", "of the player; absent if the game does not say it")
+ENTITIES: Final = Array(
+    "entities",
+    "<f8",
+    ("n + 1", "entities", 3),
+    "m",
+    "of the other entities; not-a-number where one is gone; absent if the game does not say it",
+    gaps=True,
+)
+
+
+_ARRAYS: Final = (*ARRAYS, POSITION, ENTITIES)
 
 
 @record
@@ -63,6 +76,8 @@ class SceneMeta:
     has_positions: bool
     layout: ActionLayout
     level: SceneLevel
+    entities: tuple[str, ...] | None = None
+    """The names of the entities beside the player; None if the game does not say where they are."""
 
 
 @fileio.resource_limits()
@@ -86,10 +101,12 @@ def scene_episode_bytes(episode: SceneEpisode) -> bytes:
     columns = {
         "time": episode.times,
         "position": episode.positions,
+        "entities": None if episode.entities is None else episode.entities.places,
         **{name: getattr(episode, name) for name in ("actions", "signals", "atoms", "states", "progress", "rewards")},
     }
-    formats = ARRAYS if episode.positions is None else (*ARRAYS, POSITION)
-    known = _sizes(episode.layout, episode.fspa, len(episode.actions))
+    formats = [array for array in _ARRAYS if columns[array.name] is not None]
+    names = () if episode.entities is None else episode.entities.names
+    known = _sizes(episode.layout, episode.fspa, len(episode.actions), len(names))
     arrays = {
         array.name: np.asarray(columns[array.name], dtype=array.dtype).reshape(array.actual_shape(known))
         for array in formats
@@ -102,14 +119,15 @@ def scene_episode_from_bytes(data: bytes, name: str) -> SceneEpisode:
 
     Raises the errors of :func:`read_scene_episode`, except TLT0001.
     """
-    archive = RecordingArchive(data, name, [array.name for array in (*ARRAYS, POSITION)])
+    archive = RecordingArchive(data, name, [array.name for array in _ARRAYS])
     try:
         meta = from_json(SceneMeta, archive.meta(SCENE_FORMAT, VERSION), "meta")
     except (RecordJsonError, ValueError, RecursionError) as error:
         raise ERRORS.broken_error(name, str(error)) from None
     fspa = archive.automaton()
-    formats = (*ARRAYS, POSITION) if meta.has_positions else ARRAYS
-    arrays = archive.arrays(formats, _sizes(meta.layout, fspa, archive.row_count("actions")))
+    formats = [*ARRAYS, *([POSITION] if meta.has_positions else []), *([] if meta.entities is None else [ENTITIES])]
+    sizes = _sizes(meta.layout, fspa, archive.row_count("actions"), len(meta.entities or ()))
+    arrays = archive.arrays(formats, sizes)
     _check(arrays, meta, fspa, name)
     return SceneEpisode(
         level=meta.level,
@@ -132,6 +150,7 @@ def scene_episode_from_bytes(data: bytes, name: str) -> SceneEpisode:
         killer=meta.killer,
         reward=meta.reward,
         versions=meta.versions,
+        entities=None if meta.entities is None else EntityPositions(meta.entities, arrays["entities"]),
     )
 
 
@@ -153,21 +172,23 @@ def _meta(episode: SceneEpisode) -> SceneMeta:
         layout=episode.layout,
         # Keep the file name only: the folder means nothing on another machine.
         level=replace(level, place="", spec=spec and replace(spec, file=Path(spec.file.name))),
+        entities=None if episode.entities is None else episode.entities.names,
     )
 
 
-def _sizes(layout: ActionLayout, fspa: Fspa, count: int) -> dict[str, int]:
+def _sizes(layout: ActionLayout, fspa: Fspa, count: int, entities: int) -> dict[str, int]:
     return {
         "n": count,
         "n + 1": count + 1,
         "width": layout.width,
         "signals": len(fspa.signals),
         "atoms": len(fspa.atoms),
+        "entities": entities,
     }
 
 
 def _check(arrays: Arrays, meta: SceneMeta, fspa: Fspa, name: str) -> None:
-    """Raise TltlError, TLT0822, if a state or a choice is out of range, or if time does not go on."""
+    """Raise TltlError, TLT0822, if a value is out of range, if time does not go on, or if the outline is wrong."""
     choices: NDArray[np.float64] = arrays["actions"][:, : len(meta.layout.sizes)]
     if ((choices < 0) | (choices >= np.array(meta.layout.sizes)) | (choices != np.rint(choices))).any():
         raise ERRORS.broken_error(name, "the array `actions` has invalid values")
@@ -177,3 +198,9 @@ def _check(arrays: Arrays, meta: SceneMeta, fspa: Fspa, name: str) -> None:
         raise ERRORS.broken_error(name, "the array `time` has invalid values")
     if meta.seed < 0:
         raise ERRORS.broken_error(name, "`meta.seed` is below 0")
+    gone = np.isnan(arrays["entities"]) if "entities" in arrays else np.zeros((0, 0, 3), dtype=np.bool_)
+    if (gone.any(axis=2) != gone.all(axis=2)).any():
+        raise ERRORS.broken_error(name, "the array `entities` has invalid values")
+    problem = None if meta.level.outline is None else outline_problem(meta.level.outline)
+    if problem is not None:
+        raise ERRORS.broken_error(name, f"`meta.level.outline` {problem}")

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from tltl_runtime.game.geometry import Region
+from tltl_runtime.game.geometry import Box, Point, Region
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.game.outline import Outline
 from tltl_runtime.game.sensors import Sensors
 from tltlc.api import record
 
@@ -30,6 +31,10 @@ class SceneLevel:
     file and the scene's files that can change an episode. ``files`` has the name and the SHA-256 of
     each of these files; the game file is the first. ``place`` says where the scene can be played:
     ``FILE.game.toml:SCENE``. It is empty for the level of a recording.
+
+    The level of a recording has the ``outline`` that the game showed in the episode; it is None if the
+    game shows none, or before it was played. ``landmarks`` are the entities that did not move in an
+    episode, with their places.
     """
 
     json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
@@ -42,6 +47,8 @@ class SceneLevel:
     content_hash: str
     files: tuple[tuple[str, str], ...]
     place: str = ""
+    outline: Outline | None = None
+    landmarks: tuple[tuple[str, Point], ...] = ()
 
     @property
     def game(self) -> GymnasiumGame:
@@ -56,10 +63,11 @@ class SceneLevel:
         return _NO_SENSORS
 
     @property
-    def bounds(self) -> None:
-        """Unknown."""
+    def bounds(self) -> Box | None:
+        """The bounds of the outline; None if there is none."""
+        return None if self.outline is None else self.outline.bounds
 
     @property
     def regions(self) -> tuple[Region, ...]:
-        """None: a game file names no parts of a scene."""
-        return ()
+        """The regions of the outline; none without an outline."""
+        return () if self.outline is None else self.outline.regions

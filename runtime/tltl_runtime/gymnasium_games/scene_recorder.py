@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import isfinite
-from typing import Any, SupportsFloat
+from typing import Any
 
 import gymnasium
 import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
 from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.game.geometry import Point
+from tltl_runtime.game.outline import Outline
 from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end
+from tltl_runtime.gymnasium_games.entity_positions import (
+    PLAYER,
+    EntityPositions,
+    PositionsError,
+    entity_positions,
+)
+from tltl_runtime.gymnasium_games.game_errors import RAISES
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.policies.spaces.action_layout import action_layout
 from tltl_runtime.policies.spaces.values import flat_action
-from tltlc.api import Diagnostic, Step, TltlError
+from tltlc.api import Diagnostic, Step, TltlError, replace
 
 
 class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
@@ -35,7 +42,6 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
         self._player = player
         self._layout = action_layout(env.action_space)
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
-        self._has_positions = env.has_wrapper_attr("tltl_positions")
         self._has_cause = env.has_wrapper_attr("tltl_cause")
         self._rows: _Rows | None = None
         self._over = False
@@ -49,7 +55,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
         last = rows.steps[-1] if rows.steps else None
         clock_s = self.env.get_wrapper_attr("tltl_clock_s") if self.env.has_wrapper_attr("tltl_clock_s") else 1.0
         return SceneEpisode(
-            level=self.env.get_wrapper_attr("level"),
+            level=replace(self.env.get_wrapper_attr("level"), outline=rows.outline),
             fspa=task.fspa,
             params=dict(task.params),
             player=self._player,
@@ -57,7 +63,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
             layout=self._layout,
             actions=np.array(rows.actions, dtype=np.float64).reshape(count, self._layout.width),
             times=np.arange(count + 1) * clock_s,
-            positions=np.array(rows.positions, dtype=np.float64) if self._has_positions else None,
+            positions=np.array(rows.player, dtype=np.float64) if rows.player else None,
             signals=np.array(rows.signals, dtype=np.float64).reshape(count + 1, len(self._names)),
             atoms=np.array(rows.atoms, dtype=np.float64).reshape(count, len(task.fspa.atoms)),
             states=np.array([0, *(step.state for step in rows.steps)], dtype=np.int32),
@@ -69,6 +75,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
             killer=rows.killer,
             reward=task.reward,
             versions=versions(),
+            entities=self._entities(rows),
         )
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -76,7 +83,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
         if seed is None:
             seed = int(self.np_random.integers(1 << 31))
         observation, info = self.env.reset(seed=seed, options=options)
-        self._rows, self._over = _Rows(seed), False
+        self._rows, self._over = _Rows(seed, self.env.get_wrapper_attr("scene_outline")()), False
         self._add_moment(self._rows)
         return observation, info
 
@@ -103,20 +110,36 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
     def _add_moment(self, rows: _Rows) -> None:
         sample = self._judge.sample
         rows.signals.append([float(sample[name]) for name in self._names])
-        if self._has_positions:
-            rows.positions.append(player_position(self.env.get_wrapper_attr("tltl_positions")()))
+        places = self.env.get_wrapper_attr("scene_positions")()
+        if places is not None:
+            # A player that is gone stays where it was last.
+            rows.player.append(places[PLAYER] if PLAYER in places else rows.player[-1])
+            rows.entities.append(places)
+
+    def _entities(self, rows: _Rows) -> EntityPositions | None:
+        """Return where the entities were; None if the game does not say it."""
+        if not rows.entities:
+            return None
+        try:
+            return entity_positions(rows.entities)
+        except PositionsError as error:
+            title = f"the game's `tltl_positions` {error}"
+            raise TltlError([Diagnostic(RAISES, title, help=error.help)]) from None
 
 
 class _Rows:
     """The data of an episode that is still being played, with a row for each step.
 
-    ``signals`` and ``positions`` have one more row: the first is for the moment of the reset.
+    ``signals``, and ``player`` and ``entities`` if the game says where things are, have one more row:
+    the first is for the moment of the reset. ``outline`` is that of the scene in this episode.
     """
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, outline: Outline | None) -> None:
         self.seed = seed
+        self.outline = outline
         self.signals: list[list[float]] = []
-        self.positions: list[tuple[float, float, float]] = []
+        self.player: list[Point] = []
+        self.entities: list[dict[str, Point]] = []
         self.actions: list[list[float]] = []
         self.atoms: list[tuple[float, ...]] = []
         self.steps: list[Step] = []
@@ -128,19 +151,3 @@ class _Rows:
         self.atoms.append(atoms)
         self.steps.append(step)
         self.success = success
-
-
-def player_position(positions: Mapping[str, Sequence[SupportsFloat]]) -> tuple[float, float, float]:
-    """Return the position of the ``player`` among those that a game gives; z is 0 if it gives x and y alone.
-
-    Raises:
-        TltlError: TLT0781, there is no position of the player, or it is not two or three finite numbers.
-    """
-    place = positions.get("player")
-    numbers = [] if place is None else [float(number) for number in place]
-    if len(numbers) not in (2, 3) or not all(map(isfinite, numbers)):
-        title = "the game's `tltl_positions` gives no position of `player`"
-        help_ = "return two or three numbers for it: `{'player': (1.0, 2.0)}`"
-        raise TltlError([Diagnostic("TLT0781", title, help=help_)])
-    x, y, z = (*numbers, 0.0)[:3]
-    return x, y, z

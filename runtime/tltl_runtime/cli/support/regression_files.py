@@ -164,15 +164,17 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         )
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
-    level = case.prepared.level
-    episodes = _episodes(case.report, level.game, case_folder(suite, case.report.name, folder / CASES))
+    game = case.prepared.level.game
+    episodes = _episodes(case.report, game, case_folder(suite, case.report.name, folder / CASES))
+    # What a game shows only when it is played is in the recordings.
+    level = game.played_level(case.prepared.level, episodes[min(episodes)]) if episodes else case.prepared.level
     reported = ReportedCase(
         report=case.report,
         level=level,
         fspa=case.prepared.setup.fspa,
         episodes=episodes,
         before=case.reference.episodes,
-        baseline_level=_baseline_level(case.prepared, case.reference),
+        baseline_level=_baseline_level(level, case.prepared, case.reference),
         curve=_curve(case, folder),
     )
     if maps_of(reported) is not None:
@@ -180,12 +182,15 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
     return replace(reported, curves={index: episode_curves(index, episodes[index]) for index in episodes})
 
 
-def _baseline_level(ready: PreparedCase, reference: Reference) -> Level | None:
-    """Return the level on which a reference was recorded; None if it is unknown.
+def _baseline_level(level: Level, ready: PreparedCase, reference: Reference) -> Level | None:
+    """Return the level on which a reference was recorded; None if it is unknown, or has no bounds.
 
-    If the level has changed since, it is loaded from the texts in the baseline.
+    If ``level``, which was played now, has changed since, it is loaded from the texts in the baseline.
     """
-    return ready.level if ready.played.files == reference.played.files else baseline_level(reference)
+    if ready.played.files == reference.played.files:
+        return level
+    loaded = baseline_level(reference)
+    return None if loaded is None or loaded.bounds is None else loaded
 
 
 def _curve(case: FinishedCase, folder: Path) -> bytes:

@@ -24,7 +24,7 @@ from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
-from tltlc.api import Diagnostic, TltlError, fileio, record
+from tltlc.api import Diagnostic, TltlError, fileio, record, replace
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
 """A callback after each episode: the case, the number of episodes so far, and the last episode."""
@@ -161,8 +161,15 @@ def judge_case(
             judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
                 check_unedited(prepared)
-                return JudgedCase(prepared, reference, judgement, tuple(played))
+                return JudgedCase(_as_played(prepared, played[0]), reference, judgement, tuple(played))
     raise AssertionError("the last episode settles every verdict")
+
+
+def _as_played(prepared: PreparedCase, episode: CaseEpisode) -> PreparedCase:
+    """Return a case whose level has what an episode showed of it."""
+    game = prepared.level.game
+    recorded = game.episode_from_bytes(episode.recording, _PLAYER)
+    return replace(prepared, level=game.played_level(prepared.level, recorded))
 
 
 def _check_unedited(prepared: PreparedCase, level: Level) -> None:
