@@ -9,6 +9,7 @@ from functools import cache
 from io import BytesIO
 from pathlib import Path
 from random import Random
+from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 import numpy as np
@@ -18,8 +19,10 @@ from hypothesis import given
 
 from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, mutated_text, times
 from tests.interfaces.cli.conftest import ROOT
+from tests.runtime.gymnasium_games import vault
 from tests.runtime.gymnasium_games.games import GAME, GRID
 from tests.runtime.gymnasium_games.games import write as write_game
+from tests.runtime.gymnasium_games.vault_episodes import played
 from tests.runtime.policies.spaces.space_policies import policy_of_spaces
 from tests.runtime.policies.spaces.test_space_policy import GRID as GRID_SPACES
 from tests.runtime.policies.spaces.test_space_policy import MIXED
@@ -27,8 +30,10 @@ from tests.runtime.training.runs import run_in
 from tltl_runtime.game.recording_check import check as check_episode
 from tltl_runtime.game.recording_summary import summary as episode_summary
 from tltl_runtime.game.recording_summary import summary_text as episode_summary_text
+from tltl_runtime.game.registry import GYMNASIUM, STEALTH, game_named
 from tltl_runtime.game.trace import monitor_command, trace_csv
 from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
+from tltl_runtime.gymnasium_games.scene_episode_file import scene_episode_bytes
 from tltl_runtime.gymnasium_games.scene_hash import scene_hash
 from tltl_runtime.policies.file import from_bytes as policy_from_bytes
 from tltl_runtime.policies.file import read_policy
@@ -44,8 +49,6 @@ from tltl_runtime.regression.verdict.baseline import read_baseline
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
 from tltl_runtime.stealth.levels.file import read_level
-from tltl_runtime.stealth.recordings.figures import figures
-from tltl_runtime.stealth.recordings.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.recordings.file import to_bytes as episode_to_bytes
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, read_checkpoint, write_checkpoint
@@ -55,6 +58,7 @@ from tltl_runtime.training.files.run_file import CHECKPOINT, RECORD, RUN, identi
 from tltl_runtime.training.files.settings import read_settings
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes
 
+KINDS: Final = ("stealth", "scene")
 FOLDER: Final = ROOT / "runtime" / "tltl_runtime"
 SUITE: Final = """\
 seed = 3
@@ -171,25 +175,36 @@ def test_a_damaged_file_of_settings_is_read_or_rejected(seed: int, folder: Path)
 
 
 @cache
-def _arrays() -> dict[str, np.ndarray[Any, Any]]:
-    """The arrays of a recording."""
+def _arrays(kind: str = "stealth") -> dict[str, np.ndarray[Any, Any]]:
+    """The arrays of a recording of the stealth game, or of the ``scene`` of a game file."""
+    data = _stealth_recording() if kind == "stealth" else _scene_recording()
+    with np.load(BytesIO(data)) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def _scene_recording() -> bytes:
+    with TemporaryDirectory() as folder:
+        return scene_episode_bytes(played(vault.write(Path(folder)), scene="tiled"))
+
+
+def _stealth_recording() -> bytes:
     env = RecordEpisode(make_env("cover_and_hide"), "dice")
     env.reset(seed=7)
     for _ in range(12):
         env.step([1, 1, 0, 0, 0])
     data = episode_to_bytes(env.episode)
     env.close()
-    with np.load(BytesIO(data)) as archive:
-        return {name: archive[name] for name in archive.files}
+    return data
 
 
-def _read_recording(data: bytes) -> None:
+def _read_recording(data: bytes, kind: str) -> None:
     """Read a recording and produce all that `tltlc replay` prints without simulating it again."""
+    game = game_named(STEALTH if kind == "stealth" else GYMNASIUM)
 
     def read() -> None:
-        episode = episode_from_bytes(data, "it.episode.npz")
+        episode = game.episode_from_bytes(data, "it.episode.npz")
         summary = episode_summary(episode)
-        episode_summary_text(summary, figures(episode))
+        episode_summary_text(summary, game.figures(episode))
         trace_csv(episode)
         monitor_command(episode, "it.csv")
         check_episode(episode)
@@ -206,26 +221,29 @@ def _packed(arrays: dict[str, np.ndarray[Any, Any]]) -> bytes:
 @given(seed=SEEDS)
 @times(100)
 def test_a_recording_with_damaged_bytes_is_read_or_rejected(seed: int) -> None:
-    _read_recording(mutated_bytes(Random(seed), _packed(_arrays())))
+    kind = KINDS[seed % len(KINDS)]
+    _read_recording(mutated_bytes(Random(seed), _packed(_arrays(kind))), kind)
 
 
 @given(seed=SEEDS)
 @times(60)
 def test_a_recording_with_a_damaged_text_is_read_or_rejected(seed: int) -> None:
-    random, arrays = Random(seed), dict(_arrays())
+    random, kind = Random(seed), KINDS[seed % len(KINDS)]
+    arrays = dict(_arrays(kind))
     name = random.choice(("meta", "meta", "artefact"))
     document = json.loads(arrays[name].tobytes())
     text = mutated_json(random, document).encode("utf-8", "surrogatepass")
-    _read_recording(_packed({**arrays, name: np.frombuffer(text, np.uint8)}))
+    _read_recording(_packed({**arrays, name: np.frombuffer(text, np.uint8)}), kind)
 
 
 @given(seed=SEEDS)
 @times(60)
 def test_a_recording_with_another_array_is_read_or_rejected(seed: int) -> None:
-    random, arrays = Random(seed), dict(_arrays())
+    random, kind = Random(seed), KINDS[seed % len(KINDS)]
+    arrays = dict(_arrays(kind))
     name = random.choice(list(arrays))
     changed = _other_array(random, arrays[name].copy())
-    _read_recording(_packed({**arrays, name: changed}))
+    _read_recording(_packed({**arrays, name: changed}), kind)
 
 
 def _other_array(random: Random, array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
