@@ -6,17 +6,19 @@ from collections.abc import Callable
 from time import monotonic
 from typing import Any, Final
 
+from tltl_runtime.game.hud import Hud, end_screen
 from tltl_runtime.game.keyboard import Recordings
 from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.game.window import Window
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import VIEWS, View
-from tltl_runtime.stealth.rendering.hud import Hud, end_screen, hud, start_screen
+from tltl_runtime.stealth.rendering.hud import hud, start_screen
 from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.rendering.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
-from tltl_runtime.stealth.window.window import Keys, Window
+from tltl_runtime.stealth.window.keys import KeyReader, Keys
 from tltl_runtime.stealth.world.player import DECISION
 
 _IDLE: Final = (0, 0, 0, 0, 0)
@@ -31,8 +33,8 @@ _FRAME_TIME: Final = 1 / 60
 class KeyboardPlayer:
     """Lets a person play episodes of ``env`` in ``window``, and passes them to ``recordings``.
 
-    ``renderer`` draws the frames; ``view`` is the first camera view. Play ends when the person
-    stops, or when ``enough()`` is true after an episode.
+    ``reader`` reads the keys of the window. ``renderer`` draws the frames; ``view`` is the first
+    camera view. Play ends when the person stops, or when ``enough()`` is true after an episode.
 
     ``recordings.save`` gets each episode once: at its end, when the person restarts, or when play
     stops for any reason, including an exception such as KeyboardInterrupt. ``recordings.keep`` gets
@@ -43,6 +45,7 @@ class KeyboardPlayer:
         self,
         env: EpisodeRecorder[Episode],
         window: Window,
+        reader: KeyReader,
         renderer: Renderer,
         view: View,
         recordings: Recordings,
@@ -50,7 +53,7 @@ class KeyboardPlayer:
     ) -> None:
         game = env.unwrapped
         assert isinstance(game, GameEnv)
-        self._env, self._game, self._window, self._renderer = env, game.game, window, renderer
+        self._env, self._game, self._window, self._reader, self._renderer = env, game.game, window, reader, renderer
         self._recordings, self._enough = recordings, enough
         self._view = view
         self._unsaved = False
@@ -121,7 +124,7 @@ class KeyboardPlayer:
             self._window.wait(_STILL_WAIT)
 
     def _keys(self) -> Keys:
-        keys = self._window.keys()
+        keys = self._reader.keys()
         if keys.view:
             self._view = VIEWS[(VIEWS.index(self._view) + 1) % len(VIEWS)]
         return keys

@@ -31,15 +31,17 @@ class StealthKeyboard(Keyboard[Episode]):
         enough: Callable[[], bool],
     ) -> None:
         """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true."""
+        from tltl_runtime.game.window import Window
         from tltl_runtime.stealth.keyboard import KeyboardPlayer
         from tltl_runtime.stealth.rendering.render import Renderer
-        from tltl_runtime.stealth.window.window import Window
+        from tltl_runtime.stealth.window.keys import KeyReader
 
         level = env.get_wrapper_attr("level")
-        window = Window(f"{level.name} {level.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
+        window = Window(f"{level.name} {level.variant}", _SIZE, side=True)
+        reader = KeyReader(window, sticky_crouch=crouch == "toggle")
         renderer = Renderer(level, *_SIZE)
         try:
-            KeyboardPlayer(env, window, renderer, cast(View, view), recordings, enough).play(seed)
+            KeyboardPlayer(env, window, reader, renderer, cast(View, view), recordings, enough).play(seed)
         finally:
             renderer.close()
             window.close()

@@ -109,7 +109,7 @@ def log_what_happens(place: Path) -> None:
     import pygame
 
     from tltl_runtime.stealth.episode_recorder import RecordEpisode
-    from tltl_runtime.stealth.window.window import Keys, Window
+    from tltl_runtime.stealth.window.keys import KeyReader, Keys
 
     file = place.open("a", encoding="utf-8")
 
@@ -117,7 +117,7 @@ def log_what_happens(place: Path) -> None:
         file.write(f"{json.dumps(fields)}\n")
         file.flush()
 
-    reset, step, look, events = RecordEpisode.reset, RecordEpisode.step, Window.keys, pygame.event.get
+    reset, step, look, events = RecordEpisode.reset, RecordEpisode.step, KeyReader.keys, pygame.event.get
     start = [0.0, 0.0]
 
     def place_of(env: RecordEpisode) -> Sequence[float]:
@@ -136,8 +136,8 @@ def log_what_happens(place: Path) -> None:
         log(stepped=[int(part) for part in action], x=x, y=y)
         return result
 
-    def logged_look(window: Window) -> Keys:
-        keys_now = look(window)
+    def logged_look(reader: KeyReader) -> Keys:
+        keys_now = look(reader)
         log(looked=list(keys_now.action), view=keys_now.view)
         return keys_now
 
@@ -148,7 +148,7 @@ def log_what_happens(place: Path) -> None:
         return new_events
 
     RecordEpisode.reset, RecordEpisode.step = logged_reset, logged_step  # type: ignore[method-assign]
-    Window.keys = logged_look  # type: ignore[method-assign]
+    KeyReader.keys = logged_look  # type: ignore[method-assign]
     pygame.event.get = logged_events
 
 

@@ -1,1 +1,1 @@
-"""The game in a window. Begin with `window`."""
+"""The stealth game in a window. Begin with `screen`."""

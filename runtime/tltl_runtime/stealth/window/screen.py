@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from tltl_runtime.game.window import Window
     from tltl_runtime.stealth.rendering.render import Renderer
     from tltl_runtime.stealth.snapshot import Snapshot
-    from tltl_runtime.stealth.window.window import Window
 
 MODES: Final = ("human", "rgb_array")
 
@@ -68,7 +68,7 @@ class Screen:
         return None
 
     def _open(self) -> None:
-        from tltl_runtime.stealth.window.window import NO_WINDOW, Window
+        from tltl_runtime.game.window import NO_WINDOW, Window
 
         try:
             self._window = Window(f"{self.level.name} {self.level.variant}", self.size)

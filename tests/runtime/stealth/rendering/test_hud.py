@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from tltl_runtime.game.episode import Cause
+from tltl_runtime.game.hud import end_screen
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.rendering.hud import end_screen, hud, start_screen
+from tltl_runtime.stealth.rendering.hud import hud, start_screen
 from tltl_runtime.stealth.rendering.interpolation import interpolate
 from tltl_runtime.stealth.simulation import Simulation
 from tltlc import compile_text

@@ -1,4 +1,4 @@
-"""A window with a keyboard, made with pygame: it shows pictures and reads the keys.
+"""A window with a keyboard, made with pygame: it shows pictures of any game and reads the keys.
 
 No other module imports pygame; docs/adr/0010-pictures-and-windows.md explains the choice.
 """
@@ -6,13 +6,13 @@ No other module imports pygame; docs/adr/0010-pictures-and-windows.md explains t
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.rendering.hud import Hud, Tone
+from tltl_runtime.game.hud import Hud, Tone
 from tltl_runtime.support.quiet_stderr import silence
 from tltlc.api import Diagnostic, TltlError, record
 
@@ -45,34 +45,33 @@ Names = Sequence[tuple[str, float, float]]
 """Names and their positions, in pixels from the left and from the top."""
 
 
-@record
-class Keys:
-    """The player's input: an action of the game, and commands to the window.
+Key = str | int
+"""A key of the keyboard: its name in pygame, such as ``left`` or ``a``, or its number in pygame."""
 
-    The commands are to restart, to stop, and to change the view.
+
+@record
+class Pressed:
+    """What was done with some keys of the keyboard since they were last read.
+
+    ``held`` are the keys that are held; a key that was tapped counts as held, too. ``tapped`` are the
+    keys that were pressed, in this order. ``closed`` says whether the window was closed.
     """
 
-    action: tuple[int, int, int, int, int]
-    restart: bool = False
-    stop: bool = False
-    view: bool = False
+    held: frozenset[Key]
+    tapped: tuple[Key, ...]
+    closed: bool
 
 
 class Window:
     """A window for pictures of ``size`` (width, height); small pictures are enlarged.
 
-    With ``side``, the window has a panel for a head-up display beside the pictures. With
-    ``sticky_crouch``, one key press starts crouching, and the next one ends it.
-
-    Keys: arrows or WASD walk (up is north, away from the camera), space jumps, C or control
-    crouches, shift sprints, R restarts, V changes the view; Escape, Q or the window's close button
-    stop.
+    With ``side``, the window has a panel for a head-up display beside the pictures.
 
     Raises:
         TltlError: TLT0730, pygame is not installed; TLT0830, no window can be opened.
     """
 
-    def __init__(self, title: str, size: tuple[int, int], side: bool = False, sticky_crouch: bool = False) -> None:
+    def __init__(self, title: str, size: tuple[int, int], side: bool = False) -> None:
         pygame = self._pygame = _import_pygame()
         scale = max(1.0, _MIN_WIDTH / size[0])
         self.size = (round(size[0] * scale), round(size[1] * scale))
@@ -93,43 +92,29 @@ class Window:
         pygame.event.set_allowed((pygame.QUIT, pygame.KEYDOWN, pygame.KEYUP))
         self._clock = pygame.time.Clock()
         self._fonts: dict[int, Any] = {}
-        self._tapped: set[int] = set()
-        self._sticky, self._keeps_crouching = sticky_crouch, False
 
     def close(self) -> None:
         """Close the window; closing twice does nothing."""
         self._pygame.quit()
 
-    def keys(self) -> Keys:
-        """Return the current input. A key that was tapped since the last call counts as held."""
+    def read(self, keys: Collection[Key]) -> Pressed:
+        """Return what was done with ``keys`` since the last call; other keys that were pressed are forgotten.
+
+        Raises:
+            ValueError: pygame has no key with this name.
+        """
         pygame = self._pygame
-        stop = restart = view = False
-        crouches = (pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)
+        numbers = {key: key if isinstance(key, int) else pygame.key.key_code(key) for key in keys}
+        pressed: list[int] = []
+        closed = False
         for event in pygame.event.get():
-            if event.type == pygame.QUIT:
-                stop = True
-            elif event.type == pygame.KEYDOWN:
-                self._tapped.add(event.key)
-                stop = stop or event.key in (pygame.K_ESCAPE, pygame.K_q)
-                restart = restart or event.key == pygame.K_r
-                view = view or event.key == pygame.K_v
-                self._keeps_crouching ^= self._sticky and event.key in crouches
-        pressed, tapped = pygame.key.get_pressed(), self._tapped
-        self._tapped = set()
-
-        def held(*keys: int) -> bool:
-            return any(pressed[key] or key in tapped for key in keys)
-
-        east = held(pygame.K_d, pygame.K_RIGHT) - held(pygame.K_a, pygame.K_LEFT)
-        north = held(pygame.K_w, pygame.K_UP) - held(pygame.K_s, pygame.K_DOWN)
-        action = (
-            east % 3,
-            north % 3,
-            int(held(pygame.K_SPACE)),
-            int(self._keeps_crouching if self._sticky else held(*crouches)),
-            int(held(pygame.K_LSHIFT, pygame.K_RSHIFT)),
-        )
-        return Keys(action, restart, stop, view)
+            closed = closed or event.type == pygame.QUIT
+            if event.type == pygame.KEYDOWN:
+                pressed.append(event.key)
+        now = pygame.key.get_pressed()
+        held = frozenset(key for key, number in numbers.items() if now[number] or number in pressed)
+        tapped = tuple(key for press in pressed for key, number in numbers.items() if number == press)
+        return Pressed(held, tapped, closed)
 
     def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
         """Show a picture (height, width, 3), with entities' names in it and a head-up display."""
