@@ -31,11 +31,15 @@ def _keys() -> str:
 Keys:
 {_keys()}
 
+In a scene of a game file, `FILE.game.toml:SCENE`, the keys are those that `keys` in the game file names, one for each
+action; else those of the environment's `get_keys_to_action()`; else 1 to 9. R starts again; Escape stops.
+
 \b
 Examples:
   tltlc play cover_and_hide
   tltlc play branching:v1 --seed 7 -o mine.episode.npz
   tltlc play my_level.toml --spec my_plan.tltl:careful --view top_down
+  tltlc play lake.game.toml:small
 """
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
@@ -68,8 +72,8 @@ def _play(
 ) -> None:
     game = game_of(path)
     level = game.load_level(path, variant or "v0")
-    keyboard_of(level)
-    env = game.recorder(game.make_env(path, variant or "v0", spec), "keyboard")
+    mode = keyboard_of(level).render_mode
+    env = game.recorder(game.make_env(path, variant or "v0", spec, render_mode=mode), "keyboard")
     try:
         play_at_keyboard(env, level, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
     finally:

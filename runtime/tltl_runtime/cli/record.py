@@ -86,9 +86,8 @@ def command(
         file, variant = _level_and_variant(level, spec)
         game = game_of(file)
         loaded = game.load_level(file, variant)
-        if by == "keyboard":
-            keyboard_of(loaded)
-        env = game.recorder(game.make_env(file, variant, spec), by)
+        mode = keyboard_of(loaded).render_mode if by == "keyboard" else None
+        env = game.recorder(game.make_env(file, variant, spec, render_mode=mode), by)
         demonstrations: Demonstrations | None = None
         try:
             if by == "expert" and not game.has_expert(env):

@@ -32,6 +32,9 @@ class Keyboard(ABC, Generic[EpisodeT]):
     keys: tuple[str, ...]
     """Lines that say which key does what."""
 
+    render_mode: str | None = None
+    """The render mode that the environments need; None if the window draws without their help."""
+
     @abstractmethod
     def play(
         self,

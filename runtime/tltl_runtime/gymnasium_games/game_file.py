@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.gymnasium_games.key_names import COMMANDS, NAMES
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
+from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, specs
 
@@ -23,7 +25,7 @@ FIRST_VARIANT: Final = "v0"
 
 _HELP: Final = 'write values as in `clock = "10 Hz"` and `options = { size = 6 }`'
 _MODULE: Final = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z", re.ASCII)
-_GAME_KEYS: Final = ("gymnasium", "python", "import", "signals", "clock", "observation")
+_GAME_KEYS: Final = ("gymnasium", "python", "import", "signals", "clock", "observation", "keys")
 _SCENE_KEYS: Final = ("name", "options", "files", "spec", "variants")
 _IN_OTHER_PROCESSES: Final = ("process", "protocol", "connect", "start_s", "step_s")
 
@@ -72,8 +74,9 @@ class GameFile:
     the other one is None. ``modules`` are imported before, so that they register the id.
     ``signals`` is a function from an environment to its signals; None if the environment has a
     method ``tltl_signals``. ``clock_s`` are the seconds of a step; None if the file does not say.
-    ``observation`` are the keys of a Dict observation that agents see; empty for all. ``labels`` are
-    the places of the keys of ``[game]``.
+    ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` are the
+    keys of the keyboard with which a person chooses each action; empty for those of the environment,
+    or the digits. ``labels`` are the places of the keys of ``[game]``.
     """
 
     path: Path
@@ -83,6 +86,7 @@ class GameFile:
     signals: FunctionName | None
     clock_s: float | None
     observation: tuple[str, ...]
+    keys: tuple[str, ...]
     scenes: tuple[GameScene, ...]
     labels: Mapping[str, Label]
 
@@ -155,6 +159,7 @@ class _Reader:
             signals=_function(game, "signals"),
             clock_s=_clock_s(game),
             observation=game.names("observation", ()),
+            keys=_keys(game),
             scenes=scenes,
             labels={"game": game.label, **{key: entry.label for key, entry in game.entries.items()}},
         )
@@ -278,6 +283,22 @@ def _function(table: CheckedTable, key: str) -> FunctionName | None:
         table.log.append(wrong_value(table.entries[key], key, "MODULE:FUNCTION, e.g. `doorkey_signals:signals`"))
         return None
     return FunctionName(module, function)
+
+
+def _keys(game: CheckedTable) -> tuple[str, ...]:
+    """Return the keys of the keyboard; log an error for each that cannot choose an action."""
+    keys = game.names("keys", ())
+    for number, key in enumerate(keys):
+        if key in COMMANDS:
+            title, help_ = f"the key `{key}` cannot choose an action: it {COMMANDS[key]}", "name another key"
+        elif key not in NAMES:
+            title, help_ = f"there is no key `{key}`", suggestion(key, NAMES, 'e.g. "left", "a", "space" and "1"')
+        elif key in keys[:number]:
+            title, help_ = f"two actions have the key `{key}`", "name another key for one of them"
+        else:
+            continue
+        game.log.append(Diagnostic("TLT0803", title, (game.label_of("keys"),), help_))
+    return keys
 
 
 def _clock_s(table: CheckedTable) -> float | None:

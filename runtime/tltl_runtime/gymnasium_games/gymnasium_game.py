@@ -28,6 +28,7 @@ from tltl_runtime.gymnasium_games.scene_episode_file import (
 )
 from tltl_runtime.gymnasium_games.scene_files import SceneFiles
 from tltl_runtime.gymnasium_games.scene_films import SceneFilms
+from tltl_runtime.gymnasium_games.scene_keyboard import SceneKeyboard
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError, replace
@@ -38,6 +39,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
     level_files = SceneFiles()
     films = SceneFilms()
+    keyboard = SceneKeyboard()
     modules = (__name__, "tltl_runtime.gymnasium_games.scene_recorder", "tltl_runtime.gymnasium_games.scene_env")
 
     def load_level(self, name: str, variant: str | Variant = "v0") -> SceneLevel:

@@ -35,7 +35,8 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     """The environment of a scene without a spec.
 
     It has the method ``tltl_signals``, the ``tltl_clock_s`` of the game file, and only the keys of
-    the observation that the game file keeps. An exception of the game becomes a TltlError, TLT0781.
+    the observation that the game file keeps. ``game_file`` is what that file says. An exception of
+    the game becomes a TltlError, TLT0781.
 
     Raises:
         TltlError: TLT0803, the observation has no such key; TLT0780, the environment says no
@@ -46,7 +47,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         self, env: gymnasium.Env[Any, Any], game: GameFile, signals: Callable[..., Any] | None, scene_label: Label
     ) -> None:
         super().__init__(env)
-        self._game = game
+        self._game = self.game_file = game
         self._label = scene_label
         self._steps = 0
         if signals is None and not env.has_wrapper_attr("tltl_signals"):
@@ -185,8 +186,9 @@ def make_base_env(
     """Make an environment of a scene without a spec.
 
     Raises:
-        TltlError: TLT0800, there is no such scene or variant; TLT0730, a package is not installed;
-            TLT0780, the environment cannot be made; TLT0803, the observation has no such key.
+        TltlError: TLT0731, it has no such ``render_mode``; TLT0800, there is no such scene or variant;
+            TLT0730, a package is not installed; TLT0780, the environment cannot be made; TLT0803, the
+            observation has no such key.
     """
     own = variant_of(game, scene, variant)
     options = deepcopy(dict(own.options)) | ({} if render_mode is None else {"render_mode": render_mode})
@@ -196,7 +198,7 @@ def make_base_env(
         if game.python is not None:
             env = _from_function(game, import_function(game, game.python, "python"), scene, options, own)
         else:
-            env = _from_id(game, game.gymnasium or "", options, own)
+            env = _from_id(game, scene, options, own, render_mode)
         try:
             signals = import_function(game, game.signals, "signals") if game.signals else None
             _check_offers(game, env, own)
@@ -211,6 +213,9 @@ def _from_function(
 ) -> gymnasium.Env[Any, Any]:
     assert game.python is not None
     name = f"`{game.python.text}`"
+    if "render_mode" in options and "render_mode" not in own.options and not _takes(function, "render_mode"):
+        advice = f"give {name} an argument `render_mode`, and pass it on to the environment"
+        raise _no_pictures_error(scene, game.labels["python"], advice)
     _check_options(name, function, 1, options, own)
     with guarded(game, CANNOT_START, name, own.label):
         env = function(scene, **options)
@@ -221,8 +226,10 @@ def _from_function(
     return env
 
 
-def _from_id(game: GameFile, id_: str, options: dict[str, Any], own: SceneVariant) -> gymnasium.Env[Any, Any]:
-    label = game.labels["gymnasium"]
+def _from_id(
+    game: GameFile, scene: str, options: dict[str, Any], own: SceneVariant, render_mode: str | None
+) -> gymnasium.Env[Any, Any]:
+    id_, label = game.gymnasium or "", game.labels["gymnasium"]
     module, colon, name = id_.partition(":")
     if colon:
         import_module(game, module, "gymnasium")
@@ -239,6 +246,10 @@ def _from_id(game: GameFile, id_: str, options: dict[str, Any], own: SceneVarian
             creator: Any = registered.entry_point
             if isinstance(creator, str):
                 creator = gymnasium.envs.registration.load_env_creator(creator)
+            modes = (getattr(creator, "metadata", None) or {}).get("render_modes")
+            if render_mode is not None and modes is not None and render_mode not in modes:
+                advice = f'write a method `render()` for it, and `{render_mode}` in its `metadata["render_modes"]`'
+                raise _no_pictures_error(scene, label, advice)
             known = {key: value for key, value in options.items() if key not in _OWN_OPTIONS}
             if creator is not None:
                 _check_options(what, creator, 0, known, own)
@@ -253,6 +264,21 @@ def _from_id(game: GameFile, id_: str, options: dict[str, Any], own: SceneVarian
         except gymnasium.error.DependencyNotInstalled as error:
             title = f"{what} needs a package that is not installed"
             raise TltlError([Diagnostic("TLT0730", title, (label,), str(error))]) from error
+
+
+def _no_pictures_error(scene: str, label: Label, advice: str) -> TltlError:
+    """Return TLT0731: the environment of a scene cannot have the render mode that is needed."""
+    title = f"the game of `{scene}` renders no pictures (`render_mode` `rgb_array`)"
+    return TltlError([Diagnostic("TLT0731", title, (label,), advice)])
+
+
+def _takes(function: Callable[..., Any], name: str) -> bool:
+    """Whether a function takes a keyword argument; true if its arguments are unknown."""
+    try:
+        parameters = inspect.signature(function).parameters
+    except (TypeError, ValueError):  # a function of C code
+        return True
+    return name in parameters or any(parameter.kind == parameter.VAR_KEYWORD for parameter in parameters.values())
 
 
 def _check_options(

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import closing
+from typing import Final
 
 import numpy as np
 
-from tltl_runtime.game.capability_error import capability_error
 from tltl_runtime.game.films import Films, Picture
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltlc.api import Diagnostic, Notation, TltlError, label_text
+
+_ADVICE: Final = "write the signals instead: `tltlc replay RECORDING -o NAME.csv`"
 
 
 class SceneFilms(Films[SceneEpisode]):
@@ -29,6 +31,7 @@ class SceneFilms(Films[SceneEpisode]):
         """
         del view
         from tltl_runtime.gymnasium_games.frame_strip import with_strip
+        from tltl_runtime.gymnasium_games.scene_frame import scene_frame
         from tltl_runtime.gymnasium_games.scene_replay import play_again, replayed_env
 
         if not episode.level.place:
@@ -41,10 +44,7 @@ class SceneFilms(Films[SceneEpisode]):
                 count = int(np.count_nonzero(wanted == row))
                 if not count:
                     continue
-                frame = env.render()
-                if not isinstance(frame, np.ndarray) or frame.ndim != 3:
-                    advice = "write the signals instead: `tltlc replay RECORDING -o NAME.csv`"
-                    raise capability_error(episode.level, "renders no pictures (`render_mode` `rgb_array`)", advice)
+                frame = scene_frame(env, episode.level, _ADVICE)
                 state = int(episode.states[row])
                 text = f"{episode.times[row]:.2f} s  state {state}: {label_text(episode.fspa, state, notation)}"
                 picture = with_strip(frame, text, size)

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.hud import Hud, end_screen
 from tltl_runtime.game.keyboard import Recordings
+from tltl_runtime.game.play_session import PlaySession
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.window import Window
 from tltl_runtime.stealth.env import GameEnv
@@ -30,15 +31,11 @@ _FRAME_TIME: Final = 1 / 60
 """The shortest time between two frames, in seconds."""
 
 
-class KeyboardPlayer:
-    """Lets a person play episodes of ``env`` in ``window``, and passes them to ``recordings``.
+class KeyboardPlayer(PlaySession[Episode]):
+    """Lets a person play episodes of a level in ``window``, in real time.
 
     ``reader`` reads the keys of the window. ``renderer`` draws the frames; ``view`` is the first
-    camera view. Play ends when the person stops, or when ``enough()`` is true after an episode.
-
-    ``recordings.save`` gets each episode once: at its end, when the person restarts, or when play
-    stops for any reason, including an exception such as KeyboardInterrupt. ``recordings.keep`` gets
-    an unfinished episode every few seconds.
+    camera view. The other arguments are those of ``PlaySession``.
     """
 
     def __init__(
@@ -53,23 +50,11 @@ class KeyboardPlayer:
     ) -> None:
         game = env.unwrapped
         assert isinstance(game, GameEnv)
-        self._env, self._game, self._window, self._reader, self._renderer = env, game.game, window, reader, renderer
-        self._recordings, self._enough = recordings, enough
+        super().__init__(env, recordings, enough)
+        self._game, self._window, self._reader, self._renderer = game.game, window, reader, renderer
         self._view = view
-        self._unsaved = False
-
-    def play(self, seed: int | None) -> None:
-        """Play until the person stops; ``seed`` is the seed of the first episode."""
-        going = True
-        try:
-            while going:
-                going = self._episode(seed) and not self._enough()
-                seed = None
-        finally:
-            self._save()
 
     def _episode(self, seed: int | None) -> bool:
-        """Play one episode; return whether the person wants another."""
         _, info = self._env.reset(seed=seed)
         snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
         keys = self._show_still(snapshot, start_screen(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
@@ -132,12 +117,3 @@ class KeyboardPlayer:
     def _show(self, snapshot: Snapshot, display: Hud) -> None:
         names = self._renderer.names(snapshot, self._view)
         self._window.show(self._renderer.frame(snapshot, self._view), display, names)
-
-    def _save(self) -> str | None:
-        """Save the episode and return the name of its file; None if nothing new has been played."""
-        if not self._unsaved:
-            return None
-        file = self._recordings.save(self._env.episode)
-        # Set this last: if saving is interrupted, the next call must save again.
-        self._unsaved = False
-        return file

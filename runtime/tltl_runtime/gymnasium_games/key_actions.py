@@ -1,0 +1,150 @@
+"""Which keys of the keyboard choose which actions of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from enum import EnumMeta
+from math import isfinite
+from textwrap import wrap
+from typing import Any, Final
+
+import gymnasium
+from gymnasium import spaces
+
+from tltl_runtime.game.capability_error import capability_error
+from tltl_runtime.game.hud import LONG
+from tltl_runtime.game.level import Level
+from tltl_runtime.game.window import Key
+from tltl_runtime.gymnasium_games.game_errors import RAISES, guarded
+from tltl_runtime.gymnasium_games.game_file import GameFile
+from tltl_runtime.gymnasium_games.key_names import named_key
+from tltl_runtime.gymnasium_games.space_text import space_text
+from tltlc.api import Diagnostic, TltlError, record
+
+_DIGITS: Final = "123456789"
+_USUAL_STEP_S: Final = 0.1
+
+
+@record
+class KeyActions:
+    """The action of each combination of keys.
+
+    If there is an action without a key, ``idle``, the game goes on by itself: a step takes
+    ``step_s`` seconds, and its action is that of the keys that are held. Else the game waits, and
+    each press of a key is a step. ``lines`` say which key does what.
+    """
+
+    actions: Mapping[frozenset[Key], int]
+    idle: int | None
+    step_s: float
+    lines: tuple[str, ...]
+
+    @property
+    def keys(self) -> frozenset[Key]:
+        """All keys that belong to actions."""
+        return frozenset().union(*self.actions)
+
+    def of_held(self, held: Collection[Key]) -> int:
+        """Return the action of the largest combination that is held, and else the one without a key."""
+        assert self.idle is not None
+        possible = [keys for keys in self.actions if keys <= frozenset(held)]
+        return self.actions[max(possible, key=len)] if possible else self.idle
+
+
+def key_actions(env: gymnasium.Env[Any, Any], level: Level) -> KeyActions:
+    """Return the keys for the actions of ``env``, an environment of the scene ``level``.
+
+    They are the keys that the game file names, else those of the environment's method
+    ``get_keys_to_action``, else the digits from 1.
+
+    Raises:
+        TltlError: TLT0731, keys cannot choose an action; TLT0803, the game file names more or fewer
+            keys than there are actions; TLT0781, ``get_keys_to_action`` fails.
+    """
+    space = env.action_space
+    if not isinstance(space, spaces.Discrete):
+        lack = f"has no actions that keys can choose: an action is {space_text(space)}, and keys need a Discrete space"
+        raise capability_error(level, lack, "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`")
+    game: GameFile = env.get_wrapper_attr("game_file")
+    if game.keys:
+        check_key_count(game, level.name, space)
+        return _one_by_one(env, space, game.keys)
+    own = _own_keys(env, space, game)
+    if own:
+        return own
+    if space.n > len(_DIGITS):
+        lack = f"has {space.n} actions, too many for the digits 1 to 9"
+        raise capability_error(level, lack, 'name a key for each action in the game file: `keys = ["left", …]`')
+    return _one_by_one(env, space, tuple(_DIGITS[: space.n]))
+
+
+def check_key_count(game: GameFile, scene: str, space: spaces.Space[Any]) -> None:
+    """Raise TltlError, TLT0803, if a game file names keys, but not one for each action of a scene."""
+    if not game.keys or (isinstance(space, spaces.Discrete) and len(game.keys) == space.n):
+        return
+    count = f"{len(game.keys)} key{'s' * (len(game.keys) != 1)}"
+    title = f"`keys` has {count}, but an action of the scene `{scene}` is {space_text(space)}"
+    help_ = "leave out `keys`: only a Discrete space has actions for keys"
+    if isinstance(space, spaces.Discrete):
+        help_ = f"name {space.n} keys, one for each action, in the order of the actions"
+    raise TltlError([Diagnostic("TLT0803", title, (game.labels["keys"],), help_)])
+
+
+def _one_by_one(env: gymnasium.Env[Any, Any], space: spaces.Discrete, keys: tuple[str, ...]) -> KeyActions:
+    """Return the keys of a game that waits for each key."""
+    actions: dict[frozenset[Key], int] = {frozenset([key]): int(space.start) + i for i, key in enumerate(keys)}
+    return KeyActions(actions, None, step_seconds(env), _lines(env, space, actions))
+
+
+def _own_keys(env: gymnasium.Env[Any, Any], space: spaces.Discrete, game: GameFile) -> KeyActions | None:
+    """Return the keys that an environment names itself; None if it names none."""
+    if not env.has_wrapper_attr("get_keys_to_action"):
+        return None
+    label, what = game.labels["game"], "the game's `get_keys_to_action`"
+    with guarded(game, RAISES, what, label):
+        mapping = env.get_wrapper_attr("get_keys_to_action")()
+        combinations = {_combination(keys): int(action) for keys, action in mapping.items()}
+    wrong = [action for action in combinations.values() if not space.contains(action)]
+    if wrong:
+        title = f"{what} names the action {wrong[0]}, which is not in {space_text(space)}"
+        raise TltlError([Diagnostic(RAISES, title, (label,), "give each combination of keys an action of the space")])
+    idle = combinations.pop(frozenset(), int(space.start))
+    if not combinations:
+        return None
+    return KeyActions(combinations, idle, step_seconds(env), _lines(env, space, combinations))
+
+
+def _combination(keys: object) -> frozenset[Key]:
+    """Return keys as Gymnasium has them: a number, a text of characters, or several of these."""
+    return frozenset(map(named_key, keys)) if isinstance(keys, (tuple, list, str)) else frozenset([named_key(keys)])  # type: ignore[arg-type]
+
+
+def step_seconds(env: gymnasium.Env[Any, Any]) -> float:
+    """Return the seconds of a step of a game that goes on by itself: its clock, or the rate of its frames."""
+    if env.has_wrapper_attr("tltl_clock_s"):
+        return float(env.get_wrapper_attr("tltl_clock_s"))
+    rate = (env.metadata or {}).get("render_fps")
+    return 1.0 / rate if isinstance(rate, (int, float)) and isfinite(rate) and rate > 0 else _USUAL_STEP_S
+
+
+def _lines(
+    env: gymnasium.Env[Any, Any], space: spaces.Discrete, actions: Mapping[frozenset[Key], int]
+) -> tuple[str, ...]:
+    names = _action_names(env, space)
+    texts = []
+    for keys, action in actions.items():
+        held = "+".join(sorted(key if isinstance(key, str) else f"key {key}" for key in keys))
+        texts.append(f"{held}: {names[action - int(space.start)]}")
+    # A space that does not break keeps a key and its action in one line.
+    joined = "   ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
+    return tuple(line.replace("\N{NO-BREAK SPACE}", " ") for line in wrap(joined, LONG))
+
+
+def _action_names(env: gymnasium.Env[Any, Any], space: spaces.Discrete) -> list[str]:
+    """Return a name for each action: as the environment has it, or else ``action N``."""
+    names: list[str] = []
+    if env.has_wrapper_attr("get_action_meanings"):
+        names = [str(name).lower() for name in env.get_wrapper_attr("get_action_meanings")()]
+    elif isinstance(members := getattr(env.unwrapped, "actions", None), EnumMeta):
+        names = [str(name) for name in members.__members__]
+    return names if len(names) == space.n else [f"action {space.start + number}" for number in range(int(space.n))]

@@ -1,0 +1,143 @@
+"""Let a person play a scene in a window, and record every episode."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from textwrap import wrap
+from time import monotonic
+from typing import Any, Final
+
+from tltl_runtime.game.hud import LONG, Bar, Hud, Line, clock_text, end_screen, goal_lines
+from tltl_runtime.game.keyboard import Recordings
+from tltl_runtime.game.play_session import PlaySession
+from tltl_runtime.game.recorder import EpisodeRecorder
+from tltl_runtime.game.window import Window
+from tltl_runtime.gymnasium_games.frame_strip import fitted
+from tltl_runtime.gymnasium_games.key_actions import KeyActions
+from tltl_runtime.gymnasium_games.key_names import COMMANDS
+from tltl_runtime.gymnasium_games.scene_cause import scene_cause
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltl_runtime.gymnasium_games.scene_frame import scene_frame
+from tltlc.api import formula_text, label_text, record, replace
+
+NO_FRAMES_ADVICE: Final = "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`"
+_STOP: Final = ("q", "escape")
+_RESTART: Final = "r"
+_STILL_WAIT: Final = 0.05
+"""Seconds between two reads of the keys while the game stands still."""
+_FRAME_TIME: Final = 1 / 60
+"""The longest time for which the window does not respond, in seconds."""
+_KEEP_INTERVAL_S: Final = 5.0
+"""Seconds after which an unfinished episode is written again."""
+
+
+@record
+class _Wish:
+    """What the person wants: an action, or None, and whether to restart or to stop."""
+
+    action: int | None
+    restart: bool = False
+    stop: bool = False
+
+
+class SceneSession(PlaySession[SceneEpisode]):
+    """Lets a person play episodes of a scene in ``window``.
+
+    ``actions`` are the actions of the keys. The other arguments are those of ``PlaySession``.
+    """
+
+    def __init__(
+        self,
+        env: EpisodeRecorder[SceneEpisode],
+        window: Window,
+        actions: KeyActions,
+        recordings: Recordings,
+        enough: Callable[[], bool] = lambda: False,
+    ) -> None:
+        super().__init__(env, recordings, enough)
+        self._window, self._actions = window, actions
+        self._fspa = env.get_wrapper_attr("task").fspa
+        self._level = env.get_wrapper_attr("level")
+        # A key of the game is not a command, but Escape always stops.
+        self._commands = frozenset(COMMANDS) - actions.keys | {"escape"}
+        self._pending: deque[int] = deque()
+        self._steps = 0
+
+    def _episode(self, seed: int | None) -> bool:
+        _, info = self._env.reset(seed=seed)
+        self._steps, over = 0, False
+        self._pending.clear()
+        self._show(self._start_screen(info))
+        wish = self._wait_still(begins=True)
+        due = kept = monotonic()
+        while not (wish.stop or wish.restart or over):
+            _, _, terminated, truncated, info = self._env.step(wish.action)
+            self._steps, self._unsaved, over = self._steps + 1, True, terminated or truncated
+            self._show(self._hud(info))
+            if over:
+                break
+            if monotonic() - kept >= _KEEP_INTERVAL_S:
+                self._recordings.keep(self._env.episode)
+                kept = monotonic()
+            wish = self._wait_still() if self._actions.idle is None else self._wait_until(due + self._actions.step_s)
+            # The game catches up with a delay of up to one step. A longer delay is dropped.
+            due = max(due + self._actions.step_s, monotonic() - self._actions.step_s)
+        if over:
+            file = self._save() or ""
+            self._show(end_screen(self._hud(info), scene_cause(self._env.episode), file))
+            wish = self._wait_still(ended=True)
+        self._save()
+        return wish.restart and not wish.stop
+
+    def _wait_until(self, time: float) -> _Wish:
+        """Keep the window responsive until a time of ``monotonic()``; return what the person then wants."""
+        while (rest := time - monotonic()) > 0.0:
+            self._window.wait(max(0.001, min(_FRAME_TIME, rest)))
+        return self._wish()
+
+    def _wait_still(self, *, begins: bool = False, ended: bool = False) -> _Wish:
+        """Wait until the person wants something.
+
+        If the episode ``begins``, there is nothing to restart; if it has ``ended``, there is no action.
+        """
+        while True:
+            wish = self._wish(still=True)
+            if wish.stop or (wish.restart and not begins) or (wish.action is not None and not ended):
+                return _Wish(wish.action, wish.restart and not begins, wish.stop)
+            self._window.wait(_STILL_WAIT)
+
+    def _wish(self, *, still: bool = False) -> _Wish:
+        """Read the keys. While the game stands ``still``, no key is no action."""
+        pressed = self._window.read(self._actions.keys | self._commands | {_RESTART} | {*_STOP})
+        stop = pressed.closed or any(key in self._commands and key in _STOP for key in pressed.tapped)
+        restart = any(key in self._commands and key == _RESTART for key in pressed.tapped)
+        if self._actions.idle is not None:
+            is_idle = still and pressed.held.isdisjoint(self._actions.keys)
+            return _Wish(None if is_idle else self._actions.of_held(pressed.held), restart, stop)
+        taps = (frozenset([key]) for key in pressed.tapped)
+        self._pending.extend(self._actions.actions[tap] for tap in taps if tap in self._actions.actions)
+        return _Wish(self._pending.popleft() if self._pending else None, restart, stop)
+
+    def _show(self, display: Hud) -> None:
+        frame = scene_frame(self._env, self._level, NO_FRAMES_ADVICE)
+        self._window.show(fitted(frame, self._window.size), display)
+
+    def _hud(self, info: Mapping[str, Any]) -> Hud:
+        """Return the head-up display; ``info`` is that of the environment's last step or reset."""
+        first = Line(f"{self._time_text()}   {info['verdict']}", "quiet")
+        lines = goal_lines(label_text(self._fspa, info["state"]))
+        return Hud((Bar("progress", info["progress"], "warn"),), (first, *lines))
+
+    def _time_text(self) -> str:
+        if self._env.has_wrapper_attr("tltl_clock_s"):
+            step_s = float(self._env.get_wrapper_attr("tltl_clock_s"))
+            return clock_text(self._steps * step_s, self._fspa, step_s)
+        limit = self._fspa.limit_steps
+        return f"step {self._steps}" + ("" if limit is None else f", {max(0, limit - self._steps)} left")
+
+    def _start_screen(self, info: Mapping[str, Any]) -> Hud:
+        goal = wrap(formula_text(self._fspa), LONG)
+        commands = "R: again   Esc: stop" if _RESTART in self._commands else "Esc: stop"
+        below = (*goal, "", *self._actions.lines, commands, "", "Press the key of an action to begin.")
+        return replace(self._hud(info), title=f"{self._level.name} {self._level.variant}", below=below)
