@@ -11,6 +11,7 @@ from gymnasium import spaces
 from tltl_runtime.gymnasium_games.capabilities import ATTRIBUTES, Capability, capabilities
 from tltl_runtime.gymnasium_games.game_errors import RAISES, guarded
 from tltl_runtime.gymnasium_games.game_file import GameFile
+from tltl_runtime.gymnasium_games.key_actions import key_count_diagnostic
 from tltl_runtime.gymnasium_games.plays import (
     SEED,
     STEPS,
@@ -57,7 +58,8 @@ def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
 
     The diagnostics of the report: TLT0783, warning, the plays differ; TLT0784, a restored snapshot
     differs (error), or only one of the two methods exists (warning); TLT0785, warning, an
-    observation is not in the observation space.
+    observation is not in the observation space; TLT0803, error, the game file does not name a key
+    for each action.
 
     Raises:
         TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
@@ -73,6 +75,7 @@ def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
 def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneReport:
     label, name = game.labels["game"], f"{scene}:{variant}"
     offered, actions = capabilities(env), drawn_actions(env)
+    wrong_keys = [*filter(None, [key_count_diagnostic(game, scene, env.action_space)])]
     params = env.get_wrapper_attr("tltl_params")() if "params" in offered else None
     first, second = play(env, actions), play(env, actions)
     _check_places(env)
@@ -91,7 +94,12 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
         steps_per_s=STEPS / max(second.seconds, 1e-9),
         reproducible=not differences,
         restores=not restored if "snapshot" in offered else None,
-        diagnostics=(*differences, *restored, *_outside_space(env.observation_space, name, label, first.moments)),
+        diagnostics=(
+            *wrong_keys,
+            *differences,
+            *restored,
+            *_outside_space(env.observation_space, name, label, first.moments),
+        ),
     )
 
 

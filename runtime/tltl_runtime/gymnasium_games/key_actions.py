@@ -67,7 +67,9 @@ def key_actions(env: gymnasium.Env[Any, Any], level: Level) -> KeyActions:
         raise capability_error(level, lack, "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`")
     game: GameFile = env.get_wrapper_attr("game_file")
     if game.keys:
-        check_key_count(game, level.name, space)
+        wrong_count = key_count_diagnostic(game, level.name, space)
+        if wrong_count:
+            raise TltlError([wrong_count])
         return _one_by_one(env, space, game.keys)
     own = _own_keys(env, space, game)
     if own:
@@ -78,16 +80,16 @@ def key_actions(env: gymnasium.Env[Any, Any], level: Level) -> KeyActions:
     return _one_by_one(env, space, tuple(_DIGITS[: space.n]))
 
 
-def check_key_count(game: GameFile, scene: str, space: spaces.Space[Any]) -> None:
-    """Raise TltlError, TLT0803, if a game file names keys, but not one for each action of a scene."""
+def key_count_diagnostic(game: GameFile, scene: str, space: spaces.Space[Any]) -> Diagnostic | None:
+    """Return TLT0803, an error, if a game file names keys, but not one for each action of a scene; else None."""
     if not game.keys or (isinstance(space, spaces.Discrete) and len(game.keys) == space.n):
-        return
+        return None
     count = f"{len(game.keys)} key{'s' * (len(game.keys) != 1)}"
     title = f"`keys` has {count}, but an action of the scene `{scene}` is {space_text(space)}"
     help_ = "leave out `keys`: only a Discrete space has actions for keys"
     if isinstance(space, spaces.Discrete):
         help_ = f"name {space.n} keys, one for each action, in the order of the actions"
-    raise TltlError([Diagnostic("TLT0803", title, (game.labels["keys"],), help_)])
+    return Diagnostic("TLT0803", title, (game.labels["keys"],), help_)
 
 
 def _one_by_one(env: gymnasium.Env[Any, Any], space: spaces.Discrete, keys: tuple[str, ...]) -> KeyActions:

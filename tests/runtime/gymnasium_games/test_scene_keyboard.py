@@ -16,6 +16,7 @@ from tests.runtime.gymnasium_games import games
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tests.waiting import HANG_S, until
 from tltl_runtime.game.recording_check import check
+from tltl_runtime.gymnasium_games.game_check import check_scene
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.key_actions import KeyActions, key_actions
@@ -128,7 +129,10 @@ def test_actions_that_keys_cannot_choose_are_reported(tmp_path: Path, space: str
 def test_as_many_keys_as_actions_are_needed(tmp_path: Path) -> None:
     two = games.GAME.replace("[game]", '[game]\nkeys = ["left", "right"]')
     message = "TLT0803: `keys` has 2 keys, but an action of the scene `short` is Discrete(3) (name 3 keys, one for each"
-    assert message in key_error(games.write(tmp_path, corridor__game__toml=two))
+    game = games.write(tmp_path, corridor__game__toml=two)
+    assert message in key_error(game)
+    (diagnostic,) = check_scene(read_game_file(game), "short", "v0").diagnostics
+    assert (diagnostic.code, diagnostic.severity) == ("TLT0803", "error")
 
 
 @pytest.mark.parametrize(
@@ -344,6 +348,6 @@ def test_games_that_nobody_can_play_are_reported(
     assert old in games.GRID
     games.write(tmp_path, corridor__py=games.GRID.replace(old, new))
     result = tltlc("play", "corridor.game.toml:short")
-    assert result.status == 1
+    assert result.status == (2 if "TLT0731" in result.err else 1)
     assert message in result.err
     assert not list(tmp_path.glob("*.npz"))
