@@ -37,8 +37,9 @@ FORMATS = {
     "checkpoint of a training": "runtime/tltl_runtime/training/files/checkpoint.py",
     "record of a training": "runtime/tltl_runtime/training/files/record.py",
     "settings of a run": "runtime/tltl_runtime/training/files/run_file.py",
+    "protocol of games in other processes": "runtime/tltl_runtime/wire/hello.py",
 }
-"""The file formats that have versions, with the modules that state them."""
+"""The file formats and protocols that have versions, with the modules that state them."""
 
 _VERSION = re.compile(r"^_?VERSION(?:: Final)? = ([0-9]+)$", re.MULTILINE)
 _IMPORT = re.compile(r"^ *(?:>>> )?from (tltl(?:c|_runtime)(?:\.\w+)*) import ([\w, ]+)", re.MULTILINE)

@@ -184,6 +184,19 @@ UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 UNPACKED_NAME: Final = Limit(size=255)
 """A part of a path that :data:`UNPACKED_PATH` limits; common file systems refuse longer names."""
 
+WIRE_MESSAGE: Final = Limit(size=1 << 25)
+"""A message of a game in another process, with its line end. A picture of 1080p has 8 MiB in base64."""
+
+WIRE_HELLO: Final = Limit(size=1 << 20, depth=16, values=1 << 22)
+"""The first message of a game in another process.
+
+``depth`` is the most levels of nested spaces; ``values`` is the most numbers of an observation or of
+an action, all parts together.
+"""
+
+WIRE_STDERR: Final = Limit(size=1 << 13, values=20)
+"""The end of a game's standard error that messages show; ``values`` counts lines."""
+
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
 

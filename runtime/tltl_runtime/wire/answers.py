@@ -1,0 +1,165 @@
+"""The messages that a game sends after its ``hello``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.support.suggestion import suggestion
+from tltl_runtime.wire.document import a_list, a_number, a_text, an_object, member, wrong
+from tltl_runtime.wire.errors import MalformedMessageError
+from tltl_runtime.wire.hello import POSITIONS, DeclaredSignal, Hello
+from tltl_runtime.wire.json_text import shortened, value_text
+from tltl_runtime.wire.values import array_from, value_reader
+from tltlc.api import record
+
+STATE: Final = "state"
+SNAPSHOT: Final = "snapshot"
+SCREENSHOT: Final = "screenshot"
+ERROR: Final = "error"
+_INFINITE: Final = (inf, -inf)
+_KINDS: Final = ("hello", STATE, SNAPSHOT, SCREENSHOT, ERROR)
+
+Position = tuple[float, ...]
+
+
+class ReportedError(Exception):
+    """Raised for the message ``error`` of a game; its text is that of the message."""
+
+
+@record
+class GameState:
+    """The message ``state``.
+
+    ``signals`` are floats and bools by name, ``observation`` is a value of the observation space.
+    ``ended`` says whether the episode has ended, and ``cause`` who or what ended it, None if that is
+    unknown. ``positions`` are those of the entities by name, with two or three coordinates in metres.
+    """
+
+    signals: Mapping[str, float]
+    observation: Any
+    ended: bool
+    cause: str | None
+    positions: Mapping[str, Position]
+
+
+def body_of(message: Any, expected: str) -> Any:
+    """Return the content of a message that must be of the kind ``expected``; other keys are ignored.
+
+    Raises:
+        ReportedError: the message is an ``error``.
+        MalformedMessageError: it is of another kind.
+    """
+    if type(message) is not dict:
+        raise MalformedMessageError(f"sent {value_text(message)} instead of an object")
+    if expected in message and ERROR not in message:
+        return message[expected]
+    if ERROR in message:
+        body = message[ERROR]
+        text = body.get("message") if isinstance(body, dict) else body
+        raise ReportedError(shortened(text) if isinstance(text, str) else "no reason given")
+    kinds = [kind for kind in _KINDS if kind in message]
+    if kinds:
+        raise MalformedMessageError(f"sent a message `{kinds[0]}` instead of `{expected}`")
+    names = ", ".join(f"`{shortened(key)}`" for key in list(message)[:3]) or "no key"
+    hint = suggestion(str(next(iter(message), "")), _KINDS)
+    raise MalformedMessageError(f"sent a message of an unknown kind, with {names}, instead of `{expected}`; {hint}")
+
+
+class StateReader:
+    """Reads the ``state`` messages of a game with this ``hello``."""
+
+    def __init__(self, hello: Hello) -> None:
+        self._declared = hello.signals
+        self._checks = tuple(
+            (name, signal.type == "bool", signal.low, signal.high) for name, signal in hello.signals.items()
+        )
+        self._observation: Callable[[Any], Any] = value_reader(hello.observation, "state.observation")
+        self._has_positions = POSITIONS in hello.capabilities
+
+    def read(self, message: Any) -> GameState:
+        """Return the state in a message.
+
+        Raises:
+            ReportedError: the message is an ``error``.
+            MalformedMessageError: it is no ``state``, or differs from what the game declared.
+        """
+        body = an_object(body_of(message, STATE), STATE)
+        ended, cause = body.get("ended", False), body.get("cause")
+        if type(ended) is not bool:
+            raise wrong("state.ended", "true or false", ended)
+        return GameState(
+            self._signals(body.get("signals")),
+            self._observation(body.get("observation", {})),
+            ended,
+            None if cause is None else a_text(cause, "state.cause"),
+            _positions(body.get("positions")) if self._has_positions else {},
+        )
+
+    def _signals(self, values: Any) -> dict[str, float]:
+        """Return the values of all declared signals; each has its type and is in its range."""
+        if type(values) is not dict:
+            raise wrong("state.signals", "an object", values)
+        if values.keys() != self._declared.keys():
+            raise _other_signals(values, self._declared)
+        result = {}
+        for name, is_bool, low, high in self._checks:
+            value = values[name]
+            kind = type(value)
+            if is_bool:
+                if kind is not bool:
+                    raise wrong(member("state.signals", name), "true or false", value)
+            elif kind is not float or not low <= value <= high or value in _INFINITE:
+                value = a_number(value, member("state.signals", name))
+                if not low <= value <= high:
+                    raise _out_of_range(name, value, low, high)
+            result[name] = value
+        return result
+
+
+def snapshot_id(message: Any) -> int | str:
+    """Return the id in a message ``snapshot``; the errors are those of :func:`body_of`."""
+    value = an_object(body_of(message, SNAPSHOT), SNAPSHOT).get("id")
+    if type(value) is not int and not (isinstance(value, str) and value):
+        raise wrong("snapshot.id", "a whole number or a text", value)
+    return value
+
+
+def screenshot(message: Any) -> NDArray[np.uint8]:
+    """Return the picture in a message ``screenshot``, (height, width, 3); the errors are those of :func:`body_of`."""
+    picture = array_from(body_of(message, SCREENSHOT), SCREENSHOT)
+    if picture.ndim != 3 or picture.shape[2] not in (3, 4) or not picture.size:
+        raise MalformedMessageError(f"sent a screenshot of the shape {list(picture.shape)}, not [height, width, 3]")
+    if picture.dtype.kind not in "iu" or picture.min() < 0 or picture.max() > 255:
+        raise MalformedMessageError("sent a screenshot with numbers that are not whole numbers from 0 to 255")
+    return np.ascontiguousarray(picture[:, :, :3], dtype=np.uint8)
+
+
+def _positions(value: Any) -> dict[str, Position]:
+    table = an_object(value, "state.positions")
+    points = {}
+    for name, point in table.items():
+        path = member("state.positions", name)
+        if len(a_list(point, path)) not in (2, 3):
+            raise wrong(path, "a list of two or three numbers", point)
+        points[name] = tuple([a_number(number, path) for number in point])
+    return points
+
+
+def _other_signals(values: Mapping[str, Any], declared: Mapping[str, DeclaredSignal]) -> MalformedMessageError:
+    missing = [name for name in declared if name not in values]
+    if missing:
+        return MalformedMessageError(f"did not send the signal `{missing[0]}`, which it declared")
+    name = next(name for name in values if name not in declared)
+    shown = shortened(name)
+    return MalformedMessageError(f"sent the signal `{shown}`, which it did not declare; {suggestion(shown, declared)}")
+
+
+def _out_of_range(name: str, value: float, low: float, high: float) -> MalformedMessageError:
+    return MalformedMessageError(
+        f"sent {value_text(value)} as the signal `{name}`, outside its declared range from {low:g} to {high:g}"
+    )

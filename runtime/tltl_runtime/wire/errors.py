@@ -1,0 +1,40 @@
+"""Errors of games in other processes."""
+
+from __future__ import annotations
+
+from tltlc.api import Diagnostic, TltlError
+
+NOT_STARTED = "TLT0790"
+LOST = "TLT0791"
+MALFORMED = "TLT0792"
+REPORTED = "TLT0793"
+
+
+class WireError(TltlError):
+    """A game in another process was lost, or cannot be started; its current episode is lost, too.
+
+    The code of its diagnostic says why. TLT0790: the game did not start. TLT0791: it hangs, ended, or closed its
+    connection. TLT0792: it broke the protocol. TLT0793: it reported an error. The help contains the
+    last lines that the game wrote to standard error.
+    """
+
+
+class MalformedMessageError(ValueError):
+    """Raised for a message that breaks the protocol.
+
+    The text completes the sentence "the game …", for example "sent NaN".
+    """
+
+
+class GameSilentError(Exception):
+    """Raised if a game does not send or receive in time."""
+
+
+class GameGoneError(Exception):
+    """Raised if a game has closed its connection."""
+
+
+def wire_error(code: str, title: str, help_: str, last_lines: str = "") -> WireError:
+    """Return an error; ``last_lines`` are the last lines of the game's standard error, empty if unknown."""
+    shown = f"the game's standard error ends:\n{last_lines}\n{help_}" if last_lines else help_
+    return WireError([Diagnostic(code, title, help=shown)])
