@@ -1,0 +1,105 @@
+"""Read lines, or a number of bytes, from a socket, with limits on time and size."""
+
+from __future__ import annotations
+
+import socket
+import time
+from typing import Final
+
+from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMessageError
+
+_CHUNK: Final = 1 << 16
+
+
+class ByteStream:
+    """A connected socket; ``rest`` are bytes that were received and not read yet.
+
+    All methods raise :class:`GameSilentError` after ``patience`` seconds, and
+    :class:`GameGoneError` if the other side has closed the connection.
+    """
+
+    def __init__(self, connection: socket.socket, rest: bytes = b"") -> None:
+        self._socket = connection
+        self._rest = rest
+        self._timeout: float | None = -1.0
+        if connection.family in (socket.AF_INET, socket.AF_INET6):
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    @property
+    def has_rest(self) -> bool:
+        """Whether bytes were received that nothing has read."""
+        return bool(self._rest)
+
+    def send(self, data: bytes, patience: float) -> None:
+        """Send all bytes."""
+        self._set_timeout(patience)
+        try:
+            self._socket.sendall(data)
+        except TimeoutError:
+            raise GameSilentError from None
+        except OSError:
+            raise GameGoneError from None
+
+    def line(self, patience: float, limit: int) -> bytes | bytearray:
+        """Return the next line, with its line end.
+
+        Raises MalformedMessageError as soon as the line has more than ``limit`` bytes.
+        """
+        if not self._rest:
+            data = self._received(patience)
+            if data.find(b"\n") == len(data) - 1:
+                return data  # Usually, a message comes in one piece.
+            self._rest = data
+        return self._long_line(patience, limit)
+
+    def exactly(self, count: int, patience: float) -> bytes:
+        """Return the next ``count`` bytes."""
+        data, deadline = bytearray(self._rest), time.monotonic() + patience
+        while len(data) < count:
+            data += self._received(deadline - time.monotonic())
+        self._rest = bytes(data[count:])
+        return bytes(data[:count])
+
+    def some(self, patience: float) -> bytes:
+        """Return the next bytes, at least one."""
+        data, self._rest = self._rest or self._received(patience), b""
+        return data
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._socket.close()
+
+    def _long_line(self, patience: float, limit: int) -> bytearray:
+        data, deadline = bytearray(self._rest), time.monotonic() + patience
+        self._rest = b""
+        searched = 0
+        while (end := data.find(b"\n", searched)) < 0:
+            if len(data) > limit:
+                raise MalformedMessageError(f"sent a line of more than {limit >> 20} MiB")
+            searched = len(data)
+            data += self._received(deadline - time.monotonic())
+        self._rest = bytes(data[end + 1 :])
+        del data[end + 1 :]
+        if len(data) > limit:
+            raise MalformedMessageError(f"sent a line of more than {limit >> 20} MiB")
+        return data
+
+    def _received(self, patience: float) -> bytes:
+        """Receive some bytes, at least one."""
+        if patience <= 0:
+            raise GameSilentError
+        self._set_timeout(patience)
+        try:
+            data = self._socket.recv(_CHUNK)
+        except TimeoutError:
+            raise GameSilentError from None
+        except OSError:
+            raise GameGoneError from None
+        if not data:
+            raise GameGoneError
+        return data
+
+    def _set_timeout(self, patience: float) -> None:
+        if patience != self._timeout:
+            self._socket.settimeout(patience)
+            self._timeout = patience

@@ -1,0 +1,119 @@
+"""Messages over a stream of bytes, in the two encodings of the protocol."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, Final
+
+from tltl_runtime.wire import json_text
+from tltl_runtime.wire.byte_stream import ByteStream
+from tltl_runtime.wire.errors import MalformedMessageError
+from tltlc.api import fileio
+
+_LENGTH_BYTES: Final = 4
+
+
+class Channel(ABC):
+    """Sends and receives messages.
+
+    All methods raise :class:`~tltl_runtime.wire.errors.GameSilentError` after ``patience`` seconds,
+    and :class:`~tltl_runtime.wire.errors.GameGoneError` if the game has closed the connection.
+    """
+
+    @abstractmethod
+    def send(self, message: Any, patience: float) -> None:
+        """Send a message.
+
+        Raises MalformedMessageError if the game has sent more than it was asked for.
+        """
+
+    @abstractmethod
+    def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
+        """Return the next message; raises MalformedMessageError if it is not one, or larger than ``limit`` bytes."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close the connection."""
+
+    @abstractmethod
+    def with_msgpack(self) -> Channel:
+        """Return a channel over the same connection that uses MessagePack."""
+
+
+class JsonLines(Channel):
+    """Each message is a line of JSON."""
+
+    def __init__(self, stream: ByteStream) -> None:
+        self._stream = stream
+
+    def send(self, message: Any, patience: float) -> None:
+        """Send a message."""
+        _check_in_step(self._stream)
+        self._stream.send(json_text.line(message), patience)
+
+    def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
+        """Return the next message."""
+        return json_text.parse(self._stream.line(patience, limit))
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._stream.close()
+
+    def with_msgpack(self) -> Channel:
+        """Return a channel that uses MessagePack."""
+        return MessagePackFrames(self._stream)
+
+
+class MessagePackFrames(Channel):
+    """Each message is its length, four bytes with the highest first, and that many bytes of MessagePack."""
+
+    def __init__(self, stream: ByteStream) -> None:
+        import msgpack
+
+        self._stream, self._msgpack = stream, msgpack
+
+    def send(self, message: Any, patience: float) -> None:
+        """Send a message."""
+        _check_in_step(self._stream)
+        data = self._msgpack.packb(message)
+        self._stream.send(len(data).to_bytes(_LENGTH_BYTES, "big") + data, patience)
+
+    def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
+        """Return the next message."""
+        length = int.from_bytes(self._stream.exactly(_LENGTH_BYTES, patience), "big")
+        if length > limit:
+            raise MalformedMessageError(f"sent a message of {length:,} bytes; at most {limit:,} are allowed")
+        data = self._stream.exactly(length, patience)
+        return unpacked(data)
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._stream.close()
+
+    def with_msgpack(self) -> Channel:
+        """Return a channel that uses MessagePack."""
+        return self
+
+
+def unpacked(data: bytes) -> Any:
+    """Return the value of a message in MessagePack; raises MalformedMessageError if it is not one."""
+    import msgpack
+
+    try:
+        return msgpack.unpackb(data)
+    except (ValueError, msgpack.UnpackException):
+        raise MalformedMessageError(f"sent a message that is not MessagePack: {json_text.quoted(data)}") from None
+
+
+def has_msgpack() -> bool:
+    """Whether the package for MessagePack is installed."""
+    try:
+        import msgpack  # noqa: F401
+    except ModuleNotFoundError:
+        return False
+    return True
+
+
+def _check_in_step(stream: ByteStream) -> None:
+    if stream.has_rest:
+        raise MalformedMessageError("sent more than one message as the answer to one request")

@@ -1,0 +1,70 @@
+"""The first message on a new connection, over TCP or WebSocket: its first bytes tell them apart."""
+
+from __future__ import annotations
+
+import json
+import socket
+
+from tltl_runtime.wire.byte_stream import ByteStream
+from tltl_runtime.wire.channel import Channel, JsonLines
+from tltl_runtime.wire.errors import GameGoneError, MalformedMessageError
+from tltl_runtime.wire.websocket import WebSocketChannel, WebSocketMessages
+from tltlc.api import fileio
+
+_REQUEST = b"GET "
+"""The first bytes of each connection over WebSocket, and of no message in JSON."""
+
+
+class FirstMessage:
+    """The bytes that a new connection has sent until now."""
+
+    def __init__(self) -> None:
+        self._data = bytearray()
+        self._web: WebSocketMessages | None = None
+
+    def add(self, received: bytes) -> bytes | None:
+        """Take further bytes, none at the end of the connection; return the first message once it is complete.
+
+        Raises MalformedMessageError if no message can follow.
+        """
+        limit = fileio.limits.WIRE_HELLO.size
+        if not received:
+            raise MalformedMessageError("closed its connection before it said hello")
+        self._data += received
+        if self._web is None and self._data.startswith(_REQUEST):
+            try:
+                self._web = WebSocketMessages()
+            except ModuleNotFoundError:
+                raise MalformedMessageError("uses WebSocket, for which tltlc needs the package `websockets`") from None
+            received = bytes(self._data)
+        if self._web is not None:
+            return self._web_message(received, self._web)
+        if (end := self._data.find(b"\n")) >= 0:
+            line = bytes(self._data[: end + 1])
+            del self._data[: end + 1]
+            return line
+        if len(self._data) > limit:
+            raise MalformedMessageError(f"sent a first line of more than {limit >> 20} MiB")
+        return None
+
+    def reply(self) -> bytes:
+        """Return what to send now: the answer to the handshake of WebSocket, or nothing."""
+        return self._web.outgoing() if self._web is not None else b""
+
+    def refusal(self, reason: str) -> bytes:
+        """Return the bytes of the message that tells the game why it is refused."""
+        text = json.dumps({"error": {"message": f"tltlc refuses this game, because it {reason}"}}).encode()
+        return self._web.text(text) if self._web is not None and self._web.is_open else text + b"\n"
+
+    def channel(self, connection: socket.socket) -> Channel:
+        """Return the channel for all further messages."""
+        if self._web is not None:
+            return WebSocketChannel(connection, self._web)
+        return JsonLines(ByteStream(connection, bytes(self._data)))
+
+    def _web_message(self, received: bytes, web: WebSocketMessages) -> bytes | None:
+        try:
+            web.feed(received)
+        except GameGoneError:
+            raise MalformedMessageError("closed its connection before it said hello") from None
+        return web.messages.popleft() if web.messages else None

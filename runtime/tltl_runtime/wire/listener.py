@@ -1,0 +1,123 @@
+"""Wait for the game that was started to connect and say ``hello``."""
+
+from __future__ import annotations
+
+import hmac
+import selectors
+import socket
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Final
+
+from tltl_runtime.wire import json_text
+from tltl_runtime.wire.channel import Channel
+from tltl_runtime.wire.errors import GameSilentError, MalformedMessageError
+from tltl_runtime.wire.first_message import FirstMessage
+from tltl_runtime.wire.hello import token_of
+
+_LOOK_S: Final = 0.05
+"""Seconds between two looks whether the game has ended."""
+_MOST_PENDING: Final = 16
+"""The most connections that have not said ``hello`` yet."""
+_CHUNK: Final = 1 << 16
+
+
+class Listener:
+    """Listens on a free port of 127.0.0.1 for the one game that knows ``token``.
+
+    Other connections are told why they are refused, and closed. Their last refusal is
+    ``refusal``, empty if there was none.
+    """
+
+    def __init__(self, token: str) -> None:
+        self._token = token
+        self._socket = socket.create_server(("127.0.0.1", 0))
+        self._socket.setblocking(False)
+        self._pending: dict[socket.socket, FirstMessage] = {}
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(self._socket, selectors.EVENT_READ)
+        self.refusal = ""
+
+    @property
+    def port(self) -> int:
+        """The number of the port."""
+        port: int = self._socket.getsockname()[1]
+        return port
+
+    def hello(self, patience: float, has_ended: Callable[[], bool]) -> tuple[Channel, Any]:
+        """Return the connection to the game, and its first message, of which only the token is checked.
+
+        Raises:
+            GameSilentError: there was none after ``patience`` seconds, or before ``has_ended()``.
+            MalformedMessageError: the game sent the right token and another version of the protocol.
+        """
+        deadline = time.monotonic() + patience
+        while True:
+            # What an ended game has sent before is still read.
+            is_last = has_ended()
+            left = deadline - time.monotonic()
+            ready = self._selector.select(0 if is_last else min(max(left, 0), _LOOK_S))
+            for key, _ in ready:
+                if key.fileobj is self._socket:
+                    self._accept()
+                elif (found := self._read(key.fileobj)) is not None:
+                    return found
+            if left <= 0 or (is_last and not ready):
+                raise GameSilentError
+
+    def close(self) -> None:
+        """Close the port, and all connections that have not said ``hello``."""
+        for connection in self._pending:
+            connection.close()
+        self._pending.clear()
+        self._selector.close()
+        self._socket.close()
+
+    def _accept(self) -> None:
+        with suppress(OSError):
+            connection, _ = self._socket.accept()
+            if len(self._pending) >= _MOST_PENDING:
+                connection.close()
+                return
+            connection.setblocking(False)
+            self._pending[connection] = FirstMessage()
+            self._selector.register(connection, selectors.EVENT_READ)
+
+    def _read(self, connection: Any) -> tuple[Channel, Any] | None:
+        """Read from a connection; return it once its first message has the right token."""
+        first = self._pending[connection]
+        try:
+            received = connection.recv(_CHUNK)
+        except BlockingIOError:
+            return None
+        except OSError:
+            received = b""
+        try:
+            data = first.add(received)
+            with suppress(OSError):
+                connection.send(first.reply())
+            if data is None:
+                return None
+            message = json_text.parse(data)
+            self._check_token(message)
+        except MalformedMessageError as error:
+            self._drop(connection, str(error))
+            return None
+        self._selector.unregister(connection)
+        del self._pending[connection]
+        connection.setblocking(True)
+        return first.channel(connection), message
+
+    def _check_token(self, message: Any) -> None:
+        token = token_of(message).encode(errors="surrogatepass")
+        if not hmac.compare_digest(token, self._token.encode()):
+            raise MalformedMessageError("sent a wrong token; it must send the value of the variable TLTL_TOKEN")
+
+    def _drop(self, connection: socket.socket, refusal: str) -> None:
+        self.refusal = refusal
+        with suppress(OSError):
+            connection.send(self._pending[connection].refusal(refusal))
+        self._selector.unregister(connection)
+        del self._pending[connection]
+        connection.close()

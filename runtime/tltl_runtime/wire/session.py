@@ -1,0 +1,180 @@
+"""A conversation with a game, from its start to its end or its loss."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Final, NoReturn, TypeVar
+
+from tltl_runtime.wire import errors
+from tltl_runtime.wire.answers import ReportedError, body_of
+from tltl_runtime.wire.byte_stream import ByteStream
+from tltl_runtime.wire.channel import Channel, JsonLines, has_msgpack
+from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMessageError, WireError, wire_error
+from tltl_runtime.wire.game_process import GameProcess
+from tltl_runtime.wire.hello import JSON, MSGPACK, VERSION, Hello, hello_from
+from tltl_runtime.wire.listener import Listener
+from tltl_runtime.wire.requests import CloseRequest
+from tltl_runtime.wire.wire_game import WireGame, address
+from tltlc.api import fileio
+
+_TO_CLOSE_S: Final = 5.0
+"""Seconds in which a game that has closed its connection, or was asked to close, ends by itself."""
+_TOKEN_BYTES: Final = 16
+_ENDED: Final = "correct the game; let it write what it does to standard error"
+
+Answer = TypeVar("Answer")
+
+
+class Session:
+    """A running game that has said ``hello``.
+
+    Raises:
+        WireError: the game does not start, does not say ``hello``, or says it wrong.
+        TltlError: TLT0803, ``connect`` is no address.
+    """
+
+    def __init__(self, game: WireGame) -> None:
+        self._game = game
+        self._process: GameProcess | None = None
+        self._channel: Channel | None = None
+        try:
+            self._channel, message = self._connected() if game.connect else self._started()
+            self.hello: Hello = hello_from(message)
+            self._agree_on_encoding()
+        except BaseException as error:
+            raise self._lost(error, "hello", game.start_s) from None
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the conversation has ended."""
+        return self._channel is None
+
+    @property
+    def process_id(self) -> int | None:
+        """The id of the process that supervises the game; None for a game that tltlc did not start."""
+        return self._process.pid if self._process else None
+
+    def ask(self, kind: str, message: dict[str, Any], read: Callable[[Any], Answer]) -> Answer:
+        """Send a request, such as a ``step``, and return what ``read`` makes of the answer.
+
+        If anything goes wrong, even Ctrl-C, the game is ended: nobody knows which answer would come next.
+
+        Raises:
+            WireError: TLT0791, the game is lost; TLT0792, its answer is malformed; TLT0793, the answer is an error.
+        """
+        assert self._channel is not None
+        try:
+            self._channel.send(message, self._game.step_s)
+            return read(self._channel.receive(self._game.step_s))
+        except BaseException as error:
+            raise self._lost(error, kind, self._game.step_s) from None
+
+    def refuse(self, reason: str) -> NoReturn:
+        """End a game that breaks the protocol; ``reason`` completes "the game …". Raises WireError, TLT0792."""
+        raise self._lost(MalformedMessageError(reason), "hello", self._game.start_s)
+
+    def close(self) -> None:
+        """Ask the game to end, and end it if it does not."""
+        if self._channel is not None:
+            with suppress(Exception):
+                self._channel.send(CloseRequest().message(), _TO_CLOSE_S)
+            self._close_channel()
+            if self._process is not None:
+                self._process.wait(_TO_CLOSE_S)
+        self._end_process()
+
+    # --- the beginning ------------------------------------------------------------------------------
+
+    def _started(self) -> tuple[Channel, Any]:
+        """Start the game; return the connection that it makes, and its first message."""
+        token = secrets.token_hex(_TOKEN_BYTES)
+        listener = Listener(token)
+        try:
+            variables = {"TLTL_PORT": str(listener.port), "TLTL_TOKEN": token}
+            self._process = GameProcess(self._game.process, self._game.folder, variables)
+            try:
+                return listener.hello(self._game.start_s, self._process.has_ended)
+            except GameSilentError:
+                if listener.refusal:
+                    raise MalformedMessageError(listener.refusal) from None
+                raise
+        finally:
+            listener.close()
+
+    def _connected(self) -> tuple[Channel, Any]:
+        """Connect to a game that is running; say hello and return the connection and the answer."""
+        host, port = address(self._game.connect)
+        try:
+            connection = socket.create_connection((host, port), self._game.start_s)
+        except OSError as error:
+            title = f"no game listens at `{self._game.connect}`: {error.strerror or error}"
+            help_ = "start the game first; it may also be busy with another tltlc"
+            raise wire_error(errors.NOT_STARTED, title, help_) from None
+        channel = self._channel = JsonLines(ByteStream(connection))
+        # Whoever connects sends the token, so here tltlc does.
+        token = os.environ.get("TLTL_TOKEN", "")
+        channel.send({"hello": {"tltl": VERSION, "token": token}}, self._game.start_s)
+        message = channel.receive(self._game.start_s, fileio.limits.WIRE_HELLO.size)
+        body_of(message, "hello")
+        return channel, message
+
+    def _agree_on_encoding(self) -> None:
+        if self.hello.encoding != MSGPACK:
+            return
+        assert self._channel is not None
+        encoding = MSGPACK if has_msgpack() else JSON
+        self._channel.send({"hello": {"tltl": VERSION, "encoding": encoding}}, self._game.start_s)
+        if encoding == MSGPACK:
+            self._channel = self._channel.with_msgpack()
+
+    # --- the end ------------------------------------------------------------------------------------
+
+    def _lost(self, error: BaseException, kind: str, patience: float) -> BaseException:
+        """End the game after an error; return what to raise: the error itself, if it is not about the game."""
+        self._close_channel()
+        has_ended = self._has_ended(error)
+        self._end_process()
+        if isinstance(error, WireError) or not isinstance(
+            error, (GameSilentError, GameGoneError, MalformedMessageError, ReportedError)
+        ):
+            return error
+        name = f"the game `{self._game.name}`"
+        lines = self._process.last_lines() if self._process else ""
+        starting = kind == "hello"
+        if isinstance(error, MalformedMessageError):
+            help_ = "correct the game; `docs/wire.md` describes the messages"
+            return wire_error(errors.MALFORMED, f"{name} {error}", help_, lines)
+        if isinstance(error, ReportedError):
+            return wire_error(
+                errors.REPORTED, f"{name} reports: {error}", "correct the game, or what it asks for", lines
+            )
+        code = errors.NOT_STARTED if starting else errors.LOST
+        before = "before it said hello" if starting else f"instead of answering `{kind}`"
+        if has_ended and self._process:
+            return wire_error(code, f"{name} {self._process.end_text()} {before}", _ENDED, lines)
+        if isinstance(error, GameGoneError):
+            return wire_error(code, f"{name} closed its connection {before}", _ENDED, lines)
+        key = "start_s" if starting else "step_s"
+        what = "say hello" if starting else f"answer `{kind}`"
+        help_ = f"find out what it waits for, or allow more time with `{key}`"
+        ended = ", and was ended" if self._process else ""
+        return wire_error(code, f"{name} did not {what} within {patience:g} s{ended}", help_, lines)
+
+    def _has_ended(self, error: BaseException) -> bool:
+        """Whether the game has ended by itself; a game that has closed its connection may be about to."""
+        if self._process is None:
+            return False
+        return self._process.wait(_TO_CLOSE_S if isinstance(error, GameGoneError) else 0)
+
+    def _close_channel(self) -> None:
+        if self._channel is not None:
+            self._channel.close()
+        self._channel = None
+
+    def _end_process(self) -> None:
+        if self._process is not None:
+            self._process.end()

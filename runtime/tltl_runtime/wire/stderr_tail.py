@@ -1,0 +1,41 @@
+"""The last lines that a game wrote to its standard error."""
+
+from __future__ import annotations
+
+import os
+import re
+import threading
+from typing import IO, Final
+
+from tltlc.api import fileio
+
+_CHUNK: Final = 1 << 16
+_TO_END_S: Final = 5.0
+"""Seconds in which the rest of the standard error of an ended process arrives."""
+_COLOUR: Final = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
+
+
+class StderrTail:
+    """Reads a pipe in a thread, so that the game never waits, and keeps its last bytes."""
+
+    def __init__(self, pipe: IO[bytes]) -> None:
+        self._pipe = pipe
+        self._data = b""
+        self._thread = threading.Thread(target=self._read, name="standard error of a game", daemon=True)
+        self._thread.start()
+
+    def lines(self) -> str:
+        """Return the last lines after the process has ended: as text, without control characters."""
+        self._thread.join(_TO_END_S)
+        lines = _COLOUR.sub("", self._data.decode(errors="replace")).splitlines()
+        shown = [_printable(line) for line in lines if line.strip()]
+        return "\n".join(shown[-(fileio.limits.WIRE_STDERR.values or 0) :])
+
+    def _read(self) -> None:
+        with self._pipe:
+            while chunk := os.read(self._pipe.fileno(), _CHUNK):
+                self._data = (self._data + chunk)[-fileio.limits.WIRE_STDERR.size :]
+
+
+def _printable(line: str) -> str:
+    return "".join(char if char.isprintable() else " " for char in line).rstrip()

@@ -1,0 +1,46 @@
+"""How a game in another process is started or found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tltlc.api import Diagnostic, TltlError, record
+
+START_S = 30.0
+STEP_S = 5.0
+
+
+@record
+class WireGame:
+    """A game in another process, as a game file describes it.
+
+    Either ``process`` has the words of the command that starts the game in ``folder``, or ``connect``
+    is the address, ``HOST:PORT``, of a game that is running. The game must say ``hello`` within
+    ``start_s`` seconds, and answer each request within ``step_s`` seconds. ``name`` is used in
+    messages.
+    """
+
+    name: str
+    folder: Path
+    process: tuple[str, ...] = ()
+    connect: str = ""
+    start_s: float = START_S
+    step_s: float = STEP_S
+
+    def __post_init__(self) -> None:
+        if bool(self.process) == bool(self.connect):
+            raise ValueError("a game has either `process` or `connect`")
+
+
+def address(text: str) -> tuple[str, int]:
+    """Return the host and the port of ``HOST:PORT``; an IPv6 address has brackets, as in ``[::1]:5000``.
+
+    Raises:
+        TltlError: TLT0803, it is no address.
+    """
+    host, colon, port = text.rpartition(":")
+    host = host[1:-1] if host.startswith("[") and host.endswith("]") else host
+    if not colon or not host or not port.isascii() or not port.isdigit() or not 0 < int(port) < 2**16:
+        title, help_ = f"`{text}` is not an address", 'write `connect = "127.0.0.1:5000"`: a host and a port'
+        raise TltlError([Diagnostic("TLT0803", title, help=help_)])
+    return host, int(port)
