@@ -1,0 +1,356 @@
+"""Connect a game in Python to tltlc, and record the play of a person: copy this file into your game.
+
+It needs Python 3.8 or newer and nothing else. A game is an object with the attribute ``hello`` and
+some methods::
+
+    import tltl_client
+
+    class Game:
+        hello = {
+            "name": "counter",
+            "clock_hz": 10,
+            "signals": {"position": {"range": [0, 10]}, "at_goal": {"type": "bool"}},
+            "actions": {"type": "discrete", "n": 3},
+            "observation": {"type": "box", "low": 0, "high": 10, "shape": [1]},
+            "scenes": ["short", "long"],
+            "capabilities": ["seed", "positions"],
+        }
+
+        def reset(self, scene, variant, seed): ...     # begin an episode, return its first state
+        def step(self, action): ...                    # play one tick, return the state
+
+        def snapshot(self): ...                        # optional: keep the state of the game, return an id
+        def restore(self, id): ...                     # optional: return to it, return the state
+        def screenshot(self): ...                      # optional: return a picture, see `array`
+        def close(self): ...                           # optional: called at the end
+
+    if __name__ == "__main__":
+        tltl_client.play(Game())
+
+A state is a dict with ``signals``, ``observation``, ``ended``, ``cause`` and ``positions``; ``state``
+makes one. Raise ``Refusal("there is no scene `crypt`")`` where a request cannot be met.
+
+``play`` waits for requests. A game with a main loop of its own uses ``Client`` directly::
+
+    client = tltl_client.Client(hello)
+    while True:
+        kind, body = client.request()
+        ...
+        client.answer_state(state)
+
+``docs/wire.md`` of tltlc describes the protocol.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import socket
+import sys
+from contextlib import suppress
+from math import isfinite
+from pathlib import Path
+from typing import Any, Iterable, Mapping, TextIO  # noqa: UP035 - Python 3.8 has no better place for them.
+
+PROTOCOL = 1
+LONGEST_LINE = 1 << 25
+KINDS = ("reset", "step", "snapshot", "restore", "screenshot", "close")
+
+
+class Refusal(Exception):
+    """A request cannot be met; its text says why, and tltlc shows it."""
+
+
+class Disconnected(Exception):
+    """tltlc has closed the connection, or refuses this game; the text says why, if tltlc said so."""
+
+
+def state(
+    signals: Mapping[str, float],
+    observation: Any = None,
+    ended: bool = False,
+    cause: str | None = None,
+    positions: Mapping[str, Iterable[float]] | None = None,
+) -> dict[str, Any]:
+    """Return the message about the state of the game.
+
+    ``signals`` are numbers in SI units and bools, by name. ``cause`` says who or what ended the
+    episode. ``positions`` are lists of two or three coordinates in metres, by the name of the
+    entity; that of the player is ``player``.
+    """
+    message: dict[str, Any] = {"signals": signals, "ended": bool(ended), "cause": cause}
+    if observation is not None:
+        message["observation"] = observation
+    if positions is not None:
+        message["positions"] = positions
+    return message
+
+
+def array(data: bytes, dtype: str, shape: Iterable[int]) -> dict[str, Any]:
+    """Return a large array, such as a picture, for a message.
+
+    ``data`` are its bytes, little-endian, the last index fastest; ``dtype`` is a word such as
+    ``uint8``; ``shape`` is a list such as ``[84, 84, 3]``.
+    """
+    return {"base64": base64.b64encode(data).decode(), "dtype": dtype, "shape": list(shape)}
+
+
+def play(game: Any, client: Client | None = None) -> None:
+    """Connect to tltlc and do what it asks for, until it closes the connection.
+
+    If tltlc refuses the game, or has not started it, the process ends with a message. A game that waits for
+    tltlc passes a ``client``: ``play(game, listen(game_hello(game), 5000))``.
+    """
+    try:
+        client = client or Client(game_hello(game))
+        while True:
+            kind, body = client.request()
+            if kind == "close":
+                break
+            try:
+                _answer(game, client, kind, body)
+            except Refusal as refusal:
+                client.refuse(str(refusal))
+    except Disconnected as error:
+        if str(error):
+            sys.exit(str(error))
+    finally:
+        if client is not None:
+            client.close()
+        if hasattr(game, "close"):
+            game.close()
+
+
+def game_hello(game: Any) -> dict[str, Any]:
+    """Return the declaration of a game; the capabilities of its methods are added."""
+    words = set(game.hello.get("capabilities", []))
+    if hasattr(game, "snapshot") and hasattr(game, "restore"):
+        words.add("snapshot")
+    if hasattr(game, "screenshot"):
+        words.add("screenshot")
+    return {**game.hello, "capabilities": sorted(words)}
+
+
+def _answer(game: Any, client: Client, kind: str, body: Any) -> None:
+    if kind == "reset":
+        client.answer_state(game.reset(body.get("scene"), body.get("variant", "v0"), body.get("seed")))
+    elif kind == "step":
+        result = game.step(body["action"])
+        for _ in range(body.get("repeat", 1) - 1):
+            if result["ended"]:
+                break
+            result = game.step(body["action"])
+        client.answer_state(result)
+    elif kind == "snapshot" and hasattr(game, "snapshot"):
+        client.answer({"snapshot": {"id": game.snapshot()}})
+    elif kind == "restore" and hasattr(game, "restore"):
+        client.answer_state(game.restore(body["id"]))
+    elif kind == "screenshot" and hasattr(game, "screenshot"):
+        client.answer({"screenshot": game.screenshot()})
+    else:
+        raise Refusal(f"this game does not know the request `{kind}`")
+
+
+class Client:
+    """A connection to tltlc that has said ``hello``.
+
+    ``hello`` is the declaration of the game, without version and token. By default, the port and
+    the token come from the variables TLTL_PORT and TLTL_TOKEN. ``connection`` is a socket that is
+    connected already.
+
+    Raises Disconnected if there is no tltlc.
+    """
+
+    def __init__(
+        self,
+        hello: Mapping[str, Any],
+        port: int | str | None = None,
+        token: str | None = None,
+        connection: socket.socket | None = None,
+    ) -> None:
+        token = os.environ.get("TLTL_TOKEN", "") if token is None else token
+        self._socket = connection or _connected(port or os.environ.get("TLTL_PORT"))
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._lines = self._socket.makefile("rb")
+        self.answer({"hello": {"tltl": PROTOCOL, **({"token": token} if token else {}), **hello}})
+
+    def request(self) -> tuple[str, Any]:
+        """Wait for the next request; return its kind, such as ``step``, and its content.
+
+        Raises Disconnected if tltlc has closed the connection, or refuses this game.
+        """
+        message = self._read()
+        if "error" in message:
+            body = message["error"]
+            raise Disconnected(str(body.get("message") if isinstance(body, dict) else body))
+        for kind in KINDS:
+            if kind in message:
+                return kind, message[kind]
+        return next(iter(message), ""), {}
+
+    def answer_state(self, message: Mapping[str, Any]) -> None:
+        """Answer a ``reset``, a ``step`` or a ``restore`` with the result of :func:`state`."""
+        self.answer({"state": message})
+
+    def refuse(self, reason: str) -> None:
+        """Answer that the request cannot be met."""
+        self.answer({"error": {"message": reason}})
+
+    def answer(self, message: Mapping[str, Any]) -> None:
+        """Send a message; raises ValueError if a number in it is not finite."""
+        data = json.dumps(message, separators=(",", ":"), allow_nan=False).encode() + b"\n"
+        try:
+            self._socket.sendall(data)
+        except OSError:
+            raise Disconnected(self._last_words()) from None
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._lines.close()
+        self._socket.close()
+
+    def _read(self) -> dict[str, Any]:
+        try:
+            line = self._lines.readline(LONGEST_LINE + 1)
+        except OSError:
+            line = b""
+        if not line.endswith(b"\n"):
+            raise Disconnected
+        message: dict[str, Any] = json.loads(line.decode())
+        return message
+
+    def _last_words(self) -> str:
+        """Return why tltlc closed the connection, if it said so."""
+        try:
+            return str(self._read()["error"]["message"])
+        except (Disconnected, KeyError, TypeError, ValueError):
+            return ""
+
+
+def _connected(port: int | str | None) -> socket.socket:
+    if not port:
+        raise Disconnected("tltlc must start this game: the variable TLTL_PORT is not set")
+    try:
+        return socket.create_connection(("127.0.0.1", int(port)))
+    except OSError as error:
+        raise Disconnected(f"cannot connect to tltlc at port {port}: {error}") from None
+
+
+def listen(hello: Mapping[str, Any], port: int, token: str | None = None) -> Client:
+    """Wait on a port of 127.0.0.1 until tltlc connects; return the Client.
+
+    This is for a game file with ``connect = "127.0.0.1:PORT"``. If ``token``, by default the
+    variable TLTL_TOKEN, is not empty, tltlc must send the same. While one tltlc plays, no other can
+    connect.
+
+    Raises Disconnected if another program uses the port.
+    """
+    token = os.environ.get("TLTL_TOKEN", "") if token is None else token
+    while True:
+        connection = _accepted(port)
+        with connection.makefile("rb") as lines:
+            try:
+                reason = _refusal(json.loads(lines.readline(1 << 16).decode()), token)
+            except (OSError, ValueError):
+                reason = "the first line must be a `hello`"
+        if not reason:
+            return Client(hello, token="", connection=connection)
+        with connection, suppress(OSError):
+            connection.sendall(json.dumps({"error": {"message": reason}}).encode() + b"\n")
+
+
+def _accepted(port: int) -> socket.socket:
+    with socket.socket() as server:
+        if os.name != "nt":
+            server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            server.bind(("127.0.0.1", port))
+            server.listen(1)
+        except OSError as error:
+            raise Disconnected(f"cannot listen on port {port}: {error}; does this game run twice?") from None
+        return server.accept()[0]
+
+
+def _refusal(message: Any, token: str) -> str:
+    """Return why a game that listens refuses this ``hello`` of tltlc; empty if it does not."""
+    hello = message.get("hello") if isinstance(message, dict) else None
+    if not isinstance(hello, dict):
+        return "the first line must be a `hello`"
+    if hello.get("tltl") != PROTOCOL:
+        return f"this game speaks version {PROTOCOL} of the protocol"
+    if token and hello.get("token") != token:
+        return "the token is wrong: start tltlc with the variable TLTL_TOKEN of this game"
+    return ""
+
+
+class Recorder:
+    """Writes the play of a person as traces, which ``tltlc monitor`` judges; needs no tltlc.
+
+    Each episode is a file in ``folder``: ``trace-0001.csv``, ``trace-0002.csv`` and so on; no file is
+    overwritten. ``signals`` are the names of the signals, as specs write them. With ``clock_hz``,
+    the number of samples in a second, the files have a column ``time``::
+
+        recorder = tltl_client.Recorder("traces", ["position", "at_goal"], clock_hz=10)
+        recorder.begin()
+        recorder.sample({"position": 0, "at_goal": False})    # at the start, then after each tick
+        recorder.end()
+
+    Raises ValueError, in ``sample``, if a number is not finite, and KeyError if a signal is missing.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str], signals: Iterable[str], clock_hz: float | None = None) -> None:
+        self._folder, self._signals, self._clock_hz = Path(folder), tuple(signals), clock_hz
+        self._file: TextIO | None = None
+        self._samples = 0
+
+    def begin(self) -> Path:
+        """Begin a trace, and end the one before; return the path of its file."""
+        self.end()
+        self._folder.mkdir(parents=True, exist_ok=True)
+        number = 1
+        while True:
+            path = self._folder / f"trace-{number:04d}.csv"
+            try:
+                self._file = path.open("x", encoding="utf-8", newline="\n")
+                break
+            except FileExistsError:
+                number += 1
+        self._samples = 0
+        names = ("time", *self._signals) if self._clock_hz else self._signals
+        self._write(map(_cell, names))
+        return path
+
+    def sample(self, signals: Mapping[str, float]) -> None:
+        """Write the values of all signals at one moment; they are in the file at once."""
+        if self._file is None:
+            self.begin()
+        values = [_value(name, signals[name]) for name in self._signals]
+        if self._clock_hz:
+            values.insert(0, repr(self._samples / self._clock_hz))
+        self._write(values)
+        self._samples += 1
+
+    def end(self) -> None:
+        """End the trace, if there is one."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _write(self, cells: Iterable[str]) -> None:
+        assert self._file is not None
+        self._file.write(",".join(cells) + "\n")
+        self._file.flush()
+
+
+def _value(name: str, value: float) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if not isfinite(value):
+        raise ValueError(f"the signal {name} is {value}, and numbers must be finite")
+    return repr(float(value))
+
+
+def _cell(name: str) -> str:
+    quoted = name.replace('"', '""')
+    return f'"{quoted}"' if "," in name or name.startswith('"') else name
