@@ -1,0 +1,70 @@
+"""The messages on the page about the protocol are read by tltlc, and written by it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from tests.docs.blocks import ROOT
+from tltl_runtime.wire import answers, requests
+from tltl_runtime.wire.answers import StateReader
+from tltl_runtime.wire.clients import tltl_client
+from tltl_runtime.wire.hello import hello_from
+from tltl_runtime.wire.spaces import space_from
+from tltl_runtime.wire.wire_game import START_S, STEP_S
+from tltlc.api.fileio import limits
+
+PAGE = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8")
+
+
+def messages() -> list[dict[str, Any]]:
+    """Return the messages in the blocks of JSON, in order."""
+    decoder = json.JSONDecoder()
+    found = []
+    for block in re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL):
+        text = block.strip()
+        while text:
+            message, end = decoder.raw_decode(text)
+            found.append(message)
+            text = text[end:].strip()
+    return found
+
+
+def test_each_message_has_an_example_that_is_read() -> None:
+    (hello, reset, step, state, snapshot, restore, answer, screenshot, picture, close, error, agreement) = messages()
+    declared = hello_from(hello)
+    read = StateReader(declared).read(state)
+    assert read.positions["guard_1"] == (0, 2) and declared.params == {"key_count": 3}
+    assert reset == requests.ResetRequest("crypt", "v0", 7).message()
+    assert step == requests.StepRequest(2, 4).message()
+    assert snapshot == requests.SnapshotRequest().message() and restore == requests.RestoreRequest(3).message()
+    assert answers.snapshot_id(answer) == 3
+    assert screenshot == requests.ScreenshotRequest().message()
+    assert answers.screenshot(picture).tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
+    assert close == requests.CloseRequest().message()
+    assert list(error) == ["error"] and agreement["hello"]["encoding"] == "msgpack"
+
+
+def test_each_space_of_the_page_is_read() -> None:
+    documents = re.findall(r"^\| `(\{\"type\".*?\})` \|", PAGE, re.MULTILINE)
+    assert len(documents) == 6
+    inner = '{"type": "discrete", "n": 2}'
+    for document in documents:
+        space_from(json.loads(document.replace("…", inner)), "space")
+
+
+def test_limits_and_deadlines_are_those_of_the_code() -> None:
+    text = " ".join(PAGE.split())
+    assert f"at most {limits.WIRE_MESSAGE.size >> 20} MiB" in text
+    assert f"`hello` at most {limits.WIRE_HELLO.size >> 20} MiB" in text
+    assert (
+        f"at most {limits.WIRE_HELLO.depth} levels" in text and f"at most {limits.WIRE_HELLO.values:,} numbers" in text
+    )
+    assert f"the last {limits.WIRE_STDERR.values} lines" in text
+    assert f"| `start_s` | {START_S:g} s |" in text and f"| `step_s` | {STEP_S:g} s |" in text
+
+
+def test_the_client_is_where_the_page_says() -> None:
+    assert Path(tltl_client.__file__).relative_to(ROOT).as_posix() in PAGE
