@@ -17,17 +17,23 @@ from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
-from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, specs
+from tltl_runtime.wire.wire_game import START_S, STEP_S, WireGame, address
+from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 
 SUFFIX: Final = ".game.toml"
 FIRST_VARIANT: Final = "v0"
 """The variant of a scene as it stands in its table."""
 
+_LEAST_S, _MOST_S = 0.001, 86_400.0
+"""The range of the deadlines ``start_s`` and ``step_s``, in seconds."""
 _HELP: Final = 'write values as in `clock = "10 Hz"` and `options = { size = 6 }`'
 _MODULE: Final = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z", re.ASCII)
-_GAME_KEYS: Final = ("gymnasium", "python", "import", "signals", "clock", "observation", "keys")
+_MAKERS: Final = ("gymnasium", "python", "process", "connect")
+"""The keys of ``[game]`` of which exactly one says how the environment is made."""
+_OF_PROCESSES: Final = ("protocol", "start_s", "step_s")
+"""The keys of ``[game]`` for games in other processes alone."""
+_GAME_KEYS: Final = (*_MAKERS, *_OF_PROCESSES, "import", "signals", "clock", "observation", "keys")
 _SCENE_KEYS: Final = ("name", "options", "files", "spec", "variants")
-_IN_OTHER_PROCESSES: Final = ("process", "protocol", "connect", "start_s", "step_s")
 
 
 @record
@@ -70,8 +76,9 @@ class GameScene:
 class GameFile:
     """A game, as its file at ``path`` describes it.
 
-    The environment is the one with the id ``gymnasium``, or the result of the function ``python``;
-    the other one is None. ``modules`` are imported before, so that they register the id.
+    The environment is the one with the id ``gymnasium``, or the result of the function ``python``, or
+    the game in another process, ``wire``; the others are None. ``modules`` are imported before, so
+    that they register the id.
     ``signals`` is a function from an environment to its signals; None if the environment has a
     method ``tltl_signals``. ``clock_s`` are the seconds of a step; None if the file does not say.
     ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` are the
@@ -82,6 +89,7 @@ class GameFile:
     path: Path
     gymnasium: str | None
     python: FunctionName | None
+    wire: WireGame | None
     modules: tuple[str, ...]
     signals: FunctionName | None
     clock_s: float | None
@@ -149,12 +157,12 @@ class _Reader:
         table.report_unknown_keys({**dict.fromkeys(_GAME_KEYS, "[game]"), **dict.fromkeys(_SCENE_KEYS, "[[scene]]")})
         if game is None:
             return None
-        gymnasium, python = _environment(game)
-        _report_other_processes(game)
+        _check_makers(game)
         result = GameFile(
             path=self._path,
-            gymnasium=gymnasium,
-            python=python,
+            gymnasium=game.text("gymnasium", "") or None,
+            python=_function(game, "python"),
+            wire=self._wire(game),
             modules=_modules(game),
             signals=_function(game, "signals"),
             clock_s=_clock_s(game),
@@ -165,6 +173,24 @@ class _Reader:
         )
         game.report_unknown_keys(dict.fromkeys(_SCENE_KEYS, "[[scene]]"))
         return result
+
+    def _wire(self, game: CheckedTable) -> WireGame | None:
+        """Read how a game in another process is started or found; return None if it is in none."""
+        process, connect = game.names("process", ()), game.text("connect", "")
+        game.text("protocol", "tltl", one_of=("tltl",))
+        start_s = game.number("start_s", START_S, low=_LEAST_S, high=_MOST_S, unit="s")
+        step_s = game.number("step_s", STEP_S, low=_LEAST_S, high=_MOST_S, unit="s")
+        if "process" in game.entries and not any(process[:1]):
+            game.log.append(wrong_value(game.entries["process"], "process", 'a command, e.g. ["godot", "--headless"]'))
+        if bool(process) == bool(connect) or (process and not process[0]):
+            return None
+        try:
+            if connect:
+                address(connect)
+        except TltlError as error:
+            game.log += [replace(diagnostic, labels=(game.label_of("connect"),)) for diagnostic in error.diagnostics]
+            return None
+        return WireGame(self._path.name, self._folder, process, connect, start_s, step_s)
 
     def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[GameScene, ...]:
         """Read the scenes; if there are none, return one that is named after the file, labelled ``around``."""
@@ -243,28 +269,21 @@ class _Reader:
         return path
 
 
-def _environment(game: CheckedTable) -> tuple[str | None, FunctionName | None]:
-    """Return the values of ``gymnasium`` and ``python``; log an error unless there is exactly one."""
-    gymnasium, python = game.text("gymnasium", ""), _function(game, "python")
-    given = game.entries.keys() & {"gymnasium", "python"}
-    if len(given) == 2:
-        title = "`[game]` has both `gymnasium` and `python`"
-        game.log.append(Diagnostic("TLT0803", title, (game.label_of("python"),), "keep one of them"))
-    elif not given and not game.entries.keys() & {*_IN_OTHER_PROCESSES}:
+def _check_makers(game: CheckedTable) -> None:
+    """Log an error unless exactly one key says how the environment is made."""
+    given = [key for key in game.entries if key in _MAKERS]
+    if len(given) > 1:
+        title = f"`[game]` has both `{given[0]}` and `{given[1]}`"
+        game.log.append(Diagnostic("TLT0803", title, (game.label_of(given[1]),), "keep one of them"))
+    elif not given:
         title = "`[game]` does not say how the environment is made"
-        help_ = 'write `gymnasium = "ID"`, or `python = "MODULE:FUNCTION"`'
+        help_ = 'write `gymnasium = "ID"`, `python = "MODULE:FUNCTION"`, or `process = ["COMMAND", "ARGUMENT"]`'
         game.log.append(Diagnostic("TLT0803", title, (game.label,), help_))
-    return gymnasium or None, python
-
-
-def _report_other_processes(game: CheckedTable) -> None:
-    """Report the keys of games that run in a process of their own, and take them out of the table."""
-    for key in _IN_OTHER_PROCESSES:
-        entry = game.entries.pop(key, None)
-        if entry is not None:
-            title = f"`{key}` is for games in a process of their own, which tltlc cannot play yet"
-            help_ = 'name a Gymnasium environment: `gymnasium = "ID"`, or `python = "MODULE:FUNCTION"`'
-            game.log.append(Diagnostic("TLT0802", title, (entry.label,), help_))
+    if not {"process", "connect"} & game.entries.keys():
+        for key in _OF_PROCESSES:
+            if key in game.entries:
+                title, help_ = f"`{key}` is for games in other processes", "leave it out, or name a `process`"
+                game.log.append(Diagnostic("TLT0802", title, (game.label_of(key),), help_))
 
 
 def _modules(game: CheckedTable) -> tuple[str, ...]:

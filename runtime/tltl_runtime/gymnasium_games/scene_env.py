@@ -23,6 +23,7 @@ from tltl_runtime.gymnasium_games.outline_reader import OutlineError, read_outli
 from tltl_runtime.gymnasium_games.value_text import type_text
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.suggestion import suggestion
+from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
 
 _OWN_OPTIONS: Final = ("max_episode_steps", "disable_env_checker", "render_mode")
@@ -195,7 +196,9 @@ def make_base_env(
     with folder_first(game):
         for module in game.modules:
             import_module(game, module, "import")
-        if game.python is not None:
+        if game.wire is not None:
+            env = _in_process(game.wire, game, scene, variant, options, own)
+        elif game.python is not None:
             env = _from_function(game, import_function(game, game.python, "python"), scene, options, own)
         else:
             env = _from_id(game, scene, options, own, render_mode)
@@ -206,6 +209,23 @@ def make_base_env(
         except BaseException:
             env.close()
             raise
+
+
+def _in_process(
+    wire: WireGame, game: GameFile, scene: str, variant: str, options: Mapping[str, Any], own: SceneVariant
+) -> gymnasium.Env[Any, Any]:
+    """Start a game in another process, or connect to it; it makes the scene itself."""
+    from tltl_runtime.wire.env import WireEnv
+
+    unknown = [key for key in options if key != "render_mode"]
+    if unknown:
+        title = f"a game in another process takes no option `{unknown[0]}`"
+        help_ = "leave it out: the game gets the names of the scene and of the variant"
+        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
+    # A game file that names no scenes means the first one of the game.
+    named = None if len(game.scenes) == 1 and scene == game.name else scene
+    with guarded(game, CANNOT_START, "the game", own.label):
+        return WireEnv(wire, scene=named, variant=variant, render_mode=options.get("render_mode"))
 
 
 def _from_function(

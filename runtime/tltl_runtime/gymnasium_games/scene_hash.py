@@ -28,6 +28,7 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
         {
             "gymnasium": game.gymnasium,
             "python": game.python.text if game.python else None,
+            **({"process": game.wire.process} if game.wire else {}),
             "import": game.modules,
             "signals": game.signals.text if game.signals else None,
             "clock_s": game.clock_s,

@@ -94,7 +94,6 @@ name = "twice"
         "`[game]` has no key `signal`",
         "did you mean `signals`?",
         "wrong value for `import`",
-        "`process` is for games in a process of their own, which tltlc cannot play yet",
         "it is a key of `[[scene]]`",
         'wrong value for `name`: "a b"',
         "did you mean `options`?",
@@ -168,3 +167,32 @@ def test_other_arguments_are_errors(folder: Path) -> None:
         scene_of(game, "shrt")
     with pytest.raises(TltlError, match="no variant `v2`"):
         variant_of(game, "short", "v2")
+
+
+def test_a_game_in_another_process(folder: Path) -> None:
+    text = '[game]\nprocess = ["godot", "--headless"]\nstart_s = 60\nstep_s = 0.5\n'
+    wire = read_game_file(games.write(folder, corridor__game__toml=text)).wire
+    assert wire is not None
+    assert (wire.process, wire.connect, wire.start_s, wire.step_s) == (("godot", "--headless"), "", 60.0, 0.5)
+    assert wire.folder.resolve() == folder.resolve()
+    text = '[game]\nconnect = "127.0.0.1:5000"\nprotocol = "tltl"\n'
+    other = read_game_file(games.write(folder, corridor__game__toml=text)).wire
+    assert other is not None
+    assert (other.process, other.connect) == ((), "127.0.0.1:5000")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('process = ["a"]\nconnect = "h:1"', "`[game]` has both `process` and `connect`"),
+        ('gymnasium = "A-v0"\nprocess = ["a"]', "`[game]` has both `gymnasium` and `process`"),
+        ('gymnasium = "A-v0"\nstep_s = 3', "`step_s` is for games in other processes"),
+        ("process = []", "wrong value for `process`"),
+        ('process = ["a"]\nprotocol = "smoke"', "wrong value for `protocol`"),
+        ('process = ["a"]\nstep_s = 0', "wrong value for `step_s`"),
+        ('connect = "somewhere"', "`somewhere` is not an address"),
+        ("", "does not say how the environment is made"),
+    ],
+)
+def test_wrong_games_in_other_processes_are_reported(folder: Path, text: str, message: str) -> None:
+    assert message in errors_of(folder, f"[game]\n{text}\n")

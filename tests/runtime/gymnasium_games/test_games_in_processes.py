@@ -1,0 +1,83 @@
+"""Scenes of games in other processes: the counter of the protocol's conversation, played by the commands."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tltl_runtime.gymnasium_games.game_file import read_game_file
+from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+from tltl_runtime.gymnasium_games.scene_env import make_base_env
+from tltl_runtime.wire.errors import WireError
+from tltlc.api import TltlError
+
+Run = Callable[..., Outcome]
+SPEC = """\
+clock 10 Hz
+signal position in [0, 10]
+signal at_goal: bool
+spec count { reach at_goal limit 40 steps }
+"""
+
+
+def write(folder: Path, *words: str) -> Path:
+    """Write a game file whose game is the command ``words``, with its spec; return its path."""
+    path = folder / "counter.game.toml"
+    variants = "variants = { trap = {} }"
+    scene = f'[[scene]]\nname = "short"\nspec = "counter.tltl:count"\n{variants}\n'
+    path.write_text(f"[game]\nprocess = {json.dumps(words)}\n\n{scene}")
+    (folder / "counter.tltl").write_text(SPEC)
+    return path
+
+
+@pytest.fixture(name="game")
+def _game(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return write(tmp_path, sys.executable, str(Path(__file__).parents[1] / "wire" / "games" / "counter.py"))
+
+
+@pytest.mark.usefixtures("game")
+def test_a_game_is_checked(tltlc: Run) -> None:  # noqa: F811
+    result = tltlc("check", "--game", "counter.game.toml:short:trap")
+    assert result.status == 0, result.err
+    assert "short:trap has everything that `count` needs" in result.err
+    assert "equal seeds and actions give equal plays: yes" in result.err
+    assert "a restored snapshot is what was saved: yes" in result.err
+
+
+@pytest.mark.usefixtures("game")
+def test_an_episode_is_recorded_with_places_and_played_again() -> None:
+    env = GAME.recorder(GAME.make_env("counter.game.toml:short"), "tester")
+    env.reset(seed=2)
+    for _ in range(2):
+        env.step(2)
+    env.close()
+    episode = env.episode
+    assert (episode.success, episode.end, episode.signals[-1].tolist()) == (True, "success", [1.0])
+    assert episode.positions is not None
+    located = GAME.located(GAME.episode_from_bytes(GAME.episode_bytes(episode), "it"), "counter.game.toml", None)
+    assert GAME.check_replay(located) == ()
+
+
+def test_a_scene_that_the_game_lacks_is_an_error(game: Path) -> None:
+    game.write_text(game.read_text().replace('"short"', '"cellar"'))
+    with pytest.raises(TltlError, match=r"TLT0780: the game raises ValueError: .*cellar"):
+        make_base_env(read_game_file(game), "cellar")
+
+
+def test_options_are_for_environments_in_this_process(game: Path) -> None:
+    game.write_text(game.read_text().replace("variants = {", "options = { size = 3 }\nvariants = {"))
+    with pytest.raises(TltlError, match="TLT0780: a game in another process takes no option `size`"):
+        make_base_env(read_game_file(game), "short")
+
+
+def test_a_game_that_ends_at_once_is_reported(tmp_path: Path) -> None:
+    path = write(tmp_path, sys.executable, "-c", "import sys; sys.exit('no map')")
+    with pytest.raises(WireError, match="TLT0790") as error:
+        make_base_env(read_game_file(path), "short")
+    assert "no map" in (error.value.diagnostics[0].help or "")
