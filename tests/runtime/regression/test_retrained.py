@@ -80,6 +80,14 @@ def test_the_sentence_for_a_likely_infeasible_level() -> None:
     )
 
 
+def test_a_training_without_a_search_proves_little() -> None:
+    assert sentence_of("no_way", 0, 25, searched=0) == (
+        "no way found: a training of 212,992 steps, 5 min 3 s in all, did not meet the spec once; that says little, "
+        "because there was no search: let it train longer; the best of its episodes reached progress 0.50, where this "
+        "remained: reach near(exit)"
+    )
+
+
 def test_a_retraining_survives_json() -> None:
     retrained = RetrainingResult(
         "no_way", "no", TRAINED, figures_of(summaries(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None

@@ -26,6 +26,7 @@ class FinishedRetraining:
     ``end`` says why it ended: it ``met`` its goal, or a limit of ``steps`` or ``minutes`` was
     reached. ``steps`` are the decisions of the agent. ``seconds`` include the search before the
     training. The search took ``searched`` decisions; ``complete`` is False if a limit stopped it.
+    ``searched`` is 0 if there was no search, for which a game must say where the player is.
     ``shortest`` is the number of steps in the shortest known episode that met the spec, of the
     search or the agent; None if none is known.
     """
@@ -115,14 +116,24 @@ def sentence(
             f"after {effort} {fresh_result}, but {percent_exactly(thresholds.pass_rate)} or more is required"
         )
     else:
-        broken = "" if trained.complete else ", which the limit stopped,"
-        search, training = f"a search of {trained.searched:,} steps{broken}", f"a training of {trained.steps:,} steps"
-        in_all = f"{duration(trained.seconds)} in all"
-        clauses = [f"no way found: neither {search} nor {training}, {in_all}, met the spec once"]
-        clauses.append(
-            "the level is likely infeasible" if trained.complete else "that says little: let it train longer"
-        )
+        clauses = _no_way_clauses(trained)
     if best is not None:
         best_of = "the best of the failed ones" if passed else "the best of its episodes"
         clauses.append(f"{best_of} reached progress {number(best.progress, 2)}, where this remained: {best.remained}")
     return "; ".join(clauses)
+
+
+def _no_way_clauses(trained: FinishedRetraining) -> list[str]:
+    """Say how much was tried in vain, and what follows from it."""
+    training, in_all = f"a training of {trained.steps:,} steps", f"{duration(trained.seconds)} in all"
+    if not trained.searched:
+        return [
+            f"no way found: {training}, {in_all}, did not meet the spec once",
+            "that says little, because there was no search: let it train longer",
+        ]
+    broken = "" if trained.complete else ", which the limit stopped,"
+    search = f"a search of {trained.searched:,} steps{broken}"
+    return [
+        f"no way found: neither {search} nor {training}, {in_all}, met the spec once",
+        "the level is likely infeasible" if trained.complete else "that says little: let it train longer",
+    ]
