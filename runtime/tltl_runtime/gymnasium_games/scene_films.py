@@ -27,7 +27,7 @@ class SceneFilms(Films[SceneEpisode]):
 
         Raises:
             TltlError: TLT0731, the environment renders no pictures; TLT0800, the level has no place;
-                the errors of playing the episode again.
+                TLT0824, played again, the episode is another one; the errors of playing it again.
         """
         del view
         from tltl_runtime.gymnasium_games.frame_strip import with_strip
@@ -40,7 +40,9 @@ class SceneFilms(Films[SceneEpisode]):
             raise TltlError([Diagnostic("TLT0800", title, help=help_)])
         wanted = np.searchsorted(episode.times, np.array(times) + 1e-9, side="right") - 1
         with closing(replayed_env(episode, "rgb_array")) as env:
-            for row, _ in enumerate(play_again(env, episode)):
+            for row, difference in enumerate(play_again(env, episode)):
+                if difference is not None:
+                    raise TltlError([difference])
                 count = int(np.count_nonzero(wanted == row))
                 if not count:
                     continue

@@ -36,8 +36,8 @@ class SceneKeyboard(Keyboard[SceneEpisode]):
 
         Raises:
             TltlError: those of ``Keyboard.play``; TLT0731, the game renders no pictures, or keys cannot
-                choose its actions; TLT0803, TLT0781: those of
-                :func:`~tltl_runtime.gymnasium_games.key_actions.key_actions`.
+                choose its actions; TLT0803, the game file names more or fewer keys than there are
+                actions; TLT0781, the game raises an exception.
         """
         from tltl_runtime.game.window import Window
         from tltl_runtime.gymnasium_games.key_actions import key_actions

@@ -25,15 +25,9 @@ def check_replay(episode: SceneEpisode) -> tuple[Diagnostic, ...]:
     Raises:
         TltlError: the errors of making and playing the environment; TLT0822, its actions are others.
     """
-    names = [signal.name for signal in episode.fspa.signals]
     with closing(replayed_env(episode)) as env:
-        judge = judging_wrapper(env)
-        for row, _ in enumerate(play_again(env, episode)):
-            if [float(judge.sample[name]) for name in names] != episode.signals[row].tolist():
-                return (replay_difference(episode, row, versions()),)
-            if judge.taken is not None and judge.taken.done and row < len(episode.actions):
-                return (replay_difference(episode, row, versions()),)
-    return ()
+        difference = next(filter(None, play_again(env, episode)), None)
+    return () if difference is None else (difference,)
 
 
 def replayed_env(episode: SceneEpisode, render_mode: str | None = None) -> gymnasium.Env[Any, Any]:
@@ -54,10 +48,16 @@ def replayed_env(episode: SceneEpisode, render_mode: str | None = None) -> gymna
     return env
 
 
-def play_again(env: gymnasium.Env[Any, Any], episode: SceneEpisode) -> Iterator[None]:
-    """Reset an environment with the seed of an episode and take its actions; yield after each of these moments."""
+def play_again(env: gymnasium.Env[Any, Any], episode: SceneEpisode) -> Iterator[Diagnostic | None]:
+    """Reset an environment with the seed of an episode and take its actions.
+
+    Yield after each of these moments: None, or TLT0824 if a signal of the spec, or the end, differs.
+    """
+    names, judge = [signal.name for signal in episode.fspa.signals], judging_wrapper(env)
     env.reset(seed=episode.seed)
-    yield
-    for flat in episode.actions:
-        env.step(action_value(episode.layout, flat))
-        yield
+    for row, signals in enumerate(episode.signals.tolist()):
+        if row:
+            env.step(action_value(episode.layout, episode.actions[row - 1]))
+        ends_early = judge.taken is not None and judge.taken.done and row < len(episode.actions)
+        is_same = [float(judge.sample[name]) for name in names] == signals and not ends_early
+        yield None if is_same else replay_difference(episode, row, versions())

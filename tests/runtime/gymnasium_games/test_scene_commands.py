@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
+from base64 import b64decode
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 
 import pytest
@@ -23,6 +26,8 @@ hidden = [16]
 [exploration]
 ways = 0
 """
+SEARCHING = SETTINGS.partition("[exploration]")[0]
+"""Settings with the usual search for ways to meet the spec."""
 SUITE = """\
 seed = 3
 episodes = 25
@@ -37,6 +42,23 @@ game = "corridor.game.toml"
 scene = "short"
 variant = "v1"
 policy = "run"
+"""
+SWAPPED = games.GRID.replace("scene, length=5", "scene, swapped=False, length=5").replace("{}", "{'cell': self.cell}")
+SWAPPED = SWAPPED.replace(
+    "return Corridor(length, render_mode)", "return (Mirror if swapped else Corridor)(length, render_mode)"
+)
+SWAPPED += """
+
+class Mirror(Corridor):
+    def step(self, action):
+        self.cell = self.length - 1 - self.cell
+        super().step((0, 2, 1)[action])
+        self.cell = self.length - 1 - self.cell
+        return self._observation(), float(self.opened), self.opened, False, {'cell': self.cell}
+"""
+"""The corridor with an option, with which the key and the door have each other's places.
+
+It says in which cell the player is, so that a training can search for ways.
 """
 
 
@@ -109,6 +131,41 @@ def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None
     assert "<h3>Episodes</h3>" in page
     assert "<h3>Map</h3>" not in page
     assert "<figcaption>episode 0:" in page
+    # A film of each recorded episode, above its curves, as the policy of the page allows.
+    assert "img-src data:;" in page
+    films = re.findall(r'<img class="film" src="data:image/webp;base64,([^"]+)" alt="Film of episode 0"', page)
+    assert films
+    with Image.open(BytesIO(b64decode(films[0]))) as film:
+        assert (film.format, film.size) == ("WEBP", (320, 240))
+        assert film.n_frames > 1  # type: ignore[attr-defined]
+    assert "There is no film" not in page
+
+
+def test_a_policy_that_fails_after_a_change_is_retrained(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    suite = 'seed = 3\nepisodes = 60\n[[case]]\ngame = "corridor.game.toml"\nscene = "short"\npolicy = "good"\n'
+    # Only quick ways are in time, so that chance does not meet the spec.
+    spec = games.SPEC.replace("limit 20 s", "limit 1 s")
+    game = games.write(tmp_path, suite__toml=suite, settings__toml=SEARCHING, corridor__tltl=spec, corridor__py=SWAPPED)
+    train = ("train", "--game", "corridor.game.toml:short", "--config", "settings.toml", "--out", "good")
+    assert tltlc(*train, "--steps", "30000").status == 0
+    assert tltlc("baseline", "suite.toml", "--workers", "1").status == 0
+    game.write_text(games.GAME.replace("length = 4", "length = 4, swapped = true"))
+    reports = ("--out", "out", "--json", "report.json")
+    result = tltlc("regress", "suite.toml", "--retrain", "--minutes", "0.1", "--workers", "1", *reports)
+    assert result.status == 1, result.err
+    (case,) = json.loads((tmp_path / "report.json").read_text())["cases"]
+    assert case["verdict"] == "fail"
+    assert case["retrained"]["outcome"] in ("learned", "feasible"), result.err
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "<h3>Retrained from its policy</h3>" in page
+    assert "How the training went" in page
+    policy = Path("out") / case["retrained"]["policy"]
+    assert tltlc("evaluate", policy, "--game", "corridor.game.toml:short", "--episodes", "2").status == 0
 
 
 def test_a_changed_file_of_the_game_selects_its_cases(tltlc: Run, trained: Path, tmp_path: Path) -> None:  # noqa: F811

@@ -14,6 +14,7 @@ from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.case_report import CaseReport
+from tltl_runtime.regression.report.episode_films import episode_films
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport, maps_of
 from tltl_runtime.regression.report.page.page import html_report
@@ -179,7 +180,14 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
     )
     if maps_of(reported) is not None:
         return reported
-    return replace(reported, curves={index: episode_curves(index, episodes[index]) for index in episodes})
+    place = case.prepared.setup.level, case.prepared.setup.variant.text
+    films = episode_films(game, place, case.report.explanation, episodes)
+    return replace(
+        reported,
+        curves={index: episode_curves(index, episodes[index]) for index in episodes},
+        films=films.pictures,
+        film_notes=films.notes,
+    )
 
 
 def _baseline_level(level: Level, ready: PreparedCase, reference: Reference) -> Level | None:

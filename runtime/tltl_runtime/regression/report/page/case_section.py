@@ -69,6 +69,7 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         curve=base64.b64encode(case.curve).decode(),
         has_baseline=bool(case.before),
         drawings=_drawings(case, slug, automaton),
+        film_notes=case.film_notes,
         noun="traces" if case.report.traces else "episodes",
     )
 
@@ -123,7 +124,7 @@ def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None)
         notes=automaton.notes,
         maps=None if level is None or level_maps is None else case_maps(case, level, level_maps),
         player=None if level_maps is None else player_panel(fspa, case.episodes, level_maps.values),
-        charts=trace_charts(fspa, case.curves, slug) if case.curves else None,
+        charts=trace_charts(fspa, case.curves, slug, case.films) if case.curves else None,
         curves=progress_curves(case.episodes) if case.episodes else None,
         distribution=progress_distribution(case.report.episodes, case.before),
         table=counts_table(fspa, now, before),

@@ -26,7 +26,8 @@ class ReportedCase:
 
     A case of recorded traces has no level. ``curves`` are those of examples of its traces by index, or
     of the recorded ``episodes`` if the level's game says nothing about places; they are empty for
-    other cases.
+    other cases. ``films`` are films of some of these episodes by index, as animated WebP pictures;
+    ``film_notes`` are sentences about films that could not be made.
     """
 
     report: CaseReport
@@ -37,6 +38,8 @@ class ReportedCase:
     baseline_level: Level | None = None
     curve: bytes = b""
     curves: Mapping[int, TraceCurves] = EMPTY
+    films: Mapping[int, bytes] = EMPTY
+    film_notes: tuple[str, ...] = ()
 
 
 def maps_of(case: ReportedCase) -> LevelMaps[Any, Any] | None:

@@ -6,6 +6,7 @@ SVG, because nearly every attribute is computed.
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Final
@@ -15,7 +16,7 @@ from markupsafe import Markup
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.support.markup import coordinate, element
-from tltlc.api import Fspa, label_text, record
+from tltlc.api import EMPTY, Fspa, label_text, record
 
 _WIDTH: Final = 860
 _LEFT: Final = 170
@@ -33,19 +34,35 @@ each group of samples, so that no short change is lost."""
 
 @record
 class _Chart:
-    """The picture of a trace; ``anchor`` is its address within the page."""
+    """The picture of a trace; ``anchor`` is its address within the page.
+
+    ``film`` is the film of an episode, WebP in base64; empty if there is none.
+    """
 
     anchor: str
     name: str
     is_episode: bool
     ended: str
     picture: Markup
+    film: str
 
 
-def trace_charts(fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str) -> Markup:
-    """Return the pictures of traces. ``slug`` is the case's short name in addresses within the page."""
+def trace_charts(
+    fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str, films: Mapping[int, bytes] = EMPTY
+) -> Markup:
+    """Return the pictures of traces, and above them their films, if there are any.
+
+    ``slug`` is the case's short name in addresses within the page.
+    """
     charts = [
-        _Chart(anchor(slug, index), curves.name, curves.kind == "episode", curves.ended, _chart(fspa, curves))
+        _Chart(
+            anchor=anchor(slug, index),
+            name=curves.name,
+            is_episode=curves.kind == "episode",
+            ended=curves.ended,
+            picture=_chart(fspa, curves),
+            film=base64.b64encode(films.get(index, b"")).decode(),
+        )
         for index, curves in sorted(traces.items())
     ]
     return render("trace_charts.html", charts=charts)

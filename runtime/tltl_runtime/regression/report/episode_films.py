@@ -1,0 +1,122 @@
+"""Films of the recorded episodes of a case, for the HTML page: animated pictures in the format WebP."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from io import BytesIO
+from itertools import chain
+from typing import Any, Final
+
+import numpy as np
+
+from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.films import Films, Picture
+from tltl_runtime.game.game import Game
+from tltl_runtime.regression.explain.explain import Finding
+from tltl_runtime.support.number_text import short_list
+from tltlc.api import EMPTY, TltlError, record
+
+MOST_FILMS: Final = 6
+"""A case has at most this many films."""
+MOST_FRAMES: Final = 200
+MOST_BYTES: Final = 1 << 20
+
+_SIZE: Final = (320, 240)
+"""The width and the height of a film, in pixels."""
+_SHORTEST_S: Final = 0.02
+_LONGEST_S: Final = 0.25
+"""A frame is shown for at most this many seconds, however long a step takes."""
+_LAST_S: Final = 1.5
+"""The last frame is shown for this many seconds; then the film starts again."""
+_QUALITIES: Final = (75, 40, 10)
+"""The qualities to try, in percent, until a film is small enough."""
+_LACKS_PICTURES: Final = "TLT0731"
+
+
+@record
+class CaseFilms:
+    """The films of a case by the index of the episode, and sentences about those that could not be made."""
+
+    pictures: Mapping[int, bytes] = EMPTY
+    notes: tuple[str, ...] = ()
+
+
+NO_FILMS: Final = CaseFilms()
+
+
+def episode_films(
+    game: Game[Any, Any], place: tuple[str, str], findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]
+) -> CaseFilms:
+    """Return films of recorded ``episodes``, those that are examples of ``findings`` first.
+
+    The game plays the episodes again for them; ``place`` names the level and its variant, as for
+    ``Game.load_level``. There are no films, and no notes, if the game draws none.
+    """
+    if game.films is None or not _can_write():
+        return NO_FILMS
+    pictures: dict[int, bytes] = {}
+    failures: dict[str, list[int]] = {}
+    for index in _examples(findings, episodes):
+        try:
+            episode = game.located(episodes[index], *place)
+            pictures[index] = _film(game.films, episode)
+        except TltlError as error:
+            if error.diagnostics[0].code == _LACKS_PICTURES:
+                return NO_FILMS
+            failures.setdefault(error.diagnostics[0].title, []).append(index)
+    return CaseFilms(pictures, tuple(_note(indices, title) for title, indices in failures.items()))
+
+
+def _examples(findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]) -> list[int]:
+    """Return the episodes to show, in their order: the first example of each finding, and then others."""
+    firsts = (next((index for index in finding.episodes if index in episodes), None) for finding in findings)
+    wanted = dict.fromkeys(index for index in chain(firsts, sorted(episodes)) if index is not None)
+    return sorted([*wanted][:MOST_FILMS])
+
+
+def _note(indices: Sequence[int], why: str) -> str:
+    numbers = short_list([str(index) for index in indices], MOST_FILMS)
+    return f"There is no film of {'episodes' if len(indices) > 1 else 'episode'} {numbers}: {why}."
+
+
+def _film(films: Films[Any], episode: RecordedEpisode) -> bytes:
+    """Return the film of an episode; raises TltlError if it cannot be played again, or has no pictures."""
+    rows = np.unique(np.linspace(0, len(episode.actions), MOST_FRAMES).round().astype(int))
+    times = episode.times[rows]
+    frames = [*films.frames(episode, times.tolist(), films.views[0], _SIZE, "english")]
+    seconds = [*np.clip(np.diff(times), _SHORTEST_S, _LONGEST_S).tolist(), _LAST_S]
+    return small_film(frames, seconds)
+
+
+def small_film(frames: Sequence[Picture], seconds: Sequence[float]) -> bytes:
+    """Return a film that shows each frame for its ``seconds``, in WebP, with at most ``MOST_BYTES``.
+
+    A film that is too large gets a lower quality, and then has fewer and fewer of its frames.
+    """
+    for quality in _QUALITIES:
+        film = _webp(frames, seconds, quality)
+        if len(film) <= MOST_BYTES:
+            return film
+    while len(film) > MOST_BYTES and len(frames) > 1:
+        # Backwards, so that the last frame remains.
+        frames, kept = frames[::-2][::-1], seconds[::-2][::-1]
+        seconds = [*(2 * shown for shown in kept[:-1]), kept[-1]]
+        film = _webp(frames, seconds, _QUALITIES[-1])
+    return film
+
+
+def _webp(frames: Sequence[Picture], seconds: Sequence[float], quality: int) -> bytes:
+    from PIL import Image
+
+    first, *others = map(Image.fromarray, frames)
+    data = BytesIO()
+    durations = [round(1000 * shown) for shown in seconds]
+    first.save(data, "WEBP", save_all=True, append_images=others, duration=durations, loop=0, quality=quality, method=2)
+    return data.getvalue()
+
+
+def _can_write() -> bool:
+    """Whether the installed Pillow can write WebP pictures."""
+    from PIL import features
+
+    return bool(features.check("webp"))
