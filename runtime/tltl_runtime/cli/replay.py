@@ -133,7 +133,8 @@ def command(
                     report.say(f"judge it with: {monitor_command(episode, str(path))}")
             elif format == "text":
                 figures = episode.level.game.figures(episode)
-                print(f"{name}\n{summary_text(fields, figures)}{_check_text(fields)}")
+                is_elsewhere = not episode.level.game.recordings_have_levels
+                print(f"{name}\n{summary_text(fields, figures)}{_check_text(fields, is_elsewhere)}")
             summaries.append(fields)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
@@ -184,13 +185,15 @@ def _alternatives(names: Sequence[str]) -> str:
     return f"{', '.join(begin)} or {last}"
 
 
-def _check_text(fields: dict[str, Any]) -> str:
+def _check_text(fields: dict[str, Any], is_elsewhere: bool) -> str:
+    """Return the line about the check, if there was one; ``is_elsewhere``: a recording does not contain its level."""
     if "plays_again" not in fields:
         return ""
     follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
     judged = f"\n  checked  the judgement {follows} from the signals"
     if fields["plays_again"] is None:
-        return f"{judged}; to play it again, say where its game is: --game\n"
+        missing = "to play it again, say where its game is: --game" if is_elsewhere else "its game cannot play it again"
+        return f"{judged}; {missing}\n"
     return f"{judged}; played again it is {'the same' if fields['plays_again'] else 'ANOTHER'} episode\n"
 
 

@@ -59,6 +59,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     keyboard: Keyboard[EpisodeT] | None = None
     """Lets a person play; None if only programs can play."""
 
+    recordings_have_levels: bool = True
+    """Whether recordings contain all that is needed to play them again; if not, :meth:`located` adds it."""
+
     modules: tuple[str, ...]
     """The modules that a process needs to play.
 

@@ -38,6 +38,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     """All games that game files describe."""
 
     level_files = SceneFiles()
+    recordings_have_levels = False
     films = SceneFilms()
     keyboard = SceneKeyboard()
     modules = (__name__, "tltl_runtime.gymnasium_games.scene_recorder", "tltl_runtime.gymnasium_games.scene_env")
