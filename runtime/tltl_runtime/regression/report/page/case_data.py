@@ -40,7 +40,10 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
 
 def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
-    """Return the trajectories of episodes whose places are known; ``metre`` is that of :class:`LevelMaps`."""
+    """Return the trajectories of episodes whose places are known.
+
+    ``metre`` is that of :class:`~tltl_runtime.game.level_maps.LevelMaps`.
+    """
     bounds, placed = level.bounds, [episode for episode in episodes if episode.way]
     assert bounds is not None
     return {
