@@ -49,12 +49,19 @@ class LevelMaps(ABC, Generic[LevelT, EpisodeT]):
         """Return what the page's script must know of a level to draw onto its map, as JSON data."""
 
     @abstractmethod
-    def episode_data(self, index: int, episode: EpisodeT) -> dict[str, Any]:
-        """Return an episode as JSON data for the page's player; ``index`` is its number within its case.
+    def episode_data(self, level: LevelT, index: int, episode: EpisodeT) -> dict[str, Any]:
+        """Return an episode as JSON data for the page's player, which draws it on the map of ``level``.
+
+        ``index`` is the number of the episode within its case.
 
         The functions of :mod:`~tltl_runtime.game.packing` encode the values, and ``packing.js``
         decodes them.
         """
+
+    def is_map_of(self, level: LevelT, episode: EpisodeT) -> bool:
+        """Return whether a recorded episode was played on the map of a level; by default always."""
+        del level, episode
+        return True
 
     @abstractmethod
     def mentions(self, level: LevelT, text: str) -> Mentions:

@@ -39,6 +39,22 @@ def runs(values: Iterable[T]) -> list[list[T | int]]:
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
+def scaled_runs(values: Iterable[float], scale: float) -> list[list[int]]:
+    """Encode numbers with :func:`runs`, each multiplied by ``scale`` and rounded."""
+    return runs(round(value * scale) for value in values)
+
+
+def position_steps(bounds: Box, points: Sequence[Sequence[float]], metre: float = 1.0) -> dict[str, str]:
+    """Encode the x and the y coordinates of points, given in metres, in centimetres of the map.
+
+    ``metre`` is the length in the level, in metres, of a metre on the map.
+    """
+    return {
+        "x": x_steps(bounds, [point[0] for point in points], metre),
+        "y": y_steps(bounds, [point[1] for point in points], metre),
+    }
+
+
 def x_steps(bounds: Box, xs: Sequence[float], centimetres: float = 1) -> str:
     """Encode x coordinates, given in metres, with :func:`steps`.
 

@@ -30,6 +30,7 @@ from tltl_runtime.gymnasium_games.scene_files import SceneFiles
 from tltl_runtime.gymnasium_games.scene_films import SceneFilms
 from tltl_runtime.gymnasium_games.scene_keyboard import SceneKeyboard
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
+from tltl_runtime.gymnasium_games.scene_maps import SceneMaps
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError, replace
 
@@ -41,6 +42,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     recordings_have_levels = False
     films = SceneFilms()
     keyboard = SceneKeyboard()
+    maps = SceneMaps()
     modules = (__name__, "tltl_runtime.gymnasium_games.scene_recorder", "tltl_runtime.gymnasium_games.scene_env")
 
     def load_level(self, name: str, variant: str | Variant = "v0") -> SceneLevel:

@@ -43,10 +43,11 @@ class StealthMaps(LevelMaps[StealthLevel, Episode]):
 
         return map_data(level)
 
-    def episode_data(self, index: int, episode: Episode) -> dict[str, Any]:
+    def episode_data(self, level: StealthLevel, index: int, episode: Episode) -> dict[str, Any]:
         """Return the player, the enemies, the movers, switches and barriers of an episode over time."""
         from tltl_runtime.stealth.map_drawing.recording_data import recording_data
 
+        del level
         return recording_data(index, episode)
 
     def mentions(self, level: StealthLevel, text: str) -> Mentions:

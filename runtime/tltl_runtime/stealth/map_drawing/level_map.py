@@ -15,18 +15,15 @@ from typing import Any, Final
 from markupsafe import Markup
 
 from tltl_runtime.game.geometry import Box
+from tltl_runtime.game.map_picture import map_picture, sign_list
 from tltl_runtime.game.map_scale import MapScale
 from tltl_runtime.game.mentions import NO_MENTIONS, Mentions
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Mover, StealthLevel
-from tltl_runtime.stealth.map_drawing.map_names import MapLabel, map_labels
+from tltl_runtime.stealth.map_drawing.map_names import map_labels
 from tltl_runtime.stealth.rendering.plan import patrol_path
 from tltl_runtime.stealth.world.geometry import box_around
 from tltl_runtime.support.markup import element
-
-_MARGIN: Final = 30
-_LAYERS: Final = ("heat", "trajectories", "ends", "live")
-"""The layers that the page's script draws into, from bottom to top."""
 
 _SIGNS: Final = {
     "start": "start",
@@ -50,21 +47,8 @@ def level_map(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     Things and regions that the report mentions are highlighted.
     """
     scale = MapScale(level.bounds)
-    width, height = scale.size
-    view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    below = [*_ground(level, scale, mentions), element("g", class_="heat"), *_entities(level, scale)]
-    above = [element("g", class_=layer) for layer in _LAYERS[1:]]
-    return element(
-        "svg",
-        *below,
-        *above[:-1],
-        element("g", *map(_label, map_labels(level, scale, mentions)), class_="names"),
-        above[-1],
-        class_="plan map",
-        viewBox=view,
-        role="group",
-        aria_label=f"Map of {level.name} {level.variant}",
-    )
+    title, ground = f"Map of {level.name} {level.variant}", _ground(level, scale, mentions)
+    return map_picture(title, scale, ground, _entities(level, scale), map_labels(level, scale, mentions))
 
 
 def map_key(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
@@ -79,8 +63,7 @@ def map_key(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
         "solid mentioned": any(solid.name in mentions.things for solid in level.solids),
     }
-    rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if present.get(kind, True)]
-    return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
+    return sign_list((_sign(kind), meaning) for kind, meaning in _SIGNS.items() if present.get(kind, True))
 
 
 def map_data(level: StealthLevel) -> dict[str, Any]:
@@ -118,14 +101,12 @@ def _mover(mover: Mover) -> dict[str, list[int]]:
 
 def _sign(kind: str) -> Markup:
     if kind == "exit":
-        shape = element("polygon", class_=kind, points=_star(0, 0, 8.0))
-    elif kind in ("switch", "start"):
-        shape = element("circle", class_=kind, r=7 if kind == "switch" else 4)
-    elif kind in ("route", "mover-path"):
-        shape = element("polyline", class_=kind, points="-8,0 8,0")
-    else:
-        shape = element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
-    return element("svg", shape, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
+        return element("polygon", class_=kind, points=_star(0, 0, 8.0))
+    if kind in ("switch", "start"):
+        return element("circle", class_=kind, r=7 if kind == "switch" else 4)
+    if kind in ("route", "mover-path"):
+        return element("polyline", class_=kind, points="-8,0 8,0")
+    return element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
 
 
 def _ground(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterable[Markup]:
@@ -156,11 +137,6 @@ def _entities(level: StealthLevel, scale: MapScale) -> Iterable[Markup]:
         yield element("polygon", title, class_="exit", points=_star(*scale.at(exit_.position)))
     x, y = scale.at(level.start.position)
     yield element("circle", element("title", "start"), class_="start", cx=x, cy=y, r=14)
-
-
-def _label(name: MapLabel) -> Markup:
-    lines = [element("tspan", line, x=name.x, dy="1.1em" if row else 0) for row, line in enumerate(name.lines)]
-    return element("text", *lines, class_=f"{name.kind}{' mentioned' * name.is_mentioned}", x=name.x, y=name.y)
 
 
 def _patrol_path(points: Sequence[tuple[int, int]]) -> str:

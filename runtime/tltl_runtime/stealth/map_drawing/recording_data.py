@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tltl_runtime.game.geometry import Box, Point
-from tltl_runtime.game.packing import runs, steps, x_steps, y_steps
+from tltl_runtime.game.packing import position_steps, runs, scaled_runs, steps
 from tltl_runtime.stealth.recordings.cause import cause
 from tltl_runtime.stealth.recordings.episode import Episode
 
@@ -28,16 +27,16 @@ def recording_data(index: int, episode: Episode) -> dict[str, Any]:
         "why": cause(episode).text,
         "time": steps((snapshot.time for snapshot in snapshots), 1000),
         "state": runs(episode.states.tolist()),
-        "progress": runs(_scaled(episode.progress.tolist(), 1000)),
-        "health": runs(_scaled([snapshot.health for snapshot in snapshots], 100)),
+        "progress": scaled_runs(episode.progress.tolist(), 1000),
+        "health": scaled_runs((snapshot.health for snapshot in snapshots), 100),
         "player": {
-            **_position_steps([snapshot.player.position for snapshot in snapshots], bounds),
+            **position_steps(bounds, [snapshot.player.position for snapshot in snapshots]),
             "yaw": _yaw_steps([snapshot.player.yaw for snapshot in snapshots]),
             "crouching": runs(int(snapshot.player.crouching) for snapshot in snapshots),
         },
         "enemies": [
             {
-                **_position_steps([snapshot.enemies[row] for snapshot in snapshots], bounds),
+                **position_steps(bounds, [snapshot.enemies[row] for snapshot in snapshots]),
                 "yaw": _yaw_steps([snapshot.yaws[row] for snapshot in snapshots]),
                 "mode": runs(snapshot.modes[row] for snapshot in snapshots),
                 "sees": runs(int(snapshot.sees[row]) for snapshot in snapshots),
@@ -45,7 +44,7 @@ def recording_data(index: int, episode: Episode) -> dict[str, Any]:
             for row in range(len(episode.level.enemies))
         ],
         "movers": [
-            _position_steps([snapshot.movers[row] for snapshot in snapshots], bounds)
+            position_steps(bounds, [snapshot.movers[row] for snapshot in snapshots])
             for row in range(len(episode.level.movers))
         ],
         "active": [
@@ -56,11 +55,6 @@ def recording_data(index: int, episode: Episode) -> dict[str, Any]:
     }
 
 
-def _position_steps(points: Sequence[Point], bounds: Box) -> dict[str, str]:
-    """Encode the x and the y coordinates of points, given in metres, for the page's script."""
-    return {"x": x_steps(bounds, [x for x, _, _ in points]), "y": y_steps(bounds, [y for _, y, _ in points])}
-
-
 def _yaw_steps(yaws: Sequence[float]) -> str:
     """Encode yaw angles, given in radians, in degrees.
 
@@ -68,7 +62,3 @@ def _yaw_steps(yaws: Sequence[float]) -> str:
     interpolate.
     """
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
-
-
-def _scaled(values: Sequence[float], scale: float) -> list[int]:
-    return [round(value * scale) for value in values]

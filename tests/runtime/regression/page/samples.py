@@ -7,6 +7,7 @@ from functools import cache
 
 from tests.runtime.stealth.expert_episodes import played
 from tltl_runtime.evaluation.figures import figures_of
+from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.episode_summary import summary_of
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode, summaries_of
@@ -58,7 +59,7 @@ def branching_that_takes_its_time() -> Episode:
         env.close()
 
 
-def explained_of(index: int, episode: Episode) -> ExplainedEpisode:
+def explained_of(index: int, episode: RecordedEpisode) -> ExplainedEpisode:
     """Return an episode with its explanation, as if a case had played it."""
     return explain_episode(summary_of(episode, index), episode)
 
@@ -66,8 +67,8 @@ def explained_of(index: int, episode: Episode) -> ExplainedEpisode:
 def reported(
     name: str,
     verdict: CaseVerdict,
-    now: Sequence[Episode],
-    before: Sequence[Episode],
+    now: Sequence[RecordedEpisode],
+    before: Sequence[RecordedEpisode],
     recorded: Iterable[int] | None = None,
 ) -> ReportedCase:
     """Return a report on episodes of one level; the episodes ``before`` are the baseline.

@@ -35,15 +35,12 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
         "states": [label_text(fspa, state.id) for state in fspa.states],
         "now": _episodes_data(level, maps.metre(level), case.report.episodes),
         "before": _episodes_data(before, maps.metre(before), case.before),
-        "episodes": [maps.episode_data(index, case.episodes[index]) for index in sorted(case.episodes)],
+        "episodes": [maps.episode_data(level, index, case.episodes[index]) for index in sorted(case.episodes)],
     }
 
 
 def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
-    """Return the trajectories of episodes whose places are known.
-
-    ``metre`` is that of :class:`~tltl_runtime.game.level_maps.LevelMaps`.
-    """
+    """Return the trajectories of episodes whose places are known; ``metre`` is a metre on its map."""
     bounds, placed = level.bounds, [episode for episode in episodes if episode.way]
     assert bounds is not None
     return {

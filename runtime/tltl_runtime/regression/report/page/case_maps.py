@@ -21,7 +21,8 @@ class _DrawnMap:
 
     ``when`` says with which episodes the page shows the map: ``now``, ``before`` (the baseline) or
     ``both``. ``is_of_unknown_baseline`` is true if the page shows this map for the baseline, too,
-    because the level on which the baseline was recorded is unknown.
+    because the level on which the baseline was recorded is unknown. ``is_one_of_many`` is true if the
+    game played other episodes on other maps.
     """
 
     when: str
@@ -29,6 +30,7 @@ class _DrawnMap:
     key: Markup
     caption: str = ""
     is_of_unknown_baseline: bool = False
+    is_one_of_many: bool = False
 
 
 def case_maps(case: ReportedCase, level: Level, level_maps: LevelMaps[Any, Any]) -> Markup:
@@ -41,14 +43,15 @@ def case_maps(case: ReportedCase, level: Level, level_maps: LevelMaps[Any, Any])
 
 
 def _maps(case: ReportedCase, level: Level, maps: LevelMaps[Any, Any]) -> Iterator[_DrawnMap]:
+    others = not all(maps.is_map_of(level, episode) for episode in case.episodes.values())
     old_level, mentioned = case.baseline_level, report_mentions(maps, level, case.report)
     map_now, key_now = maps.picture(level, mentioned), maps.key(level, mentioned)
     if old_level is None or not case.before:
-        yield _DrawnMap("both", map_now, key_now, is_of_unknown_baseline=bool(case.before))
+        yield _DrawnMap("both", map_now, key_now, is_of_unknown_baseline=bool(case.before), is_one_of_many=others)
         return
     mentioned_before = report_mentions(maps, old_level, case.report)
     if maps.picture(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
-        yield _DrawnMap("both", map_now, key_now)
+        yield _DrawnMap("both", map_now, key_now, is_one_of_many=others)
         return
     yield _DrawnMap("now", map_now, key_now, f"The level as it is now: {level.name} {level.variant}.")
     caption = f"The level as it was when the baseline was recorded: {old_level.name} {old_level.variant}."

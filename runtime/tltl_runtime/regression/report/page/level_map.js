@@ -130,9 +130,16 @@ class LevelMap {
       this.#body(enemy, `enemy ${enemy.mode}`, 35, "", words);
       draw(live, "text", { x: enemy.x, y: enemy.y - 45 }).textContent = enemy.facts.name;
     }
+    for (const entity of episode.entities) {
+      if (!entity.there[row]) continue;
+      // An entity that is gone at the next row does not move towards its place at another time.
+      const place = entity.there[next] ? { x: between(entity.x), y: between(entity.y) } : { x: entity.x[row], y: entity.y[row] };
+      this.#body(place, "entity", 25, "", entity.name);
+      draw(live, "text", { x: place.x, y: place.y - 35 }).textContent = entity.name;
+    }
     const { player } = episode;
-    const crouches = player.crouching[row] === 1;
-    const body = { x: between(player.x), y: between(player.y), yaw: between(player.yaw) };
+    const crouches = player.crouching?.[row] === 1;
+    const body = { x: between(player.x), y: between(player.y), yaw: player.yaw && between(player.yaw) };
     const colour = this.colours[episode.state[row]];
     this.#body(body, "player-body", crouches ? 22 : 35, colour, crouches ? "the player, crouching" : "the player");
   }
@@ -164,9 +171,11 @@ class LevelMap {
 
   #body({ x, y, yaw }, kind, radius, colour, title) {
     const body = draw(this.layers.live, "g", { class: `body ${kind}` }, title);
-    const angle = (yaw * Math.PI) / 180;
-    const ahead = { x2: x + 2 * radius * Math.cos(angle), y2: y - 2 * radius * Math.sin(angle) };
-    draw(body, "line", { x1: x, y1: y, ...ahead });
+    if (yaw !== undefined) {
+      const angle = (yaw * Math.PI) / 180;
+      const ahead = { x2: x + 2 * radius * Math.cos(angle), y2: y - 2 * radius * Math.sin(angle) };
+      draw(body, "line", { x1: x, y1: y, ...ahead });
+    }
     draw(body, "circle", { cx: x, cy: y, r: radius, ...(colour && { fill: colour }) });
   }
 

@@ -32,26 +32,30 @@ function unrun(runs) {
 /** Decodes a recorded episode, so that it has a value for each row. */
 function unpackedEpisode(packed) {
   const positions = ({ x, y }) => ({ x: unstepped(x), y: unstepped(y) });
+  // What a game does not have is not in the data.
+  const each = (items, unpack) => (items ?? []).map(unpack);
+  const { yaw, crouching } = packed.player;
   return {
     ...packed,
     time: unstepped(packed.time),
     state: unrun(packed.state),
     progress: unrun(packed.progress),
-    health: unrun(packed.health),
+    health: packed.health && unrun(packed.health),
     player: {
       ...positions(packed.player),
-      yaw: unstepped(packed.player.yaw),
-      crouching: unrun(packed.player.crouching),
+      yaw: yaw && unstepped(yaw),
+      crouching: crouching && unrun(crouching),
     },
-    enemies: packed.enemies.map((enemy) => ({
+    entities: each(packed.entities, (entity) => ({ ...entity, ...positions(entity), there: unrun(entity.there) })),
+    enemies: each(packed.enemies, (enemy) => ({
       ...positions(enemy),
       yaw: unstepped(enemy.yaw),
       mode: unrun(enemy.mode),
       sees: unrun(enemy.sees),
     })),
-    movers: packed.movers.map(positions),
-    active: packed.active.map(unrun),
-    open: packed.open.map(unrun),
+    movers: each(packed.movers, positions),
+    active: each(packed.active, unrun),
+    open: each(packed.open, unrun),
     atoms: packed.atoms.map(unstepped),
   };
 }

@@ -19,7 +19,7 @@ class Player {
     this.speed = find(".speed");
     this.moment = find(".moment");
     this.stateText = find(".state");
-    this.bars = ["progress", "health"].map((name) => [name, find(`meter.${name}`), find(`meter.${name} ~ .number`)]);
+    this.bars = ["progress", "health"].map((name) => [name, find(`meter.${name}`), find(`meter.${name} ~ .number`)]).filter(([, meter]) => meter);
     this.atoms = [...section.querySelectorAll(".atoms tbody tr")].map((row) => [
       row,
       row.querySelector(".signed .length"),
@@ -81,7 +81,7 @@ class Player {
     const end = this.row < this.last ? "" : ` The end: ${episode.why}.`;
     this.stateText.replaceChildren(...prose(`State ${state}: ${this.facts.states[state]}${end}`));
     this.stateText.style.setProperty("--state", this.map.colours[state]);
-    const values = { progress: episode.progress[this.row] / 1000, health: episode.health[this.row] / 100 };
+    const values = { progress: episode.progress[this.row] / 1000, health: (episode.health?.[this.row] ?? 0) / 100 };
     for (const [name, meter, number] of this.bars) {
       meter.value = values[name];
       number.textContent = values[name].toFixed(2);

@@ -73,11 +73,13 @@ class CaseView {
     ]);
   }
 
-  #legendOfEpisode({ state, enemies, movers }) {
+  #legendOfEpisode({ state, enemies, movers, entities, player }) {
+    const small = player.crouching ? "; small: crouching" : "";
     const modes = [...new Set(enemies.flatMap((enemy) => enemy.mode))];
     this.#fillLegend([
       ...this.#states([...new Set(state)]),
-      ["body player-body", this.maps.now.colours[state[0]], "the player, in the colour of the state; small: crouching"],
+      ["body player-body", this.maps.now.colours[state[0]], `the player, in the colour of the state${small}`],
+      ...(entities.length ? [["body entity", "", "another thing"]] : []),
       ...modes.map((mode) => [`body enemy ${mode}`, "", `an enemy: ${mode}`]),
       ...(enemies.length ? [["cone", "", "what an enemy sees"]] : []),
       ...(enemies.some((enemy) => enemy.sees.includes(1)) ? [["cone sees", "", "… while it sees the player"]] : []),

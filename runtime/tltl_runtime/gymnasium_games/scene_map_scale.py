@@ -1,0 +1,18 @@
+"""The scale of the map of a scene."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltl_runtime.gymnasium_games.scene_level import SceneLevel
+
+_LONGEST_SIDE_M: Final = 20.0
+"""The longer side of the map of a scene, in metres of the map: names and marks are made for about this size."""
+
+
+def scene_metre(level: SceneLevel) -> float:
+    """Return the length in a scene that is a metre on its map; 1 if the game does not say where things are."""
+    if level.bounds is None:
+        return 1.0
+    (west, south, _), (east, north, _) = level.bounds.low, level.bounds.high
+    return max(east - west, north - south) / _LONGEST_SIDE_M

@@ -1,0 +1,73 @@
+"""The maps of scenes whose games show outlines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from tltl_runtime.game.level_maps import LevelMaps
+from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, mentions_in
+from tltl_runtime.game.palette import ENDS, INK
+from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltl_runtime.gymnasium_games.scene_level import SceneLevel
+from tltl_runtime.gymnasium_games.scene_map_scale import scene_metre
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+FLOOR, AREA, BOX, LANDMARK, ENTITY = "#f1f5f9", "#bae6fd", "#475569", "#facc15", "#c2410c"
+_COLOURS: Final[Mapping[str, str]] = {
+    "floor": FLOOR,
+    "area": AREA,
+    "wall": BOX,
+    "landmark": LANDMARK,
+    "entity": ENTITY,
+    **{f"end-{end}": colour for end, (_, colour) in ENDS.items()},
+    "ink": INK,
+}
+
+
+class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
+    """Draws maps of scenes with outlines. It imports what it needs for that only when it draws."""
+
+    def colours(self) -> Mapping[str, str]:
+        """Return the colours of what an outline shows, of landmarks and of entities."""
+        return _COLOURS
+
+    def metre(self, level: SceneLevel) -> float:
+        """Return the length in a scene that is a metre on its map: all maps have the same size."""
+        return scene_metre(level)
+
+    def picture(self, level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
+        """Draw the outline of a scene, and its landmarks."""
+        from tltl_runtime.gymnasium_games.scene_map import scene_map
+
+        return scene_map(level, mentions)
+
+    def key(self, level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
+        """Return the legend of a map, with the signs that occur on it."""
+        from tltl_runtime.gymnasium_games.scene_map import scene_map_key
+
+        return scene_map_key(level, mentions)
+
+    def map_data(self, level: SceneLevel) -> dict[str, Any]:
+        """Return no data: nothing on the map of a scene is computed by the page's script."""
+        del level
+        return {}
+
+    def episode_data(self, level: SceneLevel, index: int, episode: SceneEpisode) -> dict[str, Any]:
+        """Return the player and the entities of an episode over time."""
+        from tltl_runtime.gymnasium_games.scene_playback import scene_playback
+
+        return scene_playback(level, index, episode)
+
+    def is_map_of(self, level: SceneLevel, episode: SceneEpisode) -> bool:
+        """Return whether an episode was played on the map of a level: games may change it at each reset."""
+        return level.outline == episode.level.outline
+
+    def mentions(self, level: SceneLevel, text: str) -> Mentions:
+        """Return the landmarks, boxes, areas and regions that a text mentions."""
+        things = [name for name, _ in level.landmarks]
+        if level.outline is not None:
+            things += [*(item.name for item in level.outline.boxes), *(area.name for area in level.outline.polygons)]
+        return mentions_in(text, dict.fromkeys(things), [region.name for region in level.regions])
