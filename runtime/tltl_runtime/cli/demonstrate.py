@@ -100,7 +100,8 @@ def _write(folder: Path, episode: RecordedEpisode, film: str | None, notation: N
     from tltlc.api import fileio
 
     game = episode.level.game
-    recording, pictures = game.episode_bytes(episode), game.pictures
+    recording = game.episode_bytes(episode)
+    pictures = game.pictures if game.pictures and game.pictures.draws(episode) else None
     endings = [*([".png"] if pictures else []), *([f".{film}"] if film else [])]
     path = new_path(folder, file_stem(episode), recording, endings)
     name = path.name.removesuffix(SUFFIX)

@@ -231,7 +231,7 @@ def _write(
         from tltl_runtime.game.capability_error import capability_error
 
         pictures = episode.level.game.pictures
-        if pictures is None:
+        if pictures is None or not pictures.draws(episode):
             raise capability_error(episode.level, "draws no pictures", "write the signals instead: `-o NAME.csv`")
         fileio.write_file(path, pictures.episode(episode, size, film.notation))
     else:

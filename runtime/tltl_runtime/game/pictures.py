@@ -15,6 +15,11 @@ from tltlc.api import Fspa, Notation
 class Pictures(ABC, Generic[LevelT, EpisodeT]):
     """Draws episodes of a game from above, as PNG files."""
 
+    def draws(self, episode: EpisodeT) -> bool:
+        """Return whether an episode can be drawn; by default always."""
+        del episode
+        return True
+
     @abstractmethod
     def episode(self, episode: EpisodeT, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
         """Draw the path of an episode, with what remained to be satisfied in ``notation``.

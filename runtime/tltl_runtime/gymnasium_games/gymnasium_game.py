@@ -31,6 +31,7 @@ from tltl_runtime.gymnasium_games.scene_films import SceneFilms
 from tltl_runtime.gymnasium_games.scene_keyboard import SceneKeyboard
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.gymnasium_games.scene_maps import SceneMaps
+from tltl_runtime.gymnasium_games.scene_pictures import ScenePictures
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltlc.api import Diagnostic, Fspa, RewardOptions, TltlError, replace
 
@@ -40,6 +41,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
     level_files = SceneFiles()
     recordings_have_levels = False
+    pictures = ScenePictures()
     films = SceneFilms()
     keyboard = SceneKeyboard()
     maps = SceneMaps()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tltl_runtime.game.geometry import Box
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 
 _LONGEST_SIDE_M: Final = 20.0
@@ -12,7 +13,10 @@ _LONGEST_SIDE_M: Final = 20.0
 
 def scene_metre(level: SceneLevel) -> float:
     """Return the length in a scene that is a metre on its map; 1 if the game does not say where things are."""
-    if level.bounds is None:
-        return 1.0
-    (west, south, _), (east, north, _) = level.bounds.low, level.bounds.high
+    return 1.0 if level.bounds is None else scale_of(level.bounds)
+
+
+def scale_of(bounds: Box) -> float:
+    """Return the length in a scene with these ``bounds`` that is a metre on its map."""
+    (west, south, _), (east, north, _) = bounds.low, bounds.high
     return max(east - west, north - south) / _LONGEST_SIDE_M

@@ -21,6 +21,7 @@ from tltl_runtime.cli.replay import _VIEWS
 from tltl_runtime.cli.support import keyboard_play
 from tltl_runtime.cli.support.film_file import write_gif
 from tltl_runtime.cli.support.notation import NOTATIONS
+from tltl_runtime.game.palette import state_colour
 from tltl_runtime.game.trace import monitor_command
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode_recorder import RecordEpisode
@@ -30,7 +31,7 @@ from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.recordings.file import write_episode
 from tltl_runtime.stealth.rendering.camera import VIEWS
 from tltl_runtime.stealth.rendering.film import STRIP, frames
-from tltl_runtime.stealth.rendering.plan import draw_episode, state_colour
+from tltl_runtime.stealth.rendering.plan import draw_episode
 from tltlc.automaton.fspa import Notation
 from tltlc.core.record import replace
 from tltlc.monitor import Monitor

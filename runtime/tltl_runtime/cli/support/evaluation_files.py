@@ -78,6 +78,7 @@ class EvaluationFiles:
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
+        self._has_plans = False
         if folder is not None:
             _check_folder(folder)
             writable_folder(folder)
@@ -103,10 +104,15 @@ class EvaluationFiles:
         if result.recording and self._folder is not None:
             stem = f"{self._name}-{self._setup.seed}-{result.request.index}-{CHOICES[sampled]}"
             pictures = self._game.pictures
+            episode = self._game.episode_from_bytes(result.recording, stem) if pictures else None
+            if pictures is None or episode is None or not pictures.draws(episode):
+                pictures = None
+            elif not self._has_plans:
+                # What a game shows only when it is played is in the recordings.
+                self._level, self._has_plans = self._game.played_level(self._level, episode), True
             path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
             files = {path.name: result.recording}
             if pictures:
-                episode = self._game.episode_from_bytes(result.recording, path.name)
                 files[f"{path.name.removesuffix(SUFFIX)}.png"] = pictures.episode(episode)
             fileio.write_files(self._folder, files)
             self._recorded.append(path.name)
@@ -166,7 +172,7 @@ class EvaluationFiles:
             return ""
         pictures = dict(self._pictures())
         fileio.write_files(self._folder, {_REPORT: text, **pictures})
-        count, has_plans = len(self._recorded), bool(self._recorded and self._game.pictures)
+        count, has_plans = len(self._recorded), self._has_plans
         recordings_text = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * has_plans}"
         hint = f"; look at {next(iter(pictures))} first" if pictures else ""
         return f"{self._folder}: {recordings_text}, {', '.join((*pictures, _REPORT))}{hint}"
