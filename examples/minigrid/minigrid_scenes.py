@@ -5,9 +5,9 @@ import gymnasium
 IDS = {
     "doorkey": "MiniGrid-DoorKey-8x8-v0",
     "rooms": "MiniGrid-MultiRoom-N2-S4-v0",
-    "lava": "MiniGrid-LavaCrossingS9N1-v0",
+    "lava": "MiniGrid-LavaCrossingS9N{rivers}-v0",
 }
-"""The environment of each scene."""
+"""The environment of each scene; what is in braces is an option of the scene."""
 
 
 class Scene(gymnasium.Wrapper):
@@ -25,16 +25,17 @@ class Scene(gymnasium.Wrapper):
         return places
 
     def tltl_outline(self):
-        """Return the walls and the lava as boxes."""
+        """Return the walls as boxes, and the cells of lava as polygons."""
         game = self.unwrapped
-        boxes = {}
+        walls, lava = [], {}
         for x in range(game.width):
             for y in range(game.height):
-                thing = game.grid.get(x, y)
-                if thing is not None and thing.type in ("wall", "lava"):
-                    bottom = game.height - 1 - y
-                    boxes[f"{thing.type}_{x}_{y}"] = ((x, bottom), (x + 1, bottom + 1))
-        return {"bounds": ((0, 0), (game.width, game.height)), "boxes": boxes}
+                thing, south = game.grid.get(x, y), game.height - 1 - y
+                if thing is not None and thing.type == "wall":
+                    walls.append(((x, south), (x + 1, south + 1)))
+                if thing is not None and thing.type == "lava":
+                    lava[f"lava_{len(lava) + 1}"] = [(x, south), (x + 1, south), (x + 1, south + 1), (x, south + 1)]
+        return {"bounds": ((0, 0), (game.width, game.height)), "boxes": {"wall": walls}, "polygons": lava}
 
     def tltl_cause(self):
         """Return `lava` if the player stands in it."""
@@ -46,9 +47,9 @@ class Scene(gymnasium.Wrapper):
         return x + 0.5, self.unwrapped.height - y - 0.5
 
 
-def make(scene, **options):
+def make(scene, rivers=1, **options):
     """Make the environment of a scene; ``options`` are those of the environment."""
-    return Scene(gymnasium.make(IDS[scene], **options))
+    return Scene(gymnasium.make(IDS[scene].format(rivers=rivers), **options))
 
 
 def signals(env):
