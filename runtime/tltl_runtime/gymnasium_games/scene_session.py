@@ -12,7 +12,7 @@ from tltl_runtime.game.hud import LONG, Bar, Hud, Line, clock_text, end_screen, 
 from tltl_runtime.game.keyboard import Recordings
 from tltl_runtime.game.play_session import PlaySession
 from tltl_runtime.game.recorder import EpisodeRecorder
-from tltl_runtime.game.window import Window
+from tltl_runtime.game.window import Key, Window
 from tltl_runtime.gymnasium_games.frame_strip import fitted
 from tltl_runtime.gymnasium_games.key_actions import KeyActions
 from tltl_runtime.gymnasium_games.key_names import COMMANDS
@@ -60,14 +60,14 @@ class SceneSession(PlaySession[SceneEpisode]):
         self._fspa = env.get_wrapper_attr("task").fspa
         self._level = env.get_wrapper_attr("level")
         # A key of the game is not a command, but Escape always stops.
-        self._commands = frozenset(COMMANDS) - actions.keys | {"escape"}
-        self._pending: deque[int] = deque()
+        self._commands: frozenset[Key] = frozenset(COMMANDS) - actions.keys | {"escape"}
+        self._pending: deque[Key] = deque()
+        """The keys that were pressed, and have had no effect yet, in a game that waits for keys."""
         self._steps = 0
 
     def _episode(self, seed: int | None) -> bool:
         _, info = self._env.reset(seed=seed)
         self._steps, over = 0, False
-        self._pending.clear()
         self._show(self._start_screen(info))
         wish = self._wait_still(begins=True)
         due = kept = monotonic()
@@ -94,30 +94,40 @@ class SceneSession(PlaySession[SceneEpisode]):
         """Keep the window responsive until a time of ``monotonic()``; return what the person then wants."""
         while (rest := time - monotonic()) > 0.0:
             self._window.wait(max(0.001, min(_FRAME_TIME, rest)))
-        return self._wish()
+        return self._wish(self._commands)
 
     def _wait_still(self, *, begins: bool = False, ended: bool = False) -> _Wish:
         """Wait until the person wants something.
 
-        If the episode ``begins``, there is nothing to restart; if it has ``ended``, there is no action.
+        If the episode ``begins``, there is nothing to restart. If it has ``ended``, there is no action,
+        and no key of the game hides a command.
         """
+        commands = frozenset(COMMANDS) if ended else self._commands
         while True:
-            wish = self._wish(still=True)
+            wish = self._wish(commands, still=True)
             if wish.stop or (wish.restart and not begins) or (wish.action is not None and not ended):
                 return _Wish(wish.action, wish.restart and not begins, wish.stop)
             self._window.wait(_STILL_WAIT)
 
-    def _wish(self, *, still: bool = False) -> _Wish:
-        """Read the keys. While the game stands ``still``, no key is no action."""
-        pressed = self._window.read(self._actions.keys | self._commands | {_RESTART} | {*_STOP})
-        stop = pressed.closed or any(key in self._commands and key in _STOP for key in pressed.tapped)
-        restart = any(key in self._commands and key == _RESTART for key in pressed.tapped)
-        if self._actions.idle is not None:
-            is_idle = still and pressed.held.isdisjoint(self._actions.keys)
-            return _Wish(None if is_idle else self._actions.of_held(pressed.held), restart, stop)
-        taps = (frozenset([key]) for key in pressed.tapped)
-        self._pending.extend(self._actions.actions[tap] for tap in taps if tap in self._actions.actions)
-        return _Wish(self._pending.popleft() if self._pending else None, restart, stop)
+    def _wish(self, commands: frozenset[Key], *, still: bool = False) -> _Wish:
+        """Read the keys, of which ``commands`` are no actions. While the game stands ``still``, no key is no action."""
+        pressed = self._window.read(self._actions.keys | commands)
+        if pressed.closed:
+            return _Wish(None, stop=True)
+        if self._actions.idle is None:
+            self._pending.extend(pressed.tapped)
+            return self._next_wish()
+        given = commands.intersection(pressed.tapped)
+        is_idle = still and pressed.held.isdisjoint(self._actions.keys)
+        action = None if is_idle else self._actions.of_held(pressed.held)
+        return _Wish(action, _RESTART in given, not given.isdisjoint(_STOP))
+
+    def _next_wish(self) -> _Wish:
+        """Return what the next pressed key means: keys count one by one, however fast they were pressed."""
+        if not self._pending:
+            return _Wish(None)
+        key = self._pending.popleft()
+        return _Wish(self._actions.actions.get(frozenset([key])), key == _RESTART, key in _STOP)
 
     def _show(self, display: Hud) -> None:
         frame = scene_frame(self._env, self._level, NO_FRAMES_ADVICE)

@@ -282,17 +282,23 @@ def test_each_key_press_is_a_step(start: Callable[..., Player], tmp_path: Path) 
 
 @needs_screen
 def test_a_game_with_keys_of_its_own_goes_on_at_its_clock(start: Callable[..., Player], tmp_path: Path) -> None:
-    game = games.write(tmp_path, corridor__py=own_keys("{(): 0, 'd': 1, 'a': 2}"))
+    game = games.write(tmp_path, corridor__py=own_keys("{(): 0, 'd': 1, 'a': 2, 'r': 0, 'q': 0}"))
     player = start("play", "corridor.game.toml:short", "-o", "mine.episode.npz")
     player.hold("a")
     # An unfinished episode is written every five seconds.
-    player.until((tmp_path / "mine.unfinished.episode.npz").exists, "keeps an unfinished episode")
+    unfinished = tmp_path / "mine.unfinished.episode.npz"
+    player.until(unfinished.exists, "keeps an unfinished episode")
     player.release("a")
     player.hold("d")
     player.until((tmp_path / "mine.episode.npz").exists, "records its episode")
     player.release("d")
-    player.press("q")
-    player.ended()
+    # After the end, R is no key of the game. In the next episode, Q is one again.
+    player.press("r")
+    player.until_pressed(unfinished.exists, "q")
+    player.press("Escape")
+    out = player.ended()
+    assert "success after" in out
+    assert "stopped after" in out
     episode = played(tmp_path / "mine.episode.npz", game)
     assert episode.success and len(episode.actions) > 10
     assert {0.0, 1.0, 2.0} >= {*episode.actions[:, 0].tolist()} >= {1.0, 2.0}
