@@ -152,12 +152,12 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         del level
         return {}
 
-    def played_level(self, level: LevelT, episode: EpisodeT) -> LevelT:
-        """Return a level with what an ``episode`` showed of it, for reports; by default nothing more.
+    def played_level(self, level: LevelT, episodes: Iterable[EpisodeT]) -> LevelT:
+        """Return a level with what ``episodes`` showed of it, for reports; by default nothing more.
 
         A game may know where things are only when it is played.
         """
-        del episode
+        del episodes
         return level
 
     def unreachable_entities(self, level: LevelT, fspa: Fspa) -> list[UnreachableEntity]:

@@ -69,10 +69,14 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         counts = Counter(item.name for item in boxes)
         return {item.name: item.box for item in boxes if counts[item.name] == 1}
 
-    def played_level(self, level: SceneLevel, episode: SceneEpisode) -> SceneLevel:
-        """Return a scene with the outline and the landmarks of an episode."""
-        landmarks = {} if episode.entities is None else episode.entities.still()
-        return replace(level, outline=episode.level.outline, landmarks=tuple(landmarks.items()))
+    def played_level(self, level: SceneLevel, episodes: Iterable[SceneEpisode]) -> SceneLevel:
+        """Return a scene with the outline of the first episode, and the landmarks that all of them have."""
+        played = list(episodes)
+        if not played:
+            return level
+        first, *others = [{} if episode.entities is None else episode.entities.still() for episode in played]
+        landmarks = tuple(item for item in first.items() if all(item in other.items() for other in others))
+        return replace(level, outline=played[0].level.outline, landmarks=landmarks)
 
     def make_env(
         self,

@@ -31,7 +31,7 @@ def _episode(tmp_path_factory: pytest.TempPathFactory) -> SceneEpisode:
 
 @pytest.fixture(name="level")
 def _level(episode: SceneEpisode) -> SceneLevel:
-    return GAME.played_level(episode.level, episode)
+    return GAME.played_level(episode.level, [episode])
 
 
 def classes(root: ElementTree.Element, kind: str) -> list[ElementTree.Element]:

@@ -47,7 +47,7 @@ def test_an_episode_is_drawn_on_the_outline(episode: SceneEpisode) -> None:
 
 
 def test_trajectories_are_drawn_on_the_outline(episode: SceneEpisode) -> None:
-    level = GAME.played_level(episode.level, episode)
+    level = GAME.played_level(episode.level, [episode])
     ways = [way for way in [trajectory(episode)] if way is not None]
     assert WALL in colours(PICTURES.trajectories(level, episode.fspa, ways, "one way"))
     assert WALL not in colours(PICTURES.trajectories(replace(level, outline=None), episode.fspa, ways, "one way"))

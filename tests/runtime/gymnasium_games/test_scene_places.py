@@ -61,12 +61,20 @@ def test_a_player_who_is_gone_stays_where_it_was(game: Path) -> None:
 
 def test_entities_that_do_not_move_are_landmarks(game: Path) -> None:
     episode = played(game, seed=1)
-    level = GAME.played_level(GAME.load_level(f"{game}:plain"), episode)
+    level = GAME.played_level(GAME.load_level(f"{game}:plain"), [episode])
     assert set(GAME.landmarks(level)) == {"key", "exit"}
     assert set(GAME.solids(level)) == {"shelf"}, "two boxes have the name wall"
     assert place_phrase(replace(level, outline=None), (9.0, 3.0, 0.0)).text == "near `exit`"
     end = end_of(level, episode.fspa, explain_episode(GAME.summary(episode), episode))
     assert (end.cause, end.by, end.where.text) == ("killed", ("guard_1",), "in the inner vault")
+
+
+def test_what_lies_elsewhere_in_another_episode_is_no_landmark(game: Path) -> None:
+    level = GAME.load_level(f"{game}:plain")
+    episodes = [played(game, seed) for seed in range(4)]
+    assert len({episode.entities.still()["key"] for episode in episodes if episode.entities}) > 1
+    assert set(GAME.landmarks(GAME.played_level(level, episodes))) == {"exit"}
+    assert GAME.played_level(level, []) == level
 
 
 def test_a_check_reports_a_wrong_outline(game: Path) -> None:

@@ -109,7 +109,7 @@ class EvaluationFiles:
                 pictures = None
             elif not self._has_plans:
                 # What a game shows only when it is played is in the recordings.
-                self._level, self._has_plans = self._game.played_level(self._level, episode), True
+                self._level, self._has_plans = self._game.played_level(self._level, [episode]), True
             path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
             files = {path.name: result.recording}
             if pictures:

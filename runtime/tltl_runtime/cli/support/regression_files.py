@@ -168,7 +168,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
     game = case.prepared.level.game
     episodes = _episodes(case.report, game, case_folder(suite, case.report.name, folder / CASES))
     # What a game shows only when it is played is in the recordings.
-    level = game.played_level(case.prepared.level, episodes[min(episodes)]) if episodes else case.prepared.level
+    level = game.played_level(case.prepared.level, (episodes[index] for index in sorted(episodes)))
     reported = ReportedCase(
         report=case.report,
         level=level,

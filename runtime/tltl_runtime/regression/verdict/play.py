@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from functools import partial
 from shlex import join
@@ -30,6 +30,8 @@ OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
 """A callback after each episode: the case, the number of episodes so far, and the last episode."""
 
 _PLAYER: Final = "policy"
+_SHOWN: Final = 10
+"""A game shows in this many episodes what it has only when it is played: its outline, and what does not move."""
 
 
 @record
@@ -161,14 +163,14 @@ def judge_case(
             judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
             if judgement:
                 check_unedited(prepared)
-                return JudgedCase(_as_played(prepared, played[0]), reference, judgement, tuple(played))
+                return JudgedCase(_as_played(prepared, played[:_SHOWN]), reference, judgement, tuple(played))
     raise AssertionError("the last episode settles every verdict")
 
 
-def _as_played(prepared: PreparedCase, episode: CaseEpisode) -> PreparedCase:
-    """Return a case whose level has what an episode showed of it."""
+def _as_played(prepared: PreparedCase, episodes: Sequence[CaseEpisode]) -> PreparedCase:
+    """Return a case whose level has what its episodes showed of it."""
     game = prepared.level.game
-    recorded = game.episode_from_bytes(episode.recording, _PLAYER)
+    recorded = (game.episode_from_bytes(episode.recording, _PLAYER) for episode in episodes)
     return replace(prepared, level=game.played_level(prepared.level, recorded))
 
 

@@ -38,7 +38,7 @@ def case_of(folder: Path, scene: str, *, fixed: bool = True) -> ReportedCase:
             folder, vault__py=vault.CODE.replace('"shelf": ((0, 5), (4, 6))', '"shelf": ((0, 5), (self.key[0], 6))')
         )
     episodes = [played(folder / "vault.game.toml", seed, scene=scene) for seed in range(6)]
-    level = GAME.played_level(episodes[0].level, episodes[0])
+    level = GAME.played_level(episodes[0].level, episodes)
     shown = [replace(episode, level=replace(episode.level, landmarks=level.landmarks)) for episode in episodes]
     case = samples.reported(f"vault:{scene}", "fail", shown, shown[:2])
     return replace(case, level=level, baseline_level=level)
