@@ -11,6 +11,7 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any, Final
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -208,6 +209,10 @@ def _read_recording(data: bytes, kind: str) -> None:
         trace_csv(episode)
         monitor_command(episode, "it.csv")
         check_episode(episode)
+        if game.maps is not None and episode.level.bounds is not None and episode.positions is not None:
+            level = game.played_level(episode.level, [episode])
+            ElementTree.fromstring(game.maps.picture(level))
+            json.dumps([game.maps.map_data(level), game.maps.episode_data(level, 0, episode)], allow_nan=False)
 
     check(read)
 

@@ -9,7 +9,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.game.outline import outline_problem
+from tltl_runtime.game.outline import GREATEST, outline_problem
 from tltl_runtime.game.recording_archive import (
     ERRORS,
     MAX_BYTES,
@@ -32,8 +32,11 @@ VERSION: Final = 1
 _GREATEST: Final = 1e300
 """The greatest absolute value of a number in an action."""
 
+_LATEST_S: Final = 1e12
+"""The latest time of an episode, in seconds."""
+
 ARRAYS: Final = (
-    Array("time", "<f8", ("n + 1",), "s", "since the reset", low=0.0),
+    Array("time", "<f8", ("n + 1",), "s", "since the reset", low=0.0, high=_LATEST_S),
     Array("actions", "<f8", ("n", "width"), "", "flat: the choices from 0, then the numbers", -_GREATEST, _GREATEST),
     Array("signals", "<f8", ("n + 1", "signals"), "SI", "those of the spec; bools are 0 and 1"),
     Array("atoms", "<f8", ("n", "atoms"), "1", "robustness of the spec's atoms", low=-1.0, high=1.0),
@@ -41,13 +44,17 @@ ARRAYS: Final = (
     Array("progress", "<f8", ("n + 1",), "1", "the best so far", low=0.0, high=1.0),
     Array("rewards", "<f8", ("n",), "1", "of the steps"),
 )
-POSITION: Final = Array("position", "<f8", ("n + 1", 3), "m", "of the player; absent if the game does not say it")
+POSITION: Final = Array(
+    "position", "<f8", ("n + 1", 3), "m", "of the player; absent if the game does not say it", -GREATEST, GREATEST
+)
 ENTITIES: Final = Array(
     "entities",
     "<f8",
     ("n + 1", "entities", 3),
     "m",
     "of the other entities; not-a-number where one is gone; absent if the game does not say it",
+    low=-GREATEST,
+    high=GREATEST,
     gaps=True,
 )
 
