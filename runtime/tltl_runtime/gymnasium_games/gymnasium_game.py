@@ -76,7 +76,9 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
             return level
         first, *others = [{} if episode.entities is None else episode.entities.still() for episode in played]
         landmarks = tuple(item for item in first.items() if all(item in other.items() for other in others))
-        return replace(level, outline=played[0].level.outline, landmarks=landmarks)
+        outline = played[0].level.outline
+        varies = level.is_one_of_many or any(episode.level.outline != outline for episode in played)
+        return replace(level, outline=outline, landmarks=landmarks, is_one_of_many=varies)
 
     def make_env(
         self,

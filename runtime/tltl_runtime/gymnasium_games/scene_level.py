@@ -34,7 +34,7 @@ class SceneLevel:
 
     The level of a recording has the ``outline`` that the game showed in the episode; it is None if the
     game shows none, or before it was played. ``landmarks`` are the entities that did not move in an
-    episode, with their places.
+    episode, with their places. ``is_one_of_many`` is true if other episodes had other outlines.
     """
 
     json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
@@ -49,6 +49,7 @@ class SceneLevel:
     place: str = ""
     outline: Outline | None = None
     landmarks: tuple[tuple[str, Point], ...] = ()
+    is_one_of_many: bool = False
 
     @property
     def game(self) -> GymnasiumGame:

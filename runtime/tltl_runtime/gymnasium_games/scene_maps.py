@@ -63,7 +63,7 @@ class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
 
     def is_map_of(self, level: SceneLevel, episode: SceneEpisode) -> bool:
         """Return whether an episode was played on the map of a level: games may change it at each reset."""
-        return level.outline == episode.level.outline
+        return level.outline == episode.level.outline and not level.is_one_of_many
 
     def mentions(self, level: SceneLevel, text: str) -> Mentions:
         """Return the landmarks, boxes, areas and regions that a text mentions."""

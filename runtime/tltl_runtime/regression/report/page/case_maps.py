@@ -53,6 +53,7 @@ def _maps(case: ReportedCase, level: Level, maps: LevelMaps[Any, Any]) -> Iterat
     if maps.picture(replace(old_level, name=level.name, variant=level.variant), mentioned_before) == map_now:
         yield _DrawnMap("both", map_now, key_now, is_one_of_many=others)
         return
-    yield _DrawnMap("now", map_now, key_now, f"The level as it is now: {level.name} {level.variant}.")
+    caption = f"The level as it is now: {level.name} {level.variant}."
+    yield _DrawnMap("now", map_now, key_now, caption, is_one_of_many=others)
     caption = f"The level as it was when the baseline was recorded: {old_level.name} {old_level.variant}."
     yield _DrawnMap("before", maps.picture(old_level, mentioned_before), maps.key(old_level, mentioned_before), caption)
