@@ -225,3 +225,36 @@ def test_the_game_of_a_project_needs_no_option(tltlc: Run, tmp_path: Path, monke
         "clock 10 Hz signal door_open: bool spec named { level long reach door_open limit 9 s }"
     )
     assert "training named on long v0" in tltlc("train", "named.tltl", *options[:-1], "named").err
+
+
+EXPERT = """
+
+class Expert:
+    def choose(self, observation):
+        return 2 if not observation["has_key"] else 1
+
+
+def make(scene, length=5, render_mode=None):
+    env = Corridor(length, render_mode)
+    env.tltl_expert = Expert
+    return env
+"""
+
+
+def test_the_expert_of_a_game_demonstrates(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path, corridor__py=games.GRID + EXPERT)
+    result = tltlc("demonstrate", "corridor.game.toml:short", "--episodes", "3", "-o", "runs")
+    assert result.status == 0, result.err
+    assert result.out.count("success after") == 3
+    recorded = tltlc("record", "corridor.game.toml:short", "--episodes", "2", "-o", "kept")
+    assert recorded.status == 0, recorded.err
+    assert "2 of 2 demonstrations are in kept" in recorded.out
+
+
+def test_a_game_without_an_expert_is_refused(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path)
+    result = tltlc("demonstrate", "corridor.game.toml:short")
+    assert result.status == 2
+    assert "error[TLT0731]" in result.err
