@@ -243,6 +243,8 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
     yield f"{folder}: policy.safetensors, record.json, curve.png"
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
+        if run.settings.searches and last.searched is None:
+            yield "it began without a search for demonstrations, because the game names no `cell`: see docs/games.md"
         yield f"to go on with a higher limit: {again} --{last.stop} N"
 
 

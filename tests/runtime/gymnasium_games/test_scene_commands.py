@@ -258,3 +258,11 @@ def test_a_game_without_an_expert_is_refused(tltlc: Run, tmp_path: Path, monkeyp
     result = tltlc("demonstrate", "corridor.game.toml:short")
     assert result.status == 2
     assert "error[TLT0731]" in result.err
+
+
+def test_a_training_without_a_search_says_so(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path, settings__toml=SEARCHING)
+    options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
+    result = tltlc("train", "--game", "corridor.game.toml:short", *options)
+    assert "it began without a search for demonstrations, because the game names no `cell`" in result.out
