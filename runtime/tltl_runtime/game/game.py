@@ -189,6 +189,11 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         del error
         return None
 
+    def is_same_game(self, level: LevelT, other: LevelT) -> bool:
+        """Return whether two levels are of the same game; by default always, if the class has one game alone."""
+        del level, other
+        return True
+
     # --- episodes ----------------------------------------------------------------------------------
 
     @abstractmethod

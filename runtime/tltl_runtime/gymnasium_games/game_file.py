@@ -83,7 +83,8 @@ class GameFile:
     method ``tltl_signals``. ``clock_s`` are the seconds of a step; None if the file does not say.
     ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` are the
     keys of the keyboard with which a person chooses each action; empty for those of the environment,
-    or the digits. ``labels`` are the places of the keys of ``[game]``.
+    or the digits. ``has_scenes`` is false if the file names no scene; it then has one that is named
+    after the file. ``labels`` are the places of the keys of ``[game]``.
     """
 
     path: Path
@@ -96,6 +97,7 @@ class GameFile:
     observation: tuple[str, ...]
     keys: tuple[str, ...]
     scenes: tuple[GameScene, ...]
+    has_scenes: bool
     labels: Mapping[str, Label]
 
     @property
@@ -169,6 +171,7 @@ class _Reader:
             observation=game.names("observation", ()),
             keys=_keys(game),
             scenes=scenes,
+            has_scenes="scene" in table.entries,
             labels={"game": game.label, **{key: entry.label for key, entry in game.entries.items()}},
         )
         game.report_unknown_keys(dict.fromkeys(_SCENE_KEYS, "[[scene]]"))

@@ -7,6 +7,7 @@ The folder of the game file comes first in the search for modules. A folder stay
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -30,17 +31,22 @@ _folders: Final[set[Path]] = set()
 def folder_first(game: GameFile) -> Iterator[None]:
     """Search for modules in the folder of a game first.
 
-    Modules of other games are forgotten if this game has modules of the same names.
+    Modules of other games are forgotten: this game may have modules of the same names, and what other
+    games register must not stay registered in place of what this game registers.
 
     Raises:
         TltlError: TLT0780, a module of the game has the name of a module that is imported already.
     """
     folder = game.folder.resolve()
     own = _top_names(folder)
+    # Folders are resolved, and so are the paths of modules that were searched in them.
+    others = tuple(f"{other}{os.sep}" for other in _folders if other != folder)
     for name, module in list(sys.modules.items()):
-        if name.partition(".")[0] in own and not _is_from(module, folder):
-            if not any(_is_from(module, other) for other in _folders) and not _is_of_a_game(module):
-                continue
+        if not isinstance(module, ModuleType):
+            continue
+        is_of_another = bool(others) and str(vars(module).get("__file__")).startswith(others)
+        is_hidden = name.partition(".")[0] in own and not _is_from(module, folder) and _is_of_a_game(module)
+        if (is_of_another and not _is_from(module, folder)) or is_hidden:
             del sys.modules[name]
     _folders.add(folder)
     entry = str(folder)
@@ -121,11 +127,14 @@ def _top_names(folder: Path) -> set[str]:
 
 def _is_of_a_game(module: ModuleType) -> bool:
     """Whether a game file lies beside a module: a process may have imported it before it read that file."""
-    file = getattr(module, "__file__", None)
+    file = vars(module).get("__file__")
     return file is not None and any(Path(file).parent.glob(f"*{SUFFIX}"))
 
 
 def _is_from(module: ModuleType, folder: Path) -> bool:
     """Whether a module was imported from a file in a folder."""
-    paths = [getattr(module, "__file__", None), *getattr(module, "__path__", ())]
+    # Some modules make attributes when they are asked for them.
+    known = vars(module)
+    places = known.get("__path__", ())
+    paths = [known.get("__file__"), *(places if isinstance(places, list) else ())]
     return any(path and Path(path).resolve().is_relative_to(folder) for path in paths)

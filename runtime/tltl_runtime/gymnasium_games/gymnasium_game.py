@@ -113,6 +113,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
         return SceneRecorder(env, player)
 
+    def is_same_game(self, level: SceneLevel, other: SceneLevel) -> bool:
+        """Return whether two scenes are of game files with the same name."""
+        return level.game_name == other.game_name
+
     def has_expert(self, env: EpisodeRecorder[SceneEpisode]) -> bool:
         """Return whether the environment has an expert of its own: a method ``tltl_expert``."""
         return env.has_wrapper_attr("tltl_expert")
@@ -122,12 +126,12 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     ) -> Iterator[SceneEpisode]:
         """Yield an episode of the game's own expert, ``tltl_expert``, for each seed."""
         del careful
-        expert = env.get_wrapper_attr("tltl_expert")()
+        choose = env.get_wrapper_attr("scene_expert")()
         for seed in seeds:
             observation, _ = env.reset(seed=seed)
             over = False
             while not over:
-                observation, _, terminated, truncated, _ = env.step(expert.choose(observation))
+                observation, _, terminated, truncated, _ = env.step(choose(observation))
                 over = terminated or truncated
             yield env.episode
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -37,6 +37,17 @@ def python_files(folder: Path, modules: Iterable[str]) -> dict[str, bytes]:
     return dict(sorted(contents.items()))
 
 
+def possible_python_files(folder: Path, modules: Sequence[str]) -> list[Path]:
+    """Return the paths in ``folder`` of the files that ``modules`` may consist of and import.
+
+    Files that do not exist are among them: they may have been deleted.
+    """
+    contents = python_files(folder, modules)
+    imported = [module for name, data in contents.items() for module in _imports(data, name)]
+    places = (path for module in (*modules, *imported) for path in _places_of(folder, module))
+    return [*dict.fromkeys([*(folder / name for name in contents), *places])]
+
+
 def content_of(path: Path) -> bytes:
     """Return the bytes of a file; line ends of a text become line feeds, as Git may convert them.
 
@@ -53,12 +64,17 @@ def content_of(path: Path) -> bytes:
 
 def _files_of(folder: Path, module: str) -> Iterator[Path]:
     """Yield the files that an import of a module runs: those of its packages, and its own."""
+    return filter(fileio.is_file, _places_of(folder, module))
+
+
+def _places_of(folder: Path, module: str) -> Iterator[Path]:
+    """Yield the paths at which the files of a module may be."""
     place = folder
-    for part in module.split("."):
+    # A relative import of a module that is in no package has an empty name.
+    for part in filter(None, module.split(".")):
         place /= part
-        for file in (place / "__init__.py", place.with_suffix(".py")):
-            if fileio.is_file(file):
-                yield file
+        yield place / "__init__.py"
+        yield place.with_suffix(".py")
 
 
 def _imports(content: bytes, name: str) -> Iterator[str]:

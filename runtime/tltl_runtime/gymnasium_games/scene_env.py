@@ -119,6 +119,25 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             raise TltlError([Diagnostic(RAISES, title, (self._label,), error.help)]) from None
         return places
 
+    def scene_cause(self) -> str:
+        """Return who or what ended the episode, as the game says; raises TltlError, TLT0781, if it raises."""
+        with guarded(self._game, RAISES, "the game's `tltl_cause`", self._label):
+            return str(self.env.get_wrapper_attr("tltl_cause")() or "")
+
+    def scene_expert(self) -> Callable[[Any], Any]:
+        """Return the function with which the game's own expert chooses actions.
+
+        Making it and calling it raise TltlError, TLT0781, if the game raises an exception.
+        """
+        with guarded(self._game, RAISES, "the game's `tltl_expert`", self._label):
+            choose = self.env.get_wrapper_attr("tltl_expert")().choose
+
+        def guarded_choice(observation: Any) -> Any:
+            with guarded(self._game, RAISES, "the game's expert", self._label):
+                return choose(observation)
+
+        return guarded_choice
+
     def scene_outline(self) -> Outline | None:
         """Return the outline of the scene in this episode.
 
@@ -223,7 +242,7 @@ def _in_process(
         help_ = "leave it out: the game gets the names of the scene and of the variant"
         raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
     # A game file that names no scenes means the first one of the game.
-    named = None if len(game.scenes) == 1 and scene == game.name else scene
+    named = scene if game.has_scenes else None
     with guarded(game, CANNOT_START, "the game", own.label):
         return WireEnv(wire, scene=named, variant=variant, render_mode=options.get("render_mode"))
 

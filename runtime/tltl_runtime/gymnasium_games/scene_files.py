@@ -9,7 +9,7 @@ from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant, split_scene
 from tltl_runtime.gymnasium_games.game_argument import scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_file import GameFile, GameScene, read_game_file
-from tltl_runtime.gymnasium_games.scene_hash import file_hashes, scene_hash
+from tltl_runtime.gymnasium_games.scene_hash import file_hashes, possible_files, scene_hash
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.spec_files import spec_files
 from tltlc.api import Diagnostic, TltlError
@@ -69,7 +69,10 @@ class SceneFiles(LevelFiles[SceneLevel]):
             game, scene = _scene(name)
             own = variant_of(game, scene.name, variant.name)
             yield from (game.folder / file for file, _ in file_hashes(game, scene.name, variant.name))
+            yield from possible_files(game)
         except TltlError:
+            # Any file in the folder may be the reason, or what is missing.
+            yield self.path(name).parent
             return
         if own.spec is not None:
             yield from spec_files(own.spec.file)

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from os.path import relpath
 from pathlib import Path
 
 from tltl_runtime.gymnasium_games.game_argument import variant_of
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile
-from tltl_runtime.gymnasium_games.python_files import content_of, python_files
+from tltl_runtime.gymnasium_games.python_files import content_of, possible_python_files, python_files
 from tltl_runtime.support.json_hash import json_hash
+from tltlc.api import fileio
 
 
 def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
     """Return the SHA-256, in hexadecimal, of what the game's files say about a variant of a scene.
 
     It covers the entries of ``[game]``, the name of the scene, its options, the contents of its
-    ``files``, and the Python files in the game's folder that the game imports. It does not cover the
-    spec, and packages outside the folder. No code of the game runs.
+    ``files``, the files that the game consists of (:func:`game_files`), and the versions of the
+    packages that ``[game]`` names. For a game in another process, it covers the name of the variant,
+    too. It does not cover the spec. No code of the game runs.
 
     Raises:
         TltlError: TLT0800, there is no such scene or variant; TLT0001 or TLT0004, a file cannot be
@@ -28,7 +32,7 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
         {
             "gymnasium": game.gymnasium,
             "python": game.python.text if game.python else None,
-            **({"process": game.wire.process} if game.wire else {}),
+            **({"process": game.wire.process, "connect": game.wire.connect, "variant": variant} if game.wire else {}),
             "import": game.modules,
             "signals": game.signals.text if game.signals else None,
             "clock_s": game.clock_s,
@@ -36,9 +40,8 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
             "scene": scene,
             "options": own.options,
             "files": {_name(game.folder, file): _hash(content_of(file)) for file in own.files},
-            "python_files": {
-                name: _hash(data) for name, data in python_files(game.folder, _named_modules(game)).items()
-            },
+            "python_files": {name: _hash(data) for name, data in game_files(game).items()},
+            "packages": _package_versions(game),
         }
     )
 
@@ -54,8 +57,44 @@ def file_hashes(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> tup
     """
     own = variant_of(game, scene, variant)
     contents = {_name(game.folder, file): content_of(file) for file in (game.path, *own.files)}
-    contents |= python_files(game.folder, _named_modules(game))
+    contents |= game_files(game)
     return tuple((name, _hash(data)) for name, data in contents.items())
+
+
+def game_files(game: GameFile) -> dict[str, bytes]:
+    """Return the contents of the files in a game's folder that the game itself consists of, by name.
+
+    They are the Python files that it imports; of a game in another process, the files that its command
+    names, and the Python files that these import. Names are relative to the folder.
+
+    Raises:
+        TltlError: TLT0001 or TLT0004, a file cannot be read or is too large.
+    """
+    contents = python_files(game.folder, _named_modules(game))
+    for word in game.wire.process if game.wire else ():
+        file = game.folder / word
+        if not fileio.is_file(file) or not file.resolve().is_relative_to(game.folder.resolve()):
+            continue
+        contents[_name(game.folder, file)] = content_of(file)
+        if file.suffix == ".py":
+            imported = python_files(file.parent, [file.stem])
+            contents |= {_name(game.folder, file.parent / name): data for name, data in imported.items()}
+    return dict(sorted(contents.items()))
+
+
+def possible_files(game: GameFile) -> list[Path]:
+    """Return the paths of the Python files that a game may import, whether they exist or not."""
+    return possible_python_files(game.folder, _named_modules(game))
+
+
+def _package_versions(game: GameFile) -> dict[str, str]:
+    """Return the versions of the installed packages that a game file names, by their modules."""
+    versions: dict[str, str] = {}
+    for module in _named_modules(game):
+        top = module.partition(".")[0]
+        with suppress(PackageNotFoundError):
+            versions[top] = version(top)
+    return versions
 
 
 def _named_modules(game: GameFile) -> list[str]:

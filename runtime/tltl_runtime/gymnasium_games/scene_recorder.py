@@ -104,7 +104,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
             self._add_moment(self._rows)
             self._over = terminated or truncated
             if self._over and self._has_cause:
-                self._rows.killer = str(self.env.get_wrapper_attr("tltl_cause")() or "")
+                self._rows.killer = self.env.get_wrapper_attr("scene_cause")()
         return observation, reward, terminated, truncated, info
 
     def _add_moment(self, rows: _Rows) -> None:

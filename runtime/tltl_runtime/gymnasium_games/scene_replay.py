@@ -58,6 +58,7 @@ def play_again(env: gymnasium.Env[Any, Any], episode: SceneEpisode) -> Iterator[
     for row, signals in enumerate(episode.signals.tolist()):
         if row:
             env.step(action_value(episode.layout, episode.actions[row - 1]))
-        ends_early = judge.taken is not None and judge.taken.done and row < len(episode.actions)
-        is_same = [float(judge.sample[name]) for name in names] == signals and not ends_early
+        is_over = judge.taken is not None and judge.taken.done
+        ends = row == len(episode.actions) and episode.end != "stopped"
+        is_same = [float(judge.sample[name]) for name in names] == signals and is_over == ends
         yield None if is_same else replay_difference(episode, row, versions())

@@ -13,6 +13,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.scene_env import make_base_env
+from tltl_runtime.gymnasium_games.scene_hash import file_hashes, scene_hash
 from tltl_runtime.wire.errors import WireError
 from tltlc.api import TltlError
 
@@ -81,3 +82,26 @@ def test_a_game_that_ends_at_once_is_reported(tmp_path: Path) -> None:
     with pytest.raises(WireError, match="TLT0790") as error:
         make_base_env(read_game_file(path), "short")
     assert "no map" in (error.value.diagnostics[0].help or "")
+
+
+def test_the_hash_notices_the_code_and_the_variant(tmp_path: Path) -> None:
+    (tmp_path / "tower.py").write_text("import floors\n")
+    (tmp_path / "floors.py").write_text("COUNT = 3\n")
+    game = read_game_file(write(tmp_path, "python3", "tower.py"))
+    before = scene_hash(game, "short")
+    assert before != scene_hash(game, "short", "trap")
+    assert [name for name, _ in file_hashes(game, "short")] == ["counter.game.toml", "floors.py", "tower.py"]
+    (tmp_path / "floors.py").write_text("COUNT = 4\n")
+    assert scene_hash(game, "short") != before
+
+
+def test_a_scene_may_have_the_name_of_its_file(game: Path) -> None:
+    text = game.read_text().replace('name = "short"', 'name = "long"')
+    other = game.with_name("long.game.toml")
+    other.write_text(text)
+    env = GAME.make_env(f"{other}:long")
+    env.reset(seed=0)
+    for _ in range(6):
+        env.step(2)
+    assert not env.sample["at_goal"]
+    env.close()

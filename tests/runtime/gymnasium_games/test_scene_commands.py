@@ -266,3 +266,25 @@ def test_a_training_without_a_search_says_so(tltlc: Run, tmp_path: Path, monkeyp
     options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
     result = tltlc("train", "--game", "corridor.game.toml:short", *options)
     assert "it began without a search for demonstrations, because the game names no `cell`" in result.out
+
+
+@pytest.mark.usefixtures("trained")
+def test_another_scene_is_not_resumed(tltlc: Run) -> None:  # noqa: F811
+    result = tltlc("train", "--game", "corridor.game.toml:long", "--resume", "run", "--steps", "500")
+    assert result.status == 1
+    assert "is on the level" in result.err
+
+
+@pytest.mark.usefixtures("trained")
+def test_recordings_of_another_game_are_kept(tltlc: Run, trained: Path, tmp_path: Path) -> None:  # noqa: F811
+    evaluate = ("evaluate", "run", "--episodes", "1", "--record", "all", "--out", tmp_path)
+    assert tltlc(*evaluate).status == 0
+    kept = {path.name: path.read_bytes() for path in tmp_path.glob("*.npz")}
+    other = trained / "other.game.toml"
+    other.write_text((trained / "corridor.game.toml").read_text())
+    copied = trained / "copied.safetensors"
+    copied.write_bytes((trained / "run" / "policy.safetensors").read_bytes() + b"")
+    result = tltlc("evaluate", copied, "--game", "other.game.toml:short", "--seed", "9", *evaluate[2:])
+    assert result.status == 0, result.err
+    assert {name: (tmp_path / name).read_bytes() for name in kept} == kept
+    other.unlink()

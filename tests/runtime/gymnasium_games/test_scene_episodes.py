@@ -181,12 +181,8 @@ def test_overlays_are_for_levels_of_the_stealth_game(folder: Path) -> None:
     with pytest.raises(TltlError, match="TLT0800: `wider` cannot be added"):
         GAME.load_level(SCENE, "v0+wider")
     assert not GAME.level_files.overlays(SCENE)
-    assert [*dict.fromkeys(path.name for path in GAME.level_files.dependencies(SCENE, replace_variant()))] == [
-        "corridor.game.toml",
-        "corridor.py",
-        "corridor.tltl",
-        "tltl.toml",
-    ]
+    names = {path.name for path in GAME.level_files.dependencies(SCENE, replace_variant())}
+    assert {"corridor.game.toml", "corridor.py", "corridor.tltl", "tltl.toml"} <= names
     assert folder
 
 
@@ -194,3 +190,69 @@ def replace_variant() -> Any:
     from tltl_runtime.game.level_name import Variant
 
     return Variant("v0")
+
+
+def test_an_episode_that_no_longer_ends_is_another_one(folder: Path) -> None:
+    located = GAME.located(record(FETCH), SCENE, None)
+    (diagnostic,) = GAME.check_replay(replace(located, actions=located.actions, end="stopped")) or ()
+    assert diagnostic.code == "TLT0824"
+    assert folder
+
+
+def test_deleted_files_are_dependencies(folder: Path) -> None:
+    def names() -> set[str]:
+        return {path.resolve().name for path in GAME.level_files.dependencies(SCENE, replace_variant())}
+
+    games.write(folder, corridor__py=games.GRID + "\n\ndef late():\n    import helper\n")
+    assert {"helper.py", "corridor.py", "corridor.tltl"} <= names()
+    (folder / "corridor.tltl").unlink()
+    assert folder.name in names()
+
+
+def test_a_relative_import_outside_a_package_is_passed_over(folder: Path) -> None:
+    fallback = "\n\ntry:\n    from . import helper\nexcept ImportError:\n    helper = None\n"
+    games.write(folder, corridor__py=games.GRID + fallback)
+    assert GAME.load_level(SCENE).name == "short"
+
+
+def test_a_cause_that_raises_is_reported(folder: Path) -> None:
+    code = POSITIONS.replace('"the guard" if env.cell == length - 1 and not env.key else None', "1 / 0")
+    games.write(folder, corridor__py=games.GRID + code)
+    with pytest.raises(TltlError, match="TLT0781: the game's `tltl_cause` raises ZeroDivisionError"):
+        record(FETCH)
+
+
+def test_games_that_register_the_same_id_do_not_mix(folder: Path) -> None:
+    lengths = {"one": 3, "two": 5}
+    for name, length in lengths.items():
+        code = f"""\
+import gymnasium
+from gymnasium import spaces
+
+
+class Hall(gymnasium.Env):
+    observation_space = action_space = spaces.Discrete(2)
+    length = {length}
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        return 0, {{}}
+
+    def step(self, action):
+        return 0, 0.0, False, False, {{}}
+
+    def tltl_signals(self):
+        return {{"has_key": False, "door_open": False}}
+
+
+gymnasium.register("Hall-v0", entry_point=Hall)
+"""
+        (folder / name).mkdir()
+        (folder / name / f"{name}_hall.py").write_text(code)
+        (folder / name / "hall.game.toml").write_text(
+            f'[game]\ngymnasium = "Hall-v0"\nimport = ["{name}_hall"]\nclock = "10 Hz"\n'
+        )
+    for name in ("one", "two", "one"):
+        env = GAME.make_env(f"{name}/hall.game.toml", spec=str(folder / "corridor.tltl"))
+        assert env.unwrapped.length == lengths[name]  # type: ignore[attr-defined]
+        env.close()

@@ -215,10 +215,13 @@ class EvaluationFiles:
         return tuple(path.name for path in existing)
 
     def _is_by_another_policy(self, path: Path) -> bool:
-        """Whether a file is a recording of another policy."""
+        """Whether a file is a recording of another policy in this game."""
         try:
-            player = self._game.read_episode(path).player
+            episode = self._game.read_episode(path)
         except TltlError:
+            return False
+        player = episode.player
+        if not self._game.is_same_game(self._level, episode.level):
             return False
         return is_labelled_policy(player) and not self._setup.player.is_of(player)
 

@@ -152,7 +152,7 @@ def resumed_run(options: TrainOptions, folder: Path) -> TrainingRun:
         TltlError: the folder cannot be read; TLT0001, the level's file is missing; TLT0870, the options
             disagree with the training.
     """
-    run = _with_level_path(read_run(folder), options)
+    run = _with_level_place(read_run(folder), options)
     settings = run.settings if options.config is None else _with_file(run.settings, options.config)
     titles = list(_differences(run, options, settings))
     if titles:
@@ -198,7 +198,7 @@ def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | No
     raise _usage("say what to train for: a spec, a level, or both")
 
 
-def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
+def _with_level_place(run: TrainingRun, options: TrainOptions) -> TrainingRun:
     """Return the training with the path that ``--level`` gives for its level, which may have moved.
 
     If ``--level`` names another level, return the training unchanged. Without ``--level``, check
@@ -214,8 +214,10 @@ def _with_level_path(run: TrainingRun, options: TrainOptions) -> TrainingRun:
     return replace(run, level=path, variant=parse_variant(variant or "v0"))
 
 
-def _level_path(level: str) -> Path:
-    return game_of(level).level_files.path(level).resolve()
+def _level_place(level: str) -> tuple[Path, str]:
+    """Return the path of a level's file, and the level's name: a file may contain several."""
+    level_files = game_of(level).level_files
+    return level_files.path(level).resolve(), level_files.level_name(level)
 
 
 def _check_folder(folder: Path) -> None:
@@ -291,8 +293,8 @@ def _differences(run: TrainingRun, options: TrainOptions, settings: TrainingSett
     where = f"the training in `{run.folder}`"
     if options.level is not None:
         path, variant = split_level(options.level)
-        ours = _level_path(run.level), run.variant.absolute()
-        if (_level_path(path), parse_variant(variant or "v0").absolute()) != ours:
+        ours = _level_place(run.level), run.variant.absolute()
+        if (_level_place(path), parse_variant(variant or "v0").absolute()) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant.text}`, not on `{path}:{variant or 'v0'}`"
     if options.spec is not None:
         fspa, _ = read_spec(options.spec)

@@ -191,11 +191,11 @@ def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
     Raises:
         TltlError: the level's spec cannot be read.
     """
-    if case.spec is not None or level.spec is None or level.spec.name != setup.fspa.name:
+    if case.spec is not None or level.spec is None or level.spec.name not in ("", setup.fspa.name):
         return None
     now = read_spec(level.spec.text)[0]
-    if spec_hash(now) == spec_hash(setup.fspa):
+    if now.name != setup.fspa.name or spec_hash(now) == spec_hash(setup.fspa):
         return None
-    changes = f"the spec `{level.spec.name}` has changed since the policy was trained ({differences(setup.fspa, now)})"
+    changes = f"the spec `{now.name}` has changed since the policy was trained ({differences(setup.fspa, now)})"
     help_ = "train the policy again, or name the new spec as the case's `spec`"
     return f"{changes}, and the policy's old spec still judges: {help_}"
