@@ -66,7 +66,7 @@ class MapImage:
 
 
 @record
-class Outline:
+class LevelOutline:
     """The outline of a level: its bounds and what is in it, all in metres; the functions below check it."""
 
     bounds: Box
@@ -76,7 +76,7 @@ class Outline:
     image: MapImage | None = None
 
 
-def hull(outline: Outline) -> Box | None:
+def hull(outline: LevelOutline) -> Box | None:
     """Return the smallest box around the boxes, polygons, regions and the image; None if there are none."""
     corners = [*_corners(outline)]
     if not corners:
@@ -91,7 +91,7 @@ def widened(box: Box) -> Box:
     return Box(box.low, tuple(max(high, low + LEAST_SIDE) for low, high in sides))  # type: ignore[arg-type]
 
 
-def outline_problem(outline: Outline) -> str | None:
+def outline_problem(outline: LevelOutline) -> str | None:
     """Return what is wrong with an outline, as the end of a sentence about it; None if nothing is."""
     names = [*(box.name for box in outline.boxes), *(polygon.name for polygon in outline.polygons)]
     names += [region.name for region in outline.regions]
@@ -127,11 +127,11 @@ def image_problem(image: MapImage) -> str | None:
     return None if west < east and south < north else "has an image whose extent is empty"
 
 
-def _boxes(outline: Outline) -> list[Box]:
+def _boxes(outline: LevelOutline) -> list[Box]:
     return [*(item.box for item in outline.boxes), *(region.box for region in outline.regions)]
 
 
-def _corners(outline: Outline) -> Iterator[Sequence[float]]:
+def _corners(outline: LevelOutline) -> Iterator[Sequence[float]]:
     """Yield corners of everything in an outline but its bounds; a polygon is at the bottom of the others."""
     boxes = _boxes(outline)
     for box in boxes:

@@ -26,9 +26,9 @@ def capabilities(env: gymnasium.Env[Any, Any]) -> tuple[Capability, ...]:
 
     ``render`` means that the environment can draw its frames as arrays.
     """
-    found: list[Capability] = [
+    capabilities: list[Capability] = [
         capability for capability, names in ATTRIBUTES.items() if all(map(env.has_wrapper_attr, names))
     ]
     if "rgb_array" in (env.metadata or {}).get("render_modes", ()):
-        found.append("render")
-    return tuple(found)
+        capabilities.append("render")
+    return tuple(capabilities)

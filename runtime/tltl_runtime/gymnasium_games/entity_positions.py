@@ -74,13 +74,13 @@ class EntityPositions:
 
     def still(self) -> dict[str, Point]:
         """Return the places of the entities that never move while they are there, by name."""
-        found: dict[str, Point] = {}
+        places: dict[str, Point] = {}
         for column, name in enumerate(self.names):
             rows = self.places[~np.isnan(self.places[:, column, 0]), column]
             if len(rows) and np.ptp(rows, axis=0).max() <= _STILL_M:
                 x, y, z = rows[0].tolist()
-                found[name] = (x, y, z)
-        return found
+                places[name] = (x, y, z)
+        return places
 
 
 def entity_positions(moments: Sequence[Mapping[str, Point]]) -> EntityPositions:

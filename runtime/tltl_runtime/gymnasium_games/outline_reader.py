@@ -14,10 +14,10 @@ from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.game.outline import (
     MOST_BYTES,
     MOST_SHAPES,
+    LevelOutline,
     MapImage,
     NamedBox,
     NamedPolygon,
-    Outline,
     hull,
     image_problem,
     outline_problem,
@@ -49,7 +49,7 @@ class OutlineError(ValueError):
         self.help = help_
 
 
-def read_outline(value: object, folder: Path) -> Outline:
+def read_outline(value: object, folder: Path) -> LevelOutline:
     """Return the outline that a game describes by a mapping; ``folder`` is that of its game file.
 
     ``docs/games.md`` describes the mapping. Without ``bounds``, they are the hull of the rest.
@@ -62,7 +62,7 @@ def read_outline(value: object, folder: Path) -> Outline:
     unknown = next((key for key in value if key not in _KEYS), None)
     if unknown is not None:
         raise OutlineError(f"has the unknown key `{unknown}`", suggestion(str(unknown), _KEYS))
-    outline = Outline(
+    outline = LevelOutline(
         bounds=Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)),
         boxes=tuple(_shapes(value, "boxes", _named_boxes)),
         polygons=tuple(_shapes(value, "polygons", _named_polygons)),

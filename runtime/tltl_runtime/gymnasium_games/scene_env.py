@@ -13,7 +13,7 @@ import gymnasium
 from gymnasium import spaces
 
 from tltl_runtime.game.geometry import Point
-from tltl_runtime.game.outline import Outline
+from tltl_runtime.game.outline import LevelOutline
 from tltl_runtime.gymnasium_games.entity_positions import PLAYER, PositionsError, read_positions
 from tltl_runtime.gymnasium_games.game_argument import variant_of
 from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guarded, raised
@@ -138,7 +138,7 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
         return guarded_choice
 
-    def scene_outline(self) -> Outline | None:
+    def scene_outline(self) -> LevelOutline | None:
         """Return the outline of the scene in this episode.
 
         None if the game does not say it. Raises TltlError, TLT0781, if it cannot be used.

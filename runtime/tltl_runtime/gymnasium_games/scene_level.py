@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tltl_runtime.game.geometry import Box, Point, Region
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
-from tltl_runtime.game.outline import Outline
+from tltl_runtime.game.outline import LevelOutline
 from tltl_runtime.game.sensors import Sensors
 from tltlc.api import record
 
@@ -47,7 +47,7 @@ class SceneLevel:
     content_hash: str
     files: tuple[tuple[str, str], ...]
     place: str = ""
-    outline: Outline | None = None
+    outline: LevelOutline | None = None
     landmarks: tuple[tuple[str, Point], ...] = ()
     is_one_of_many: bool = False
 

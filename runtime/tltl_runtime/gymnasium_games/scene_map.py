@@ -13,7 +13,7 @@ from tltl_runtime.game.map_labels import LABEL_OFFSET, MapLabel, placed_labels, 
 from tltl_runtime.game.map_picture import map_picture, sign_list
 from tltl_runtime.game.map_scale import MapScale
 from tltl_runtime.game.mentions import NO_MENTIONS, Mentions
-from tltl_runtime.game.outline import MapImage, NamedPolygon, Outline
+from tltl_runtime.game.outline import LevelOutline, MapImage, NamedPolygon
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.gymnasium_games.scene_map_scale import scene_metre
 from tltl_runtime.support.markup import element
@@ -50,7 +50,7 @@ def scene_map_key(level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup
     return sign_list((_sign(kind), meaning) for kind, meaning in _SIGNS.items() if present[kind])
 
 
-def _outline(level: SceneLevel) -> Outline:
+def _outline(level: SceneLevel) -> LevelOutline:
     assert level.outline is not None, "only scenes with outlines have maps"
     return level.outline
 
@@ -61,7 +61,7 @@ def _sign(kind: str) -> Markup:
     return element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
 
 
-def _ground(outline: Outline, scale: MapScale, mentions: Mentions) -> Iterator[Markup]:
+def _ground(outline: LevelOutline, scale: MapScale, mentions: Mentions) -> Iterator[Markup]:
     yield element("rect", class_="floor", **scale.sides(outline.bounds))
     if outline.image is not None:
         yield _image(outline.image, scale)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tltl_runtime.game.episode import Trajectory
 from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.mentions import region_text
-from tltl_runtime.game.outline import MapImage, Outline
+from tltl_runtime.game.outline import LevelOutline, MapImage
 from tltl_runtime.game.plan import Plan, area, draw_path, draw_paths, plan_axes, text_scale, write_name
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
@@ -67,7 +67,7 @@ def _hull(points: NDArray[np.float64]) -> Box:
     return Box((west, south, 0.0), (east, north, 1.0))
 
 
-def _add_outline(axes: Any, outline: Outline, letters: float) -> None:
+def _add_outline(axes: Any, outline: LevelOutline, letters: float) -> None:
     if outline.image is not None:
         _add_image(axes, outline.image)
     for polygon in outline.polygons:

@@ -10,7 +10,7 @@ from gymnasium.utils import RecordConstructorArgs
 
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.geometry import Point
-from tltl_runtime.game.outline import Outline
+from tltl_runtime.game.outline import LevelOutline
 from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end
 from tltl_runtime.gymnasium_games.entity_positions import (
     PLAYER,
@@ -134,7 +134,7 @@ class _Rows:
     the first is for the moment of the reset. ``outline`` is that of the scene in this episode.
     """
 
-    def __init__(self, seed: int, outline: Outline | None) -> None:
+    def __init__(self, seed: int, outline: LevelOutline | None) -> None:
         self.seed = seed
         self.outline = outline
         self.signals: list[list[float]] = []

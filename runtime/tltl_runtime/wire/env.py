@@ -16,7 +16,7 @@ from tltl_runtime.wire import answers, hello
 from tltl_runtime.wire.answers import GameState, Position, StateReader
 from tltl_runtime.wire.hello import Hello
 from tltl_runtime.wire.requests import ResetRequest, RestoreRequest, ScreenshotRequest, SnapshotRequest, StepRequest
-from tltl_runtime.wire.session import Session
+from tltl_runtime.wire.session import WireSession
 from tltl_runtime.wire.values import value_writer
 from tltl_runtime.wire.wire_game import WireGame
 
@@ -79,7 +79,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         if repeat < 1:
             raise ValueError(f"`repeat` must be at least 1, not {repeat}")
         self._game, self._variant, self._repeat = game, variant, repeat
-        self._session = Session(game)
+        self._session = WireSession(game)
         self._session_name = secrets.token_hex(8)
         self._state: GameState | None = None
         self.hello = self._session.hello
@@ -206,7 +206,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
 
     def _restart(self) -> None:
         """Start the game again; it must declare the same as before."""
-        session = Session(self._game)
+        session = WireSession(self._game)
         if not _same(session.hello, self.hello):
             session.refuse("declares other signals, spaces or capabilities than when it was first started")
         self._session, self._session_name = session, secrets.token_hex(8)

@@ -61,8 +61,8 @@ class Listener:
             for key, _ in ready:
                 if key.fileobj is self._socket:
                     self._accept()
-                elif (found := self._read(key.fileobj)) is not None:
-                    return found
+                elif (connection := self._read(key.fileobj)) is not None:
+                    return connection
             if left <= 0 or (is_last and not ready):
                 raise GameSilentError
 

@@ -29,7 +29,7 @@ _ENDED: Final = "correct the game; let it write what it does to standard error"
 Answer = TypeVar("Answer")
 
 
-class Session:
+class WireSession:
     """A running game that has said ``hello``.
 
     Raises:

@@ -64,9 +64,9 @@ def test_imported_files_are_found_without_running_them(tmp_path: Path) -> None:
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(text.encode())
-    found = python_files(tmp_path, ["game", "numpy"])
-    assert list(found) == sorted(name for name in files if "unused" not in name)
-    assert found["walls.py"] == b"\n"
+    contents = python_files(tmp_path, ["game", "numpy"])
+    assert list(contents) == sorted(name for name in files if "unused" not in name)
+    assert contents["walls.py"] == b"\n"
 
 
 def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:

@@ -22,14 +22,14 @@ PAGE = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8")
 def messages() -> list[dict[str, Any]]:
     """Return the messages in the blocks of JSON, in order."""
     decoder = json.JSONDecoder()
-    found = []
+    messages = []
     for block in re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL):
         text = block.strip()
         while text:
             message, end = decoder.raw_decode(text)
-            found.append(message)
+            messages.append(message)
             text = text[end:].strip()
-    return found
+    return messages
 
 
 def test_each_message_has_an_example_that_is_read() -> None:

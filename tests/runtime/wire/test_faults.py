@@ -154,8 +154,8 @@ def test_a_game_that_does_not_start_is_reported(fault: str, code: str, sentence:
         WireEnv(faulty(fault))
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.title) == (code, f"the game `faulty` {sentence}")
-    said = "cannot open display :0" if fault == "exit first" else f"tltlc refuses this game, because it {sentence}"
-    assert f"the game's standard error ends:\n{said}\n" in (diagnostic.help or "")
+    last_line = "cannot open display :0" if fault == "exit first" else f"tltlc refuses this game, because it {sentence}"
+    assert f"the game's standard error ends:\n{last_line}\n" in (diagnostic.help or "")
 
 
 def test_garbage_in_place_of_hello_is_reported() -> None:

@@ -60,19 +60,19 @@ class _GameCheck:
         """Check one variant of a scene, and report the diagnostics and what the scene offers."""
         try:
             with redirect_stdout(sys.stderr):  # a game may print, and the document goes to standard output
-                found = check_scene(self._game, scene, variant)
+                scene_report = check_scene(self._game, scene, variant)
             specs = [*self._specs(scene, variant)]
         except TltlError as error:
             self._report.add(error.diagnostics)
             return
-        self._report.add(found.diagnostics)
+        self._report.add(scene_report.diagnostics)
         fits: dict[str, list[Diagnostic]] = {}
         for fspa, places in specs:
-            fits[fspa.name] = check_fit(found.supply, fspa, places)
+            fits[fspa.name] = check_fit(scene_report.supply, fspa, places)
             self._report.add(fits[fspa.name])
-        for line in _lines(found, fits):
+        for line in _lines(scene_report, fits):
             self._report.say(line)
-        self._report.facts["scenes"].append(_facts(self._game, found, fits))
+        self._report.facts["scenes"].append(_facts(self._game, scene_report, fits))
 
     def _specs(self, scene: str, variant: str) -> Iterator[tuple[Fspa, SpecPlaces]]:
         """Yield the automata of the command's specs, or else of the scene's own spec."""
@@ -92,9 +92,9 @@ class _GameCheck:
         return [opened]
 
 
-def _lines(found: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> Iterator[str]:
+def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> Iterator[str]:
     """Yield the lines that say what a scene offers; the first ones have its name."""
-    name, supply = f"{found.scene}:{found.variant}", found.supply
+    name, supply = f"{scene_report.scene}:{scene_report.variant}", scene_report.supply
     for spec, diagnostics in fits.items():
         fits_spec = cli.status_of(diagnostics) == cli.CLEAN
         yield f"{name} has everything that `{spec}` needs" if fits_spec else f"{name} does not fit `{spec}`"
@@ -105,32 +105,32 @@ def _lines(found: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> Iter
     yield f"  signals: {signals or 'none'}"
     if supply.params:
         yield f"  params: {', '.join(f'{key} = {float(value):g}' for key, value in supply.params.items())}"
-    yield f"  observation: {space_text(found.observation)}"
-    yield f"  action: {space_text(found.action)}"
-    yield f"  capabilities: {', '.join(found.capabilities) or 'none'}"
-    yield f"  speed: {found.steps_per_s:,.0f} steps a second"
-    yield f"  equal seeds and actions give equal plays: {'yes' if found.reproducible else 'no'}"
-    if found.restores is not None:
-        yield f"  a restored snapshot is what was saved: {'yes' if found.restores else 'no'}"
+    yield f"  observation: {space_text(scene_report.observation)}"
+    yield f"  action: {space_text(scene_report.action)}"
+    yield f"  capabilities: {', '.join(scene_report.capabilities) or 'none'}"
+    yield f"  speed: {scene_report.steps_per_s:,.0f} steps a second"
+    yield f"  equal seeds and actions give equal plays: {'yes' if scene_report.reproducible else 'no'}"
+    if scene_report.restores is not None:
+        yield f"  a restored snapshot is what was saved: {'yes' if scene_report.restores else 'no'}"
 
 
-def _facts(game: GameFile, found: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
+def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
     """Return the report on a scene as JSON data."""
-    supply = found.supply
+    supply = scene_report.supply
     return {
         "game": path_text(game.path),
-        "scene": found.scene,
-        "variant": found.variant,
+        "scene": scene_report.scene,
+        "variant": scene_report.variant,
         "specs": [
             {"name": spec, "fits": cli.status_of(diagnostics) == cli.CLEAN} for spec, diagnostics in fits.items()
         ],
         "signals": [*map(str, supply.moments[0].sample)],
         "params": None if supply.params is None else {key: float(value) for key, value in supply.params.items()},
         "clock_s": supply.clock_s,
-        "observation": space_json(found.observation),
-        "action": space_json(found.action),
-        "capabilities": list(found.capabilities),
-        "steps_per_s": round(found.steps_per_s, 1),
-        "reproducible": found.reproducible,
-        "restores": found.restores,
+        "observation": space_json(scene_report.observation),
+        "action": space_json(scene_report.action),
+        "capabilities": list(scene_report.capabilities),
+        "steps_per_s": round(scene_report.steps_per_s, 1),
+        "reproducible": scene_report.reproducible,
+        "restores": scene_report.restores,
     }
