@@ -174,7 +174,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return False
 
     def play_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
-        """Return warnings that a player should read before play, such as of goals that nobody can reach.
+        """Return the warnings to show before play, for example that nobody can reach a goal.
 
         By default none: the game does not search its levels.
         """
