@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import pytest
 
-from tltlc.core.names import full_name, split_name
+from tltlc.core.names import ComparisonName, full_name, split_name
+from tltlc.logic.formula import atom
 
 
 @pytest.mark.parametrize(
@@ -26,3 +30,26 @@ from tltlc.core.names import full_name, split_name
 def test_a_name_is_split_into_its_base_and_arguments(name: str, base: str, arguments: tuple[str, ...]) -> None:
     assert split_name(name) == (base, arguments)
     assert full_name(base, arguments) == name
+
+
+@pytest.mark.parametrize(
+    ("name", "sides"),
+    [("distance(s1) > 3", ("distance(s1)", ">", "3")), ("a - b < c * 2", ("a - b", "<", "c * 2"))],
+)
+def test_the_name_of_a_comparison_knows_its_sides(name: str, sides: tuple[str, str, str]) -> None:
+    (base, _) = split_name(name)
+    for comparison in (base, copy.deepcopy(base), pickle.loads(pickle.dumps(base))):
+        assert isinstance(comparison, ComparisonName)
+        assert (comparison.left, comparison.operator, comparison.right) == sides
+        assert comparison == name
+
+
+@pytest.mark.parametrize("name", ["near(s1)", "a<b", "a > b > c", "> 3"])
+def test_other_names_are_no_comparisons(name: str) -> None:
+    assert not isinstance(split_name(name)[0], ComparisonName)
+
+
+def test_an_atom_learns_that_it_is_a_comparison() -> None:
+    plain = atom("mana > 1")
+    assert atom(ComparisonName("mana", ">", "1")) is plain
+    assert isinstance(plain.name, ComparisonName)

@@ -11,6 +11,7 @@ from tests.logic.small_formulas import formulas_of_size, formulas_up_to
 from tests.logic.strategies import formulas
 from tests.logic.truth_table import TruthTable
 from tests.reference_formulas import corpus, read_formula
+from tltlc.core.names import ComparisonName
 from tltlc.logic import formula as f
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.rewrite import simplify
@@ -116,7 +117,7 @@ def test_formulas_print_as_known_sentences(formula: str, sentence: str) -> None:
 
 
 def test_negated_comparisons_are_reversed_and_need_no_brackets() -> None:
-    low, high = f.not_(f.atom("fuel > 5")), f.atom("near(a) < 3")
+    low, high = f.not_(f.atom(ComparisonName("fuel", ">", "5"))), f.atom(ComparisonName("near(a)", "<", "3"))
     assert english_text(f.always(f.or_(low, high))) == "Keep fuel <= 5 or near(a) < 3 throughout."
     assert english_text(f.always(low)) == "Avoid fuel > 5 throughout."
     assert english_text(f.eventually(f.and_(f.not_(high), f.atom("p")))) == "Reach near(a) >= 3 and p."

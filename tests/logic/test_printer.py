@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from tests.logic.small_formulas import formulas_up_to
 from tests.logic.strategies import formulas
 from tests.reference_formulas import corpus, read_formula
+from tltlc.core.names import ComparisonName
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.parser import parse_formula
@@ -18,7 +19,8 @@ from tltlc.logic import formula as f
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.text.printer import ascii_text, is_ascii_text, unicode_text, words_text
 
-NAMES = ("a", "near(s1)", "spatial.near(s1, close = 2)", "health > 0.5")
+HEALTHY = ComparisonName("health", ">", "0.5")
+NAMES = ("a", "near(s1)", "spatial.near(s1, close = 2)", HEALTHY)
 NOTATIONS = pytest.mark.parametrize("write", [ascii_text, unicode_text, words_text])
 
 
@@ -63,10 +65,10 @@ def test_a_formula_has_its_texts_as_properties() -> None:
 @pytest.mark.parametrize(
     ("formula", "text"),
     [
-        (f.atom("health > 0.5"), "health > 0.5"),
-        (f.not_(f.atom("health > 0.5")), "!(health > 0.5)"),
-        (f.eventually(f.atom("health > 0.5")), "F(health > 0.5)"),
-        (f.and_(f.atom("x < 1"), f.next_(f.not_(f.atom("a")))), "(x < 1) & X !a"),
+        (f.atom(HEALTHY), "health > 0.5"),
+        (f.not_(f.atom(HEALTHY)), "!(health > 0.5)"),
+        (f.eventually(f.atom(HEALTHY)), "F(health > 0.5)"),
+        (f.and_(f.atom(ComparisonName("x", "<", "1")), f.next_(f.not_(f.atom("a")))), "(x < 1) & X !a"),
     ],
 )
 def test_a_comparison_that_is_an_operand_has_brackets(formula: Formula, text: str) -> None:

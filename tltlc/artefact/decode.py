@@ -96,7 +96,8 @@ def _decode_and_check(document: object, origin: Origin) -> Fspa:
 def _fspa(document: dict[str, Any]) -> Fspa:
     spec = document["spec"]
     limit = spec["limit_steps"]
-    formula = _formula_reader(document["atoms"])
+    atoms = tuple(_atom(atom) for atom in document["atoms"])
+    formula = _formula_reader(atoms)
     return Fspa(
         name=spec["name"],
         doc=spec["doc"],
@@ -109,7 +110,7 @@ def _fspa(document: dict[str, Any]) -> Fspa:
         clock_s=_number(spec.get("clock_s")),
         signals=tuple(_signal(signal) for signal in document["signals"]),
         params=tuple(_param(param) for param in document["params"]),
-        atoms=tuple(_atom(atom) for atom in document["atoms"]),
+        atoms=atoms,
         exclusive=tuple(tuple(int(atom) for atom in group) for group in document["exclusive"]),
         states=tuple(_state(state, formula) for state in document["states"]),
         edges=tuple(_edge(edge, formula) for edge in document["edges"]),
@@ -126,13 +127,13 @@ def _pair(pair: dict[str, Any]) -> Pair:
 _FormulaReader = Callable[[dict[str, str]], Formula | Text]
 
 
-def _formula_reader(atoms: Iterable[dict[str, Any]]) -> _FormulaReader:
+def _formula_reader(atoms: Iterable[Atom]) -> _FormulaReader:
     """Return a function that converts the texts of a formula, one for each notation, to a formula.
 
     If tltlc cannot parse the ASCII text, or would print the formula differently, the function
     returns the texts as a :class:`Text` instead.
     """
-    parser = FormulaParser(atom["name"] for atom in atoms)
+    parser = FormulaParser(atom.name for atom in atoms)
 
     def read(text: dict[str, str]) -> Formula | Text:
         formula = parser.formula(text["ascii"])

@@ -1,4 +1,4 @@
-"""Names of signals and atoms with arguments, such as ``near(s1)`` and ``near(s1, close=3)``."""
+"""Names of signals and atoms: with arguments, such as ``near(s1)``, or of comparisons, such as ``fuel > 5``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,29 @@ import re
 from typing import Final
 
 _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
+_COMPARISON: Final = re.compile(r"([^<>]+) ([<>]) ([^<>]+)")
+
+
+class ComparisonName(str):
+    """The name of an atom that compares two numbers, such as ``fuel > 5``: a text that knows its parts.
+
+    ``left`` and ``right`` are the two sides as they are written, and ``operator`` is ``<``, ``<=``,
+    ``>`` or ``>=``.
+    """
+
+    __slots__ = ("left", "operator", "right")
+    left: str
+    operator: str
+    right: str
+
+    def __new__(cls, left: str, operator: str, right: str) -> ComparisonName:
+        """Make the name from its three parts."""
+        name = super().__new__(cls, f"{left} {operator} {right}")
+        name.left, name.operator, name.right = left, operator, right
+        return name
+
+    def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
+        return self.left, self.operator, self.right
 
 
 def full_name(base: str, arguments: tuple[str, ...]) -> str:
@@ -17,7 +40,10 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
     """Split a full name into its base and its arguments.
 
     A name that is not a call, such as ``distance(s1) > 3``, is its own base and has no arguments.
+    The base of a comparison is a :class:`ComparisonName`.
     """
+    if comparison := _COMPARISON.fullmatch(name):
+        return ComparisonName(*comparison.groups()), ()
     head = _BASE.match(name)
     if head is None:
         return name, ()

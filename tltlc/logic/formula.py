@@ -11,6 +11,8 @@ from collections.abc import Container, Iterable, Iterator
 from typing import Final, Literal
 from weakref import WeakValueDictionary
 
+from tltlc.core.names import ComparisonName
+
 FormulaOp = Literal[
     "true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M"
 ]
@@ -126,8 +128,14 @@ FALSE: Final = _intern("false")
 
 
 def atom(name: str) -> Formula:
-    """Return the atom called ``name``."""
-    return _intern("atom", (), name)
+    """Return the atom called ``name``.
+
+    If this is a :class:`~tltlc.core.names.ComparisonName`, the atom is printed as a comparison.
+    """
+    node = _intern("atom", (), name)
+    if isinstance(name, ComparisonName):
+        node.name = name  # The atom may exist already, under a plain text.
+    return node
 
 
 def not_(operand: Formula) -> Formula:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from math import inf
 
+from tltlc.core.names import ComparisonName
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Edit, Fix, replacement_fix
 from tltlc.grammar.tree import BinaryExpr, Expr, NameExpr, NumberExpr, ParamDecl, SignalDecl
@@ -44,7 +45,7 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     strict = _NEGATED.get(op, op)
     if not right.is_constant and strict == "<":
         strict, left, right = ">", right, left
-    name = f"{left.operand_text(PRODUCT - 1)} {strict} {right.operand_text(PRODUCT - 1)}"
+    name = ComparisonName(left.operand_text(PRODUCT - 1), strict, right.operand_text(PRODUCT - 1))
     if env.symbolic:
         return atom(name)
     _check_size(left, expr, env)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
+from tltlc.core.names import ComparisonName
 from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, FormulaOp
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
@@ -181,7 +182,7 @@ def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> No
 
 def _needs_brackets(node: Formula, least: int, spelling: Spelling) -> bool:
     """Whether a node needs brackets where its operator must bind at least as tightly as ``least``."""
-    if spelling.brackets_around_comparisons and node.op == "atom" and least and ("<" in node.name or ">" in node.name):
+    if spelling.brackets_around_comparisons and least and isinstance(node.name, ComparisonName):
         return True  # The grammar reads F a > 0 as F(a > 0), but a person might not.
     if STRENGTH[node.op] >= least:
         return False

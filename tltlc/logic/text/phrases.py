@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import Final
 
+from tltlc.core.names import ComparisonName
 from tltlc.logic.formula import Formula, atom, rebuild
 from tltlc.logic.text.notation import Spelling, write
 
@@ -16,7 +16,6 @@ _PHRASE: Final = Spelling(
     brackets_between_infix=True,
     brackets_around_comparisons=False,
 )
-_COMPARISON: Final = re.compile(r"([^<>]+) ([<>]) ([^<>]+)")
 _OPPOSITE: Final = {"<": ">=", ">": "<="}
 
 
@@ -33,8 +32,9 @@ def phrase(state: Formula) -> str:
 
 def _opposite(node: Formula) -> Formula | None:
     """Return the negation of a comparison as a comparison; None for any other formula."""
-    comparison = _COMPARISON.fullmatch(node.args[0].name) if node.op == "not" and node.args[0].op == "atom" else None
-    return comparison and atom(f"{comparison[1]} {_OPPOSITE[comparison[2]]} {comparison[3]}")
+    if node.op != "not" or not isinstance(name := node.args[0].name, ComparisonName):
+        return None
+    return atom(ComparisonName(name.left, _OPPOSITE[name.operator], name.right))
 
 
 def bracketed_phrase(state: Formula) -> str:
