@@ -24,10 +24,11 @@ _COMMENT: Final = re.compile(r"//[^\n]*")
 
 @record
 class ClauseAutomaton:
-    """A clause of a spec, or a conjunct of its formula, with an automaton for this part alone.
+    """A clause of a spec, with an automaton for this clause alone.
 
-    ``text`` is the clause as it is written, on one line with single blanks: ``avoid on_lava``. For
-    an artefact, which has no source text, it is the conjunct in the ASCII notation: ``G !on_lava``.
+    ``text`` is the clause as the source has it, on one line with single blanks: ``avoid on_lava``.
+    An artefact (a compiled spec) has no source text. Its clauses are the conjuncts of its formula,
+    and ``text`` is a conjunct in ASCII notation: ``G !on_lava``.
     """
 
     text: str
@@ -38,9 +39,9 @@ class ClauseAutomaton:
 class Clauses:
     """The clauses of a spec.
 
-    ``parts`` has the clauses in order, without those whose automaton would be too large. ``are_all``
-    is true if no clause is missing and there is at least one. ``whole`` is the spec. An automaton
-    may have at most ``state_budget`` states.
+    ``parts`` has the clauses in order, without those whose automaton would need more than
+    ``state_budget`` states. ``are_all`` is true if ``parts`` has every clause, and at least one.
+    ``whole`` has the atoms, signals and settings that all clauses share; its own formula is not used.
     """
 
     parts: tuple[ClauseAutomaton, ...]
@@ -49,9 +50,10 @@ class Clauses:
     state_budget: int
 
     def together(self, chosen: Sequence[int]) -> Fspa | None:
-        """Return the automaton of the conjunction of some parts; None if it would be too large.
+        """Return one automaton for several clauses: it accepts the traces that satisfy all of them.
 
-        ``chosen`` has their indices in ``parts``.
+        ``chosen`` has the indices of the clauses in ``parts``. Return None if the automaton would
+        need more than ``state_budget`` states.
         """
         formulas = [part.fspa.formula for part in (self.parts[index] for index in chosen)]
         conjunction = and_(*(formula for formula in formulas if isinstance(formula, Formula)))
@@ -59,11 +61,12 @@ class Clauses:
 
 
 def clauses_of(fspa: Fspa, spec: Spec | None, state_budget: int = DEFAULT_STATE_BUDGET) -> Clauses:
-    """Return the clauses of a spec.
+    """Return the clauses of the spec that ``fspa`` was built from.
 
-    ``spec`` is what ``fspa`` was built from; None for an artefact. The automaton of a clause may have
-    at most ``state_budget`` states. An automaton of another tool, whose formula is only a text, has
-    no clauses.
+    ``spec`` is this spec. It is None if ``fspa`` was read from an artefact (a compiled spec); then
+    the clauses are the conjuncts of the formula of ``fspa``. The result has no clauses if another
+    tool made the automaton and its formula is only a text. The automaton of a clause may have at
+    most ``state_budget`` states.
     """
     conjuncts = list(_conjuncts_of_artefact(fspa) if spec is None else _conjuncts_of_source(spec))
     whole = replace(_as_spec(fspa) if spec is None else spec, parts=())
@@ -115,7 +118,10 @@ def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
 
 
 def _as_spec(fspa: Fspa) -> Spec:
-    """Return a spec with the fields of an automaton. Its formula is ``true``; the caller replaces it."""
+    """Return a spec with the atoms, signals and settings of an automaton.
+
+    Its formula is ``true``; the caller replaces it.
+    """
     return Spec(
         name=fspa.name,
         doc=fspa.doc,

@@ -23,7 +23,7 @@ from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
 from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceDetails, TraceVerdict
 
 _MOST_JOINT: Final = 50
-"""At most this many automata of several clauses are kept."""
+"""A :class:`Judge` caches at most this many automata that stand for several clauses at once."""
 
 
 class Judge:
@@ -33,7 +33,8 @@ class Judge:
     :class:`~tltlc.tools.judge.verdict.RejectionCause` in the result names those of ``clauses`` that the
     trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
     ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
-    limit do not count. With ``details``, verdicts say how traces moved through the automaton.
+    limit do not count. With ``details``, each verdict also has
+    :class:`~tltlc.tools.judge.verdict.TraceDetails`: how the trace moved through the automaton.
     """
 
     def __init__(
@@ -46,10 +47,11 @@ class Judge:
         self._samples = Samples(fspa, None, [])
 
     def judge(self, name: str, data: bytes) -> JudgedTrace:
-        """Judge the trace in the bytes ``data`` of a file; ``name`` is its name in messages.
+        """Judge one trace. ``data`` is the content of its file, and ``name`` its name in messages.
 
-        If the trace cannot be judged, the result has the errors of
-        :func:`~tltlc.monitor.traces.read_trace` or of :meth:`~tltlc.monitor.monitor.Monitor.step`.
+        No error is raised. If the trace cannot be read, or if the monitor rejects one of its
+        samples, the result has no verdict, but the errors in ``diagnostics``. An error after the
+        end of an episode does not count.
         """
         samples: list[TraceSample] = []
         try:
@@ -85,10 +87,11 @@ class Judge:
         return TraceDetails(run.arrivals, unmet, nearest)
 
     def _unjudged(self, name: str, samples: Sequence[TraceSample], error: TltlError) -> JudgedTrace:
-        """Return what is known of a trace with an error, given the samples that could be read.
+        """Return the result for a trace that has an error.
 
-        If traces are judged as episodes, and the episode ends before the error, the trace is judged
-        as if it had no error.
+        ``samples`` are the samples that could be read. The result has no verdict, with one
+        exception: if traces are judged as episodes, and the episode ends before the error, the
+        error does not matter, and the trace is judged as usual.
         """
         diagnostics = in_trace(name, error.diagnostics) if isinstance(error, MonitorError) else error.diagnostics
         samples = self._faultless(samples)
@@ -100,7 +103,7 @@ class Judge:
         return JudgedTrace(name, None, diagnostics, None if run.broken_at is None else self._cause(samples, run))
 
     def _faultless(self, samples: Sequence[TraceSample]) -> Sequence[TraceSample]:
-        """Return the samples before the first one that the monitor rejects; all if it rejects none."""
+        """Return the samples before the first one that the monitor rejects; all samples if it rejects none."""
         with suppress(MonitorError):
             if samples:
                 self._runner.run(samples)
@@ -114,9 +117,9 @@ class Judge:
         return samples
 
     def _plain_samples(self, data: bytes) -> list[TraceSample] | None:
-        """Return the samples of a trace in plain CSV; None for any other trace.
+        """Return the samples of a trace in plain CSV, which :func:`plain_columns` reads fast.
 
-        The result is also None if the trace has times that
+        Return None for any other trace, and for times of samples that
         :class:`~tltlc.monitor.sample_times.SampleTimes` rejects.
         """
         plain = plain_columns(data, self._fspa.signals)
@@ -153,11 +156,11 @@ class Judge:
         ]
 
     def _blocked(self, samples: Sequence[TraceSample]) -> list[int]:
-        """Return the indices of the unmet clauses that can no longer be met together with the met ones.
+        """Return the indices of the clauses that are not met yet, and never will be without breaking others.
 
-        A met clause accepts the samples as a whole trace; an unmet one does not. An unmet clause is
-        in the result if no continuation of the samples can meet it and all met clauses together.
-        The result is empty if not all clauses are known.
+        A clause is met if it accepts ``samples`` as a whole trace. A clause that is not met is in
+        the result if no continuation of ``samples`` satisfies both this clause and all clauses that
+        are met now. The result is empty if not all clauses of the spec are known.
         """
         if self._clauses is None or not self._clauses.are_all:
             return []
@@ -166,7 +169,11 @@ class Judge:
         return [index for index in unmet if self._is_broken(tuple(sorted((*met, index))), samples)]
 
     def _is_broken(self, chosen: tuple[int, ...], samples: Sequence[TraceSample]) -> bool:
-        """Whether no continuation of the samples can meet the chosen clauses together."""
+        """Whether no continuation of the samples can satisfy all of the chosen clauses.
+
+        ``chosen`` has the indices of the clauses. False as well if their common automaton would be
+        too large.
+        """
         assert self._clauses is not None
         if chosen not in self._joint_runners:
             if len(self._joint_runners) == _MOST_JOINT:
@@ -180,10 +187,10 @@ class Judge:
         return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
 
     def _breaking_atoms(self, sample: TraceSample, state: int, number: int) -> tuple[str, ...]:
-        """Return the atoms that decide the guard which the sample makes true in ``state``.
+        """Return the names of the atoms that decide which edge leaves ``state`` at this sample.
 
-        They are the atoms of the guard's most robust prime implicant. ``number`` is the number of the
-        sample, from 1.
+        The sample makes the guard of exactly one edge true. The result has the atoms of this guard's
+        most robust prime implicant. ``number`` is the number of the sample, from 1.
         """
         values = self._samples.atom_values(sample, number)
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))

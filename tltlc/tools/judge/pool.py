@@ -23,7 +23,7 @@ from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.verdict import JudgedTrace
 
 _FEW: Final = 40
-"""By default, this process judges fewer traces than this itself, because starting others takes longer."""
+"""By default, there are no worker processes for fewer traces than this: starting them would take longer."""
 
 _CHUNK: Final = 8
 """A worker gets at most this many traces at a time."""
@@ -44,14 +44,15 @@ def judge_files(
     episodes: bool = False,
     details: bool = False,
 ) -> Generator[JudgedTrace]:
-    """Judge the traces in these files, and yield the results in order.
+    """Judge the traces in these files, and yield the results in the order of ``paths``.
 
-    ``workers`` is the number of processes. By default, it is one for each core, or only this process
-    for few traces. ``episodes`` and ``details`` are as for :class:`~tltlc.tools.judge.judge.Judge`.
-    Closing the iterator ends the processes.
+    ``workers`` is the number of worker processes. With 1, this process judges the traces itself.
+    The default is one worker for each core, but 1 for fewer than ``_FEW`` traces. ``episodes`` and
+    ``details`` are as for :class:`~tltlc.tools.judge.judge.Judge`. Closing the iterator ends the
+    workers. A file that cannot be read gets a result without a verdict.
 
     Raises:
-        TltlError: TLT0007, a process ended before its traces were judged.
+        TltlError: TLT0007, a worker ended before its traces were judged.
     """
     if workers is None:
         workers = _cores() if len(paths) >= _FEW else 1
@@ -65,7 +66,7 @@ def judge_files(
 
 
 def _cores() -> int:
-    """Return the number of cores that this process may use."""
+    """Return the number of CPU cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -131,9 +132,10 @@ class _Worker:
         self._send((fspa, clauses, dict(options)))
 
     def give(self, chunk: tuple[int, Sequence[str]] | None) -> None:
-        """Give the worker its next chunk: the index of its first trace, and the paths of all.
+        """Send the worker its next chunk; for None, there are no more chunks, so send nothing.
 
-        None means that there are no more chunks.
+        A chunk is the index of its first trace, and the paths of all of its traces. Raises TltlError,
+        TLT0007, if the process has ended.
         """
         self.is_busy = chunk is not None
         if chunk is not None:
@@ -147,7 +149,10 @@ class _Worker:
             raise _lost_error() from None
 
     def take(self) -> Sequence[JudgedTrace]:
-        """Return the results that the worker has sent for its chunk."""
+        """Wait for the results for the current chunk, and return them.
+
+        Raises TltlError, TLT0007, if the process has ended.
+        """
         try:
             results: Sequence[JudgedTrace] = self.connection.recv()
         except (EOFError, OSError):
@@ -172,8 +177,9 @@ def _lost_error() -> TltlError:
 def _work(connection: Connection, parent: int) -> None:
     """Judge traces in a worker process until the connection is closed.
 
-    First the arguments of a :class:`~tltlc.tools.judge.judge.Judge` come through the connection, and
-    then the chunks of traces.
+    The first message on the connection has the arguments of a
+    :class:`~tltlc.tools.judge.judge.Judge`. Each further message is a list of paths, and is answered
+    with a list of results. ``parent`` is the id of the parent process; the worker ends with it.
     """
     # Only the parent handles Ctrl-C, and a worker must not outlive it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

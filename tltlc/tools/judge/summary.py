@@ -17,8 +17,8 @@ _ORDER: Final[tuple[Kind, ...]] = ("broken", "blocked", "late", "unfinished")
 class CauseGroup:
     """Traces that are not accepted for the same reason.
 
-    ``kind`` and ``clauses`` are those of :class:`~tltlc.tools.judge.verdict.RejectionCause`. ``traces`` are the
-    names of the traces, and ``steps`` their steps, in the same order.
+    ``kind`` and ``clauses`` are those of their :class:`~tltlc.tools.judge.verdict.RejectionCause`. ``traces``
+    are the names of the traces, and ``steps`` has, in the same order, the step of the cause in each trace.
     """
 
     kind: Kind
@@ -28,7 +28,7 @@ class CauseGroup:
 
     @property
     def usual_step(self) -> int | None:
-        """The step that more than half of the traces have in common; None if there is none."""
+        """The step that more than half of the traces have in common; None if there is no such step."""
         step, count = Counter(self.steps).most_common(1)[0]
         return step if 2 * count > len(self.steps) else None
 
@@ -41,8 +41,8 @@ class CauseGroup:
 def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
     """Return the traces that are not accepted, in groups with the same cause.
 
-    The groups are sorted by the kind of their cause, from ``broken`` to ``unfinished``; of one kind,
-    the largest group comes first.
+    The groups are sorted by the kind of their cause: ``broken``, ``blocked``, ``late``, ``unfinished``.
+    Within a kind, larger groups come first.
     """
     groups: dict[tuple[Kind, tuple[str, ...]], list[tuple[str, int]]] = {}
     for trace in traces:
@@ -64,7 +64,7 @@ def unread_codes(traces: Iterable[JudgedTrace]) -> dict[str, int]:
 
 
 def summary_text(traces: Sequence[JudgedTrace]) -> str:
-    """Return one line: ``62 of 100 accepted; 30 break `avoid on_lava`, mostly at step 3``."""
+    """Summarize the results in one line: ``62 of 100 accepted; 30 break `avoid on_lava`, mostly at step 3``."""
     accepted = sum(trace.verdict is not None and trace.verdict.outcome.accepted for trace in traces)
     parts = [f"{accepted} of {len(traces)} accepted", *map(group_text, cause_groups(traces))]
     if codes := unread_codes(traces):
@@ -106,7 +106,7 @@ def _steps_text(group: CauseGroup) -> str:
 
 
 def trace_text(trace: JudgedTrace) -> str:
-    """Describe what is known of a trace in words: ``not accepted: breaks `avoid on_lava` at step 3 of 50``."""
+    """Describe the result of one trace in words: ``not accepted: breaks `avoid on_lava` at step 3 of 50``."""
     if trace.verdict is None:
         so_far = f"; before that, it {_breaking_text(trace.so_far)}" if trace.so_far else ""
         return f"cannot be judged: {trace.diagnostics[0].title}{so_far}"

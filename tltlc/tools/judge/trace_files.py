@@ -19,8 +19,9 @@ ENDINGS: Final = (".csv", ".jsonl", ".parquet")
 class TraceFiles:
     """The files that the arguments of a command name.
 
-    ``traces`` are in order, and each is there only once. ``others`` are the other files in the named
-    folders. ``errors`` has an error TLT0001 for each folder that cannot be read or contains no trace.
+    ``traces`` are the paths of the traces, in order and without duplicates. ``others`` are the paths
+    of all other files in the named folders. ``errors`` has an error TLT0001 for each folder that
+    cannot be read or contains no trace.
     """
 
     traces: tuple[str, ...]
@@ -29,10 +30,11 @@ class TraceFiles:
 
 
 def find_traces(arguments: Iterable[str]) -> TraceFiles:
-    """Return the files that the arguments name; for a folder, the files in it and below it, sorted.
+    """Return the traces that the arguments name. An argument is a file or a folder.
 
-    Hidden files and folders do not count. A file that an argument names is a trace, whatever its
-    name.
+    A file counts as a trace, whatever its name. A folder stands for all files in it and in its
+    subfolders, sorted; the files with one of the ``ENDINGS`` are traces. Hidden files and folders
+    in it are left out.
     """
     traces: dict[str, str] = {}
     others: dict[str, str] = {}

@@ -1,4 +1,4 @@
-"""Run an automaton over all samples of a trace: with its generated monitor, or step by step."""
+"""Run an automaton over the samples of a trace, fast with generated Python code, else step by step."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ class TraceRun:
     """The result of a run of an automaton over a trace.
 
     ``state`` is the state in which the run ends, and ``done`` says whether the episode has ended.
-    ``arrivals`` are the entries into states, in order: pairs of a state and the number of samples
-    before it. The first is the initial state, after 0 samples.
+    ``arrivals`` has a pair for each change of state: the new state, and how many samples it took to
+    get there. For example, ``((0, 0), (2, 5))`` means that the run starts in state 0, and that
+    sample 5 leads to state 2.
     ``broken_at`` is the number, from 1, of the first sample after which the verdict is ``violated``,
     and ``broken_state`` is the state before that sample. Both are None if the verdict is never
     ``violated``.
@@ -47,12 +48,12 @@ class TraceRun:
 class TraceRunner:
     """Runs one automaton over one trace after another.
 
-    The generated Python monitor computes the same steps as :class:`~tltlc.monitor.monitor.Monitor`
-    in a tenth of the time, but has other messages. So a trace with faulty samples is run again, with
-    :class:`~tltlc.monitor.monitor.Monitor`.
+    Once many samples have been run, the automaton is compiled to Python code, the generated monitor.
+    It computes the same steps as :class:`~tltlc.monitor.monitor.Monitor` in a tenth of the time, but
+    reports errors in other words. So a trace with faulty samples is run again with ``Monitor``.
 
-    With ``episodes``, a run ends when the episode ends, at the latest with the last sample. It is
-    accepted if the episode is a success.
+    With ``episodes``, a run stops when the episode ends, at the latest with the last sample. Then
+    the trace is accepted if the episode is a success.
     """
 
     def __init__(self, fspa: Fspa, *, episodes: bool = False) -> None:
@@ -65,8 +66,9 @@ class TraceRunner:
     def run(self, samples: Sequence[TraceSample], *, cut_off: bool = False) -> tuple[TraceRun, tuple[Diagnostic, ...]]:
         """Run the automaton over ``samples``, of which there must be at least one.
 
-        Return the result of the run, and warnings about clamped values. Pass ``cut_off`` if the
-        trace goes on after ``samples``; then an episode does not end just because they end.
+        Return the result of the run, and warnings about values that were clamped to their range.
+        Pass ``cut_off`` if the trace goes on after ``samples``; then the last of ``samples`` does
+        not end the episode.
 
         Raises:
             MonitorError: the errors of :meth:`~tltlc.monitor.monitor.Monitor.step`.
@@ -87,8 +89,8 @@ class TraceRunner:
     def _fast_run(self, steps: Sequence[Any]) -> TraceRun:
         """Return the result of a run, given what the generated monitor reported at each step.
 
-        A verdict ``violated`` never changes again, and an episode that has ended stays ended. So
-        bisection finds the first step with this verdict, and the step at which the episode ends.
+        The verdict ``violated`` is final, and an episode that has ended stays ended. So bisection
+        finds the first step with this verdict, and the step at which the episode ends.
         """
         if self._episodes:
             steps = steps[: bisect_left(steps, True, key=attrgetter("done")) + 1]
@@ -121,7 +123,7 @@ class TraceRunner:
 
 
 def _arrivals(states: Sequence[int]) -> tuple[tuple[int, int], ...]:
-    """Return ``arrivals`` of :class:`TraceRun`, given the state after each sample."""
+    """Return the field ``arrivals`` of :class:`TraceRun`; ``states`` has the state after each sample."""
     changes = (
         (after, number)
         for number, (before, after) in enumerate(zip((0, *states), states, strict=False), start=1)
@@ -131,7 +133,7 @@ def _arrivals(states: Sequence[int]) -> tuple[tuple[int, int], ...]:
 
 
 def _generated_monitor(fspa: Fspa) -> Any:
-    """Return the class ``Monitor`` from the Python code that ``tltlc compile -t python`` writes."""
+    """Generate Python code for an automaton, as ``tltlc compile -t python`` does; return its class ``Monitor``."""
     (text,) = emit("python", fspa).values()
     namespace: dict[str, Any] = {"__name__": f"<monitor of {fspa.name}>"}
     exec(compile(text, namespace["__name__"], "exec"), namespace)

@@ -14,17 +14,20 @@ Kind = Literal["broken", "blocked", "late", "unfinished"]
 
 @record
 class RejectionCause:
-    """Why a trace is not accepted. ``step`` counts samples from 1.
+    """Why a trace is not accepted.
+
+    ``step`` is the number of a sample, from 1. ``kind`` is one of these:
 
     - ``broken``: from ``step`` on, no continuation can meet the ``clauses``.
     - ``blocked``: from ``step`` on, no continuation can meet the ``clauses`` without breaking others.
-    - ``late``: the episode reaches its limit, ``step``, before the ``clauses`` are met. Only for
+    - ``late``: the episode reaches its limit, at ``step``, before the ``clauses`` are met. Only for
       traces that are judged as episodes.
-    - ``unfinished``: the trace ends, after ``step`` samples, before the ``clauses`` are met.
+    - ``unfinished``: the trace ends at ``step``, before the ``clauses`` are met.
 
-    ``clauses`` are texts, as in :class:`~tltlc.tools.judge.clauses.ClauseAutomaton`. They are empty if no
-    single clause is to blame, but only several together, or if the clauses are not known. ``atoms``
-    are the atoms that decided the step that broke the spec; empty for ``late`` and ``unfinished``.
+    ``clauses`` has the texts of the clauses to blame: ``avoid on_lava``. It is empty if no single
+    clause is to blame, only several together, or if the clauses are not known. ``atoms`` has the
+    names of the atoms whose values at ``step`` broke the spec. It is empty for ``late`` and
+    ``unfinished``.
     """
 
     kind: Kind
@@ -37,12 +40,14 @@ class RejectionCause:
 class TraceDetails:
     """How a trace moved through the automaton.
 
-    ``arrivals`` are the entries into states, in order: pairs of a state and the number of samples
-    before it. The first is the initial state, after 0 samples. ``unmet`` is the state at the end, or
-    the state before the sample that broke the spec. If the trace is not accepted, ``nearest`` says how
-    near its last stay in the state ``unmet`` came to an edge that leads towards acceptance; ``row``
-    counts the samples of that stay. It is None if the trace is accepted, or if there is no such edge or
-    no sample in the stay.
+    ``arrivals`` has a pair for each change of state: the new state, and how many samples it took to
+    get there. The first pair is ``(0, 0)``, for the initial state. ``unmet`` is the state before the
+    sample that broke the spec, or the last state if no sample broke it.
+
+    ``nearest`` is about the steps that the trace spent in ``unmet`` the last time. It says which of
+    them came nearest to an edge that leads towards acceptance; ``nearest.row`` is the index of this
+    step among them. ``nearest`` is None if the trace is accepted, if there is no such edge, or if
+    there are no such steps.
     """
 
     arrivals: tuple[tuple[int, int], ...]
@@ -54,10 +59,10 @@ class TraceDetails:
 class TraceVerdict:
     """The verdict of a trace.
 
-    ``remaining`` is the label of the last state: what remains to be satisfied. ``cause`` is None if
-    the trace is accepted. ``samples`` is the number of samples in the trace. If the trace is judged
-    as an episode and the episode ends earlier, ``outcome.steps`` is less than ``samples``. ``details``
-    is None unless they were asked for.
+    ``remaining`` is the label of the last state: the formula that remains to be satisfied. ``cause``
+    is None if the trace is accepted. ``samples`` is the number of samples in the trace; it is greater
+    than ``outcome.steps`` if the trace is judged as an episode and the episode ends earlier.
+    ``details`` is None unless the caller of :class:`~tltlc.tools.judge.judge.Judge` asked for details.
     """
 
     outcome: TraceOutcome
@@ -69,11 +74,12 @@ class TraceVerdict:
 
 @record
 class JudgedTrace:
-    """A trace with its ``verdict``; the verdict is None if the trace cannot be judged.
+    """The result of judging one trace.
 
-    ``name`` is the name of the trace in messages. If the trace cannot be judged, the first of
-    ``diagnostics`` is the error that says why; otherwise they are warnings. ``so_far`` is set if the
-    samples before the error already break the spec: then it says how.
+    ``name`` is the name of the trace in messages. If the trace cannot be judged, ``verdict`` is None,
+    and the first of ``diagnostics`` is the error that says why. Otherwise ``diagnostics`` are
+    warnings. ``so_far`` is the cause if the samples before the error already break the spec; in all
+    other cases it is None.
     """
 
     name: str
