@@ -1,5 +1,6 @@
 """Apply ``allow`` comments to findings, and report comments that have no effect.
 
+A comment such as ``// tltlc: allow TLT0419`` silences the findings with this code on its line.
 :mod:`tltlc.grammar.allow_comments` defines the form of these comments.
 """
 
@@ -28,13 +29,15 @@ _LIKE_ALLOW: Final = re.compile(r"//+\s*tltlc\s*:\s*(?:allow\b|\w+\s+TLT[0-9]{4}
 def apply_allow_comments(view: FileView, findings: Iterable[LintFinding]) -> list[LintFinding]:
     """Return the findings that no comment silences, plus findings about the comments themselves.
 
-    A comment silences findings in its own file. In the linted file, there is a finding for
+    A comment such as ``// tltlc: allow TLT0419`` silences findings in its own file. The findings
+    about comments, TLT0427, are about
 
-    - each code that a comment allows, but that silences nothing. There is no finding if the comment
-      also allows TLT0427, or if it applies to a spec that every trace or no trace satisfies, or to
-      a clause of such a spec;
-    - each comment that names no code;
+    - each code in a comment that silences nothing;
+    - each ``allow`` comment without a code;
     - each comment that is probably a misspelt ``allow`` comment.
+
+    A code that silences nothing is not reported if its comment also allows TLT0427, or if the
+    comment applies to a spec that every trace or no trace satisfies, or to a clause of such a spec.
     """
     comments = AllowIndex(loaded.module for loaded in view.modules)
     remaining = [finding for finding in findings if not comments.silences(finding.diagnostic)]
@@ -64,10 +67,10 @@ def apply_allow_comments(view: FileView, findings: Iterable[LintFinding]) -> lis
 
 
 class _SettledSpecs:
-    """The specs that every trace satisfies or no trace satisfies.
+    """The settled specs of a file: those that every trace satisfies, or no trace.
 
-    Most rules skip these specs. So a comment on such a spec may silence a finding once the spec is
-    corrected, even if it silences nothing now.
+    Most rules skip settled specs. So a comment on such a spec may silence nothing now, but silence
+    a finding once the spec is corrected.
     """
 
     def __init__(self, view: FileView) -> None:
@@ -78,7 +81,7 @@ class _SettledSpecs:
         self._results: dict[int, bool] = {}
 
     def overlap(self, allowance: Allowance) -> bool:
-        """Whether the comment of an allowance applies to a settled spec or one of its clauses."""
+        """Whether the comment of ``allowance`` applies to a settled spec or to a clause of such a spec."""
         if allowance.statements is None:
             return bool(self._specs)
         # Comments that apply to the same line share one tuple of spans, so its identity can be the key.
@@ -92,10 +95,10 @@ class _SettledSpecs:
 
 
 def _unused_code(allowance: Allowance, fix: Fix | None) -> LintFinding:
-    """Return the finding for an allowed code that silences nothing.
+    """Return the finding for a code in an ``allow`` comment that silences nothing.
 
-    ``fix`` removes the comment. It is None if another code of the comment silences something; then
-    the author has to edit the comment.
+    ``fix`` removes the whole comment. It is None if another code in the comment silences something;
+    then the author has to edit the comment.
     """
     where = "in this file" if allowance.statements is None else "here"
     title = f"this allows {allowance.code}, which is not found {where}"

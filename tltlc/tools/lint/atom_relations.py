@@ -21,8 +21,8 @@ _MOST_PAIRS: Final = 24
 _TRIES: Final = 40
 """Limits that keep lint rules fast.
 
-They are the most nodes of an expression, the most pairs of atoms, and the most points that are
-searched before a proof is tried.
+They are, in this order: the most nodes of an atom's expression, the most pairs of atoms, and the
+most samples to try for a pair of atoms before a proof is tried.
 """
 
 
@@ -33,17 +33,18 @@ class _DeclaredSignals:
 
 
 def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
-    """Return the proved relations between the atoms ``names``, as clauses to add to the spec.
+    """Return what can be proved about pairs of the atoms ``names``, as clauses to add to the spec.
 
-    Each has the form ``G !(p & q)``: p and q never hold together. Both are atoms or negated atoms,
-    and they have a signal in common.
+    Each clause has the form ``G !(p & q)``: p and q never hold together. Each of p and q is an atom
+    or a negated atom, and both atoms read a common signal. For example, ``x > 5`` and ``x < 3`` give
+    ``G !(x > 5 & x < 3)``.
     """
     formulas = (always(not_(pair)) for pair in _impossible_pairs(spec, names))
     return tuple(Conjunct(formula, spec.spec.source, spec.spec.name_span) for formula in formulas)
 
 
 def is_impossible(spec: SpecView) -> bool:
-    """Whether no trace satisfies a spec, considering the proved relations between its atoms."""
+    """Whether no trace satisfies a spec, given what :func:`relations` proves about its atoms."""
     if spec.fspa.states[0].verdict == "violated":
         return True
     proved = relations(spec, [candidate.name for candidate in spec.fspa.atoms])
@@ -51,7 +52,7 @@ def is_impossible(spec: SpecView) -> bool:
 
 
 def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
-    """Yield conjunctions of two atoms or negated atoms that provably never hold."""
+    """Yield conjunctions such as ``x > 5 & x < 3``, of two atoms or negated atoms, that provably never hold."""
     declared = _DeclaredSignals(spec.fspa.signals, spec.fspa.params)
     simple = [candidate for candidate in spec.fspa.atoms if candidate.name in names and _is_simple(candidate)]
     pairs = [pair for pair in combinations(simple, 2) if _signals(pair[0]) & _signals(pair[1])]
@@ -64,7 +65,7 @@ def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formul
 
 @lru_cache(maxsize=1024)
 def _never_hold_together(pair: tuple[Atom, Atom], signs: tuple[bool, ...], declared: _DeclaredSignals) -> bool:
-    """Whether two atoms provably never have the truth values ``signs`` at one step."""
+    """Whether two atoms provably never have the truth values ``signs`` at the same step."""
     conditions = tuple(
         Condition(">" if holds else "<=", (member.expression, Const(0.0)))
         for member, holds in zip(pair, signs, strict=True)

@@ -46,10 +46,10 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 
 
 def can_be(sign: Sign, atom: Atom, declarations: DeclaredNames, tries: int = _MOST_POINTS) -> bool:
-    """Whether a search finds values of signals and params for which an atom has this sign.
+    """Whether a search finds values of signals and params that give an atom a value of this sign.
 
-    The search tries at most ``tries`` points, and spends at most the steps of work that the
-    compiler spends on checking a predicate. False means only that the search found no such values.
+    The search tries at most ``tries`` combinations of values. It does at most as much work as the
+    compiler does to check a predicate. False means only that the search found no such values.
     """
     try:
         with step_limit(WORK["check of a predicate"]):
@@ -64,7 +64,7 @@ def can_be(sign: Sign, atom: Atom, declarations: DeclaredNames, tries: int = _MO
 
 
 def is_always(sign: Sign, atom: Atom, declarations: DeclaredNames) -> bool:
-    """Whether an atom provably has this sign for all values of its signals and params.
+    """Whether the value of an atom provably has this sign, whatever its signals and params are.
 
     False if the proof fails or takes too much work.
     """

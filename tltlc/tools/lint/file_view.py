@@ -31,7 +31,7 @@ _COMPARISONS = ("<", "<=", ">", ">=")
 class ScopedExpression:
     """An expression of a clause, with the environment in which its names are resolved.
 
-    Inside a quantifier, the environment also has the entity for the quantifier's variable.
+    In the body of ``all x in (chest, door): …``, the environment also says which entity ``x`` is.
     """
 
     tree: Expr
@@ -48,9 +48,10 @@ class ScopedExpression:
         return " ".join(self.source.slice(without_brackets(self.tree).span).split())
 
     def with_tree(self, tree: Expr) -> ScopedExpression:
-        """Return the part ``tree`` of this expression, with the same environment.
+        """Return ``tree``, a subexpression of this expression, with the same environment.
 
-        ``tree`` must not be inside a quantifier. Use :meth:`parts` for the parts of a quantifier.
+        ``tree`` must not be inside a quantifier, whose body needs another environment. Use
+        :meth:`parts` to get there.
         """
         return ScopedExpression(tree, self.env)
 
@@ -62,9 +63,9 @@ class ScopedExpression:
             return None
 
     def depends_on_one_step(self) -> bool:
-        """Whether the expression has atoms and no temporal operator.
+        """Whether the expression is a formula with atoms, but without temporal operators.
 
-        Then its truth depends on a single step.
+        The truth of such a formula at a step depends on this step alone.
         """
         formula = self.formula()
         return formula is not None and is_state(formula) and bool(formula.atoms())
@@ -72,7 +73,8 @@ class ScopedExpression:
     def parts(self) -> Iterator[ScopedExpression]:
         """Yield the expression and all its subexpressions, outer before inner.
 
-        The body of a quantifier is yielded once for each entity.
+        The body of a quantifier is yielded once for each entity: for ``all x in (chest, door): near(x)``,
+        once with ``x`` as ``chest``, and once with ``x`` as ``door``.
         """
         pending = [self]
         while pending:
@@ -81,9 +83,9 @@ class ScopedExpression:
             pending += reversed(part.children())
 
     def children(self) -> list[ScopedExpression]:
-        """Return the operands, in order.
+        """Return the operands of the expression's outermost operator, in order.
 
-        For a quantifier, they are its body, once for each entity.
+        For a quantifier, return its body, once for each entity.
         """
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
@@ -96,7 +98,7 @@ class ScopedExpression:
 
 @record
 class SpecView:
-    """A spec with its declaration, its resolved form and its automaton."""
+    """A spec: its syntax tree (``declaration``), the resolved ``spec``, its automaton and its environment."""
 
     declaration: SpecDecl
     spec: Spec
@@ -105,9 +107,10 @@ class SpecView:
 
     @property
     def decision(self) -> Decision:
-        """The function that decides whether given parts of the spec contradict each other.
+        """A function of clauses and a spec that says whether the clauses contradict each other.
 
-        It decides over finite or infinite traces, as the spec's semantics says.
+        They do if no trace satisfies all of them. These are finite or infinite traces, as the
+        ``semantics`` of this spec says. False means only that no contradiction could be proved.
         """
         if self.spec.semantics == "finite":
             return unsatisfiable
@@ -121,16 +124,16 @@ class SpecView:
         return self.fspa.states[0].verdict in ("satisfied", "violated")
 
     def clauses(self, *kinds: str) -> Iterator[tuple[Clause, ScopedExpression]]:
-        """Yield the clauses of these kinds and their expressions, in order.
+        """Yield the clauses of these kinds, in order, each with its expression.
 
-        The kinds with formulas are ``reach keep avoid require``.
+        The kinds whose expressions are formulas are ``reach``, ``keep``, ``avoid`` and ``require``.
         """
         for clause in self.declaration.clauses:
             if clause.kind in kinds and not isinstance(clause.value, tuple):
                 yield clause, ScopedExpression(clause.value, self.env)
 
     def formulas(self) -> Iterator[ScopedExpression]:
-        """Yield the formulas of all clauses, in order."""
+        """Yield the formula of each ``reach``, ``keep``, ``avoid`` and ``require`` clause, in order."""
         yield from (value for _, value in self.clauses("reach", "keep", "avoid", "require"))
 
     def name_label(self, message: str = "") -> Label:
@@ -155,9 +158,10 @@ class SpecView:
 class FileView:
     """A file that compiles without errors.
 
-    ``diagnostics`` are those of the compiler. ``modules`` are the imported modules, followed by the
-    file's own module. ``used_elsewhere`` contains the names of this file that other files may use.
-    ``program`` has the file's tests.
+    ``module`` is its syntax tree, and ``env`` the environment in which its names are resolved.
+    ``modules`` are the imported modules, followed by the file's own module. ``diagnostics`` are the
+    warnings and notes of the compiler. ``used_elsewhere`` contains the names of this file that other
+    files may use. ``program`` has the file's tests.
     """
 
     module: Module
@@ -184,9 +188,9 @@ class FileView:
 
 
 def operand_text(part: ScopedExpression) -> str:
-    """Return the text of an expression as an operand of ``and`` or of a word like ``eventually``.
+    """Return the text of an expression, in brackets if an operand of ``and`` or ``eventually`` needs them.
 
-    The text has brackets if it needs them there.
+    For example, ``a or b`` becomes ``(a or b)``, but ``near(exit)`` stays ``near(exit)``.
     """
     tree = without_brackets(part.tree)
     return f"({part.text})" if isinstance(tree, (BinaryExpr, Quantified)) and not _is_comparison(tree) else part.text

@@ -1,4 +1,4 @@
-"""Apply fixes to a text repeatedly until no fix is left."""
+"""Apply the fixes of lint findings to a text until no finding has a fix any more."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _MOST_ROUNDS = 100
 class FixedFile:
     """A text after all fixes.
 
-    ``fixed`` are the diagnostics that were fixed. Their labels point into the text in which each was
-    found. ``remaining`` are the findings that are left in ``source``, the new text.
+    ``source`` is the new text, and ``remaining`` are the findings in it. ``fixed`` are the diagnostics
+    that were fixed. The labels of each point into the text in which it was found.
     """
 
     source: SourceFile
@@ -39,11 +39,11 @@ def fix(
     levels: Mapping[str, str] = EMPTY,
     used_elsewhere: Container[str] = frozenset(),
 ) -> FixedFile:
-    """Return a file with all fixes applied, repeated until nothing changes.
+    """Lint a file and apply the safe fixes; repeat this until nothing changes.
 
-    ``levels`` maps codes to the severities that replace their own; a finding whose code is mapped
-    to ``allow`` is left out. ``used_elsewhere`` contains the names of this file that other files
-    may use.
+    ``levels`` maps codes to severities: a finding gets the severity to which its code is mapped, and
+    is left out if this is ``allow``. ``used_elsewhere`` contains the names of this file that other
+    files may use.
 
     Raises:
         TltlError: all diagnostics, if the file does not compile.
@@ -69,10 +69,11 @@ def fix(
 
 
 def _apply_once(module: Module, remaining: tuple[LintFinding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
-    """Apply the fixes of ``remaining`` to the text of a module.
+    """Apply the fixes of the findings ``remaining`` to the text of a module.
 
-    Fixes that overlap with an earlier one are left out, and so are fixes that would change what
-    ``allow`` comments apply to. Returns the new text and the diagnostics that were fixed.
+    Return the new text and the diagnostics that were fixed. A fix is left out if it overlaps with
+    the fix of an earlier finding, or if it would change which statements an ``allow`` comment
+    silences.
     """
     fixable = _without_overlaps([finding for finding in remaining if finding.fix])
     if not fixable:
@@ -85,9 +86,9 @@ def _apply_once(module: Module, remaining: tuple[LintFinding, ...]) -> tuple[Sou
 
 
 def _without_overlaps(findings: Iterable[LintFinding]) -> list[LintFinding]:
-    """Return the findings whose edits do not overlap with those of an earlier finding.
+    """Return the findings without those whose edits overlap with the edits of an earlier finding.
 
-    Two findings may share an edit.
+    If two findings have an edit in common, this does not count as an overlap.
     """
     accepted: list[LintFinding] = []
     spans: list[tuple[int, int]] = []
@@ -114,10 +115,11 @@ def _edits(findings: Iterable[LintFinding]) -> tuple[Edit, ...]:
 
 
 def _fixable_together(module: Module, findings: Sequence[LintFinding]) -> tuple[list[LintFinding], tuple[Edit, ...]]:
-    """Return findings whose fixes together do not change what comments apply to, and their edits.
+    """Return findings that can be fixed together, and the edits of these fixes.
 
-    The search tries all findings at once and then halves, because most files have few findings that
-    cannot be fixed. It stops after ``WORK["fixes tried"]`` attempts.
+    Together, the fixes must not change which statements the ``allow`` comments silence. The search
+    tries all findings at once; if that fails, it tries each half, and so on. It stops after
+    ``WORK["fixes tried"]`` attempts.
     """
     applied: list[LintFinding] = []
     edits: tuple[Edit, ...] = ()

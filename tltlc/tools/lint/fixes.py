@@ -1,7 +1,7 @@
-"""Find the fixes of diagnostics that can be applied without further edits.
+"""Find the fixes of diagnostics that an editor can offer, because they need no further edits.
 
-Fixes are tried before they are offered, except those of findings in a module without ``allow``
-comments.
+A fix is tried on the text before it is offered. Only the fixes of lint findings in a module without
+``allow`` comments need no trial.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _MOST_ERRORS: Final = 8
 """The most errors whose fixes are tried."""
 
 ErrorFinder = Callable[[SourceFile], tuple[Sequence[Diagnostic], Iterable[Diagnostic]]]
-"""A function that returns a text's syntax errors, and all diagnostics of its syntax and names."""
+"""A function that returns the syntax errors of a text, and all diagnostics about its syntax and names."""
 
 
 @record
 class OfferedFix:
-    """A fix that can be applied without further edits, with its diagnostic."""
+    """A fix that needs no further edits, with the diagnostic that it belongs to."""
 
     diagnostic: Diagnostic
     fix: Fix
@@ -38,9 +38,10 @@ class OfferedFix:
 def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterator[OfferedFix]:
     """Yield the fixes of lint findings in a module, as ``tltlc lint --fix`` applies them.
 
-    A fix must not change what the ``allow`` comments of the module apply to. If the module has such
-    comments, each fix is tried once. At most ``WORK["fixes tried"]`` fixes are tried, and the
-    others are left out.
+    A fix must not change which statements the ``allow`` comments of the module silence. So if the
+    module has such comments, each fix is tried first: its edits are adjusted, or it is left out, as
+    :func:`~tltlc.tools.lint.scopes.preserve_scopes` says. After ``WORK["fixes tried"]`` trials, all
+    further fixes are left out.
     """
     has_comments = bool(commented_spans(module))
     tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}
@@ -58,8 +59,8 @@ def fixes_of_findings(findings: Iterable[LintFinding], module: Module) -> Iterat
 def fixes_of_errors(diagnostics: Iterable[Diagnostic], source: SourceFile, errors: ErrorFinder) -> Iterator[OfferedFix]:
     """Yield each fix that leaves fewer errors in the text ``source``.
 
-    Only fixes of the first ``_MOST_ERRORS`` diagnostics are tried, and only if the diagnostic is
-    about ``source``. ``errors`` finds the errors of the text before and after each fix.
+    Only the first ``_MOST_ERRORS`` diagnostics are considered, and of these only the ones about
+    ``source``. ``errors`` finds the errors of a text; it is called before and after each fix.
     """
     candidates = [
         OfferedFix(diagnostic, fix)
@@ -86,9 +87,10 @@ def _count_errors(source: SourceFile, errors: ErrorFinder) -> tuple[int, Counter
 
 
 def _is_fewer(now: tuple[int, Counter[str]], before: tuple[int, Counter[str]]) -> bool:
-    """Whether there are fewer errors ``now`` than ``before``.
+    """Whether there are fewer errors ``now`` than ``before``; both come from :func:`_count_errors`.
 
-    If the number of syntax errors is the same, no code may have more errors than before. If there
-    are fewer syntax errors, more of the text is parsed, so new errors of other kinds may appear.
+    Fewer syntax errors are enough: then more of the text is parsed, so new errors of other kinds may
+    appear. If the number of syntax errors is the same, some code must have fewer errors than before,
+    and none may have more.
     """
     return now[0] < before[0] or (now[0] == before[0] and now[1] < before[1])

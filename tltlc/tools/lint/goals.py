@@ -10,11 +10,11 @@ from tltlc.tools.lint.file_view import ScopedExpression, SpecView, without_brack
 
 
 def goals(spec: SpecView) -> Iterator[ScopedExpression]:
-    """Yield the goals of a spec, which must hold at some step.
+    """Yield the goals of a spec: the expressions that must hold at some step.
 
-    They are the operands of ``then`` chains and of ``eventually``, and the expressions of ``reach``
-    clauses without ``then``. Expressions inside a negation, and the conditions of implications, are
-    left out.
+    They are the operands of ``eventually``, each step of a chain ``a then b then c``, and the
+    expression of a ``reach`` clause without ``then``. Parts of a negation, and of the condition of an
+    implication, do not count. For ``reach a then b``, yield a and b.
     """
     for clause, value in spec.clauses("reach", "keep", "require"):
         if clause.kind == "reach":
@@ -26,9 +26,10 @@ def goals(spec: SpecView) -> Iterator[ScopedExpression]:
 
 
 def conjuncts(goal: ScopedExpression) -> list[ScopedExpression]:
-    """Return the conjuncts of a goal, in order.
+    """Return the conjuncts of a goal, in order, without brackets around them.
 
-    The conjuncts of an `all` quantifier are those of its body, once for each entity.
+    An `all` quantifier counts as the conjunction of its body for each entity. So
+    ``a and all x in (s1, s2): near(x)`` has the conjuncts ``a``, ``near(s1)`` and ``near(s2)``.
     """
     parts: list[ScopedExpression] = []
     for tree in walk.conjuncts(goal.tree):
@@ -41,9 +42,9 @@ def conjuncts(goal: ScopedExpression) -> list[ScopedExpression]:
 
 
 def consists_of_implications(value: ScopedExpression) -> bool:
-    """Whether an expression consists of implications only.
+    """Whether an expression is an implication, or a conjunction of implications only.
 
-    As a goal, such an expression is met as soon as the conditions of its implications do not hold.
+    If such an expression is a goal, a step meets it as soon as no condition of the implications holds.
     """
     trees = (part.tree for part in conjuncts(value))
     return all(isinstance(tree, BinaryExpr) and tree.op == "implies" for tree in trees)

@@ -1,4 +1,7 @@
-"""Find the names of a file that other files may use, because they import it or its importers."""
+"""Find the names of a file that other files may use.
+
+These are the files that import this file, directly or through other files.
+"""
 
 from __future__ import annotations
 
@@ -13,18 +16,19 @@ from tltlc.core.record import record
 _TOKEN: Final = re.compile(r'//[^\n]*|"(?P<text>[^"\n]*)"?|(?P<name>[A-Za-z_][\w.]*)')
 """Matches a comment, a quoted text or a name.
 
-Each match consumes all of its characters, so the scan takes linear time. The lexer is no substitute:
-it takes four times as long, and it stops at the limit on tokens, so the names after it in a large
-file would be missed, and their declarations removed as unused.
+Each match consumes all of its characters, so the scan takes linear time. The lexer of the compiler
+takes four times as long, and stops at a limit on tokens. Names after this limit in a large file
+would be missed, so declarations of these names would be removed as unused.
 """
 
 
 @record
 class ImporterNames:
-    """The imports of a file, and every name outside its comments.
+    """What a file imports, and which names it mentions.
 
     ``stem`` is the name of the file without folder and ``.tltl``. ``imports`` has the stems of the
-    files that it imports. ``names`` is empty if the file imports nothing.
+    files that it imports. ``names`` has every name outside its comments; it is empty if the file
+    imports nothing.
     """
 
     stem: str
@@ -34,10 +38,11 @@ class ImporterNames:
 
 @record
 class UsedNames:
-    """A container of names and of all suffixes of dotted names: ``near`` for ``game.near``.
+    """A container of names and of the suffixes of dotted names: with ``game.near``, also of ``near``.
 
-    ``reversed_names`` has each dotted name spelt backwards, in sorted order. A binary search there
-    finds a suffix, so the suffixes, which may be many, are not stored.
+    ``names`` has the whole names. ``reversed_names`` has each dotted name spelt backwards, in sorted
+    order, so that a binary search finds a suffix. The suffixes themselves are not stored, because
+    there may be very many.
     """
 
     names: frozenset[str]
@@ -52,9 +57,9 @@ class UsedNames:
 
 
 def importer_names(path: str, text: str) -> ImporterNames:
-    """Return the imports and names in the text of the file at ``path``.
+    """Return the imports and the names in ``text``, the content of the file at ``path``.
 
-    The text need not compile.
+    The text may contain errors.
     """
     targets: set[str] = set()
     names: set[str] = set()
@@ -68,10 +73,10 @@ def importer_names(path: str, text: str) -> ImporterNames:
 
 
 def names_used_elsewhere(path: str, files: Iterable[ImporterNames]) -> Container[str]:
-    """Return every name in those ``files`` that import the file at ``path``.
+    """Return a container of all names in those of ``files`` that import the file at ``path``.
 
-    Indirect imports count, too. Files with the same name in different folders are not
-    distinguished, so the result may contain names that do not come from this file.
+    Files that import it through other files count, too. Only the names of files are compared, not
+    their folders. So the result may contain names that do not come from the file at ``path``.
     """
     remaining, reached = list(files), {_stem(path)}
     importers: list[ImporterNames] = []

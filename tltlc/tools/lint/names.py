@@ -13,7 +13,7 @@ _FORMULAS = ("reach", "keep", "avoid", "require")
 
 @record
 class MentionedNames:
-    """The names that a file mentions itself (``here``), and those that other files use from it."""
+    """A container of the names that a file mentions itself (``here``), or that other files use from it."""
 
     here: frozenset[str]
     used_elsewhere: Container[str]
@@ -23,7 +23,7 @@ class MentionedNames:
 
 
 def mentioned_names(module: Module) -> frozenset[str]:
-    """Return every name that occurs in an expression of a module, as it is written there."""
+    """Return every name in the expressions of a module, as written there: ``near`` and ``s1`` for ``near(s1)``."""
     return frozenset(name for declaration in module.declarations for name in _in_declaration(declaration))
 
 

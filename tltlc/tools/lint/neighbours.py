@@ -1,6 +1,6 @@
 """Find the source files that may import given files.
 
-They are in the same folder tree or in a folder above.
+These are the source files in the same project, and in the folders above.
 """
 
 from __future__ import annotations
@@ -11,20 +11,20 @@ from pathlib import Path
 from typing import Final
 
 _ROOTS: Final = ("tltl.toml", ".git")
-"""A folder that contains a file or folder with one of these names is the root of a tree."""
+"""A folder that contains a file or folder with one of these names is the root of a project."""
 
 
 def neighbours(paths: Iterable[str]) -> dict[Path, str]:
     """Return the texts of the given files and of their neighbours, by resolved path.
 
-    The neighbours of a file are the source files in the same folder tree and in all folders above
-    it. The root of the tree is
+    The neighbours of a file are the ``.tltl`` files below the root of its project, and those in the
+    folders above the file. The root of the project is
 
-    - the nearest folder with a project file or a repository, the file's own or one above it;
-    - else the current folder, if the file is in it or below it;
+    - the nearest folder that contains ``tltl.toml`` or ``.git``, beginning with the file's own;
+    - else the current folder, if the file is below it;
     - else the folder of the file.
 
-    Files that cannot be read are left out.
+    Hidden folders and ``node_modules`` are left out, and so are files that cannot be read.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.io.files import read_source

@@ -15,10 +15,10 @@ from tltlc.grammar.tree import Comment
 def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
     """Return the span to delete in order to remove a declaration, clause or comment.
 
-    The result covers ``span`` and the documentation above it. If nothing else stands on these
-    lines, except for a comment at the end, the result covers the whole lines. Then, if there is an
-    empty line both above and below them, the result also covers the one below. ``comments`` are
-    those of the module.
+    The result covers ``span`` and the documentation above it. If nothing but a comment at the end
+    shares their lines, the result covers these lines as a whole. If there is also an empty line
+    above and an empty line below, the result covers the empty line below, too. ``comments`` are the
+    comments of the module.
     """
     text = source.text
     start, end = documentation_start(source, span.start, comments), span.end
@@ -41,8 +41,8 @@ def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = (
 def item_removal_spans(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
     """Return the spans to delete in order to remove the item at ``index`` from a list.
 
-    ``spans`` are the spans of the items, at least two. The result has one span, which includes one
-    comma. The result is empty if the deletion would remove a comment.
+    ``spans`` are the spans of the items, of which there must be at least two. The result has one
+    span, with the item and one comma. It is empty if the deletion would remove one of ``comments``.
     """
     removed = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
     return () if any(removed.start <= comment.span.start < removed.end for comment in comments) else (removed,)

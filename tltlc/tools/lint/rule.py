@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @record
 class RuleFinding:
-    """What a rule reports, with fields as in :class:`~tltlc.diagnostics.diagnostic.Diagnostic`.
+    """What a rule reports: a :class:`~tltlc.diagnostics.diagnostic.Diagnostic` without code and severity.
 
     :func:`~tltlc.tools.lint.run.findings` adds the code and the severity of the rule. A fix must
     not change the meaning of any spec in the file.
@@ -29,11 +29,11 @@ class RuleFinding:
 
 @record
 class LintRule:
-    """A lint rule. The documentation of its code says what it finds, and what to write instead.
+    """A lint rule. The documentation page of its code says what it finds, and what to write instead.
 
-    ``check`` is a pure function from a file to findings. ``supersedes`` lists codes of less specific
-    diagnostics: such a diagnostic is dropped if one of its labels covers the first label of a
-    finding of this rule, unless the diagnostic is more severe than the finding.
+    ``check`` is a pure function from a file to findings. ``supersedes`` lists the codes of less
+    specific diagnostics. Such a diagnostic is dropped if one of its labels covers the first label of
+    a finding of this rule, unless the diagnostic is more severe than the finding.
     """
 
     code: str
@@ -50,9 +50,9 @@ class LintFinding:
 
     @property
     def fix(self) -> tuple[Edit, ...]:
-        """The edits of the first safe fix; () if the diagnostic has no safe fix.
+        """The edits of the diagnostic's first safe fix; () if there is none.
 
-        A safe fix changes the meaning of no spec.
+        A safe fix does not change the meaning of any spec.
         """
         return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
 

@@ -28,8 +28,8 @@ def lint(
 
     They include the compiler's own warnings. All specs of the file are checked, even if the options
     name only some. ``used_elsewhere`` contains the names of this file that other files may use.
-    ``levels`` maps codes to the severities that replace their own; a finding whose code is mapped
-    to ``allow`` is left out.
+    ``levels`` maps codes to severities: a finding gets the severity to which its code is mapped, and
+    is left out if this is ``allow``.
 
     Raises:
         TltlError: all diagnostics, if the file does not compile, as in
@@ -41,8 +41,9 @@ def lint(
 def findings(view: FileView, levels: Mapping[str, str] = EMPTY) -> tuple[LintFinding, ...]:
     """Return the findings of the compiler and of all rules, in the order of the text.
 
-    Findings that comments or ``levels`` silence are left out. So are findings that
-    one of the remaining findings supersedes; :class:`~tltlc.tools.lint.rule.LintRule` says when.
+    Findings that ``allow`` comments silence are left out, and so are those that ``levels`` silences
+    (:func:`apply_levels`). Of the rest, less specific findings are left out if a more specific
+    finding supersedes them (:class:`~tltlc.tools.lint.rule.LintRule`).
     """
     all_findings = [LintFinding(diagnostic) for diagnostic in view.diagnostics]
     supersedes: dict[str, tuple[str, ...]] = {}
@@ -66,7 +67,8 @@ def findings(view: FileView, levels: Mapping[str, str] = EMPTY) -> tuple[LintFin
 def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str]) -> tuple[LintFinding, ...]:
     """Return the findings with the severities in ``levels``, which maps codes to severities.
 
-    A finding whose code is mapped to ``allow`` is left out.
+    A finding whose code is mapped to ``allow`` is left out. One whose code is not in ``levels``
+    keeps its severity.
     """
     reported = [finding for finding in all_findings if levels.get(finding.diagnostic.code) != "allow"]
     return tuple(
@@ -76,7 +78,7 @@ def apply_levels(all_findings: Iterable[LintFinding], levels: Mapping[str, str])
 
 
 def view_of(source: SourceFile, options: CompileOptions) -> FileView:
-    """Compile all specs of a file, and return what rules see of it.
+    """Compile all specs of a file, and return the file in the form that lint rules read.
 
     Raises:
         TltlError: all diagnostics, if the file does not compile.
@@ -117,6 +119,6 @@ def _is_superseded(diagnostic: Diagnostic, superseding: Iterable[Diagnostic]) ->
 
 
 def _sort_key(finding: LintFinding, source: SourceFile) -> tuple[bool, int, str]:
-    """Return the sort key of a finding. Findings in imported files come first."""
+    """Return the sort key of a finding: findings outside ``source`` come first, then those in it by position."""
     label = finding.diagnostic.labels[0] if finding.diagnostic.labels else None
     return label is not None and label.source == source, label.span.start if label else 0, finding.diagnostic.code

@@ -1,4 +1,8 @@
-"""Check that a fix does not change which statements each ``allow`` comment applies to."""
+"""Check that a fix does not change which statements each ``allow`` comment applies to.
+
+A comment such as ``// tltlc: allow TLT0421`` applies to the clauses and declarations on its line, or
+to the whole file. A fix that removes lines could make it apply to others.
+"""
 
 from __future__ import annotations
 
@@ -30,15 +34,15 @@ def apply_edits(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
 
 
 def preserve_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
-    """Return the edits, adjusted so that each remaining comment applies to the same statements.
+    """Adjust edits so that each ``allow`` comment that is left applies to the same statements as before.
 
-    A comment that applies only to removed statements is removed, too. A comment that applies to the
-    whole file, or also to another statement on its line, is kept: an edit that would delete it is
-    split around it.
+    - A comment that applies only to removed statements is removed, too.
+    - A comment that applies to the whole file, or also to a statement that stays, is kept: an edit
+      that would delete the comment is split into the parts before and after it.
 
-    Returns None if a remaining comment would apply to other statements than before. For example,
-    when the first declaration of a file is removed, a comment on the next one can become a comment
-    on the whole file.
+    Return None if a comment would still apply to other statements than before. For example, if the
+    first declaration of a file is removed, the comment above the second declaration may become a
+    comment on the whole file.
     """
     scopes = commented_spans(module)
     known_edits, offsets = frozenset(edits), _Offsets(edits)
@@ -86,13 +90,14 @@ class _Offsets:
         return not place or self._reach[place - 1] <= span.start
 
     def new_offset(self, offset: int) -> int:
-        """Return the new offset for an old offset outside all edits."""
+        """Return the offset in the new text for an offset in the old text that is outside all edits."""
         return offset + self._shifts[bisect_right(self._ends, offset)]
 
     def starts(self, places: Iterable[Span] | None) -> frozenset[int] | None:
-        """Return the new offset of the start of each place, unless an edit removes that start.
+        """Return the offsets in the new text at which these places start.
 
-        None, which stands for the whole file, stays None.
+        Places whose start an edit removes are left out. None, which stands for the whole file,
+        stays None.
         """
         if places is None:
             return None
@@ -100,9 +105,9 @@ class _Offsets:
 
 
 def _map_places(scopes: Sequence[tuple[Comment, _Places]], function: Callable[[_Places], T]) -> list[tuple[Comment, T]]:
-    """Return each comment with the result of ``function`` for the spans that it applies to.
+    """Call ``function`` with the spans that each comment applies to; return each comment with its result.
 
-    Comments on one line share one tuple of spans, so the function runs only once for each line.
+    Comments on one line share one tuple of spans, so ``function`` is called only once for each line.
     """
     results: dict[int, T] = {}
     for _, places in scopes:
@@ -112,14 +117,14 @@ def _map_places(scopes: Sequence[tuple[Comment, _Places]], function: Callable[[_
 
 
 def _number(starts: frozenset[int] | None, numbers: dict[frozenset[int] | None, int]) -> int:
-    """Return a number that is the same for equal sets; a new set is added to ``numbers``."""
+    """Return the number of a set in ``numbers``. A set that is not there is added, with the next number."""
     return numbers.setdefault(starts, len(numbers))
 
 
 def _without_comments(text: str, edit: Edit, kept: Sequence[Span]) -> Iterator[Edit]:
-    """Yield the parts of an edit that are outside the lines of the ``kept`` comments.
+    """Split an edit so that it leaves some comments alone, and yield the parts.
 
-    ``kept`` is sorted by position.
+    ``kept`` are the spans of these comments, sorted. A comment alone on its line keeps the whole line.
     """
     start = edit.span.start
     for index in range(bisect_left(kept, start, key=lambda span: span.start), len(kept)):

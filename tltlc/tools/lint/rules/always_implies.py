@@ -15,9 +15,10 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `implies` or `iff` whose left side begins with a bare `always`.
 
-    An example is `G a -> F b`: the operand of `always` has no brackets. Only `require` clauses are
-    checked. If the operand of `always` contains temporal operators, as in `G F a -> G F b`, the
-    author usually means what is written, so there is no finding.
+    An example is `G a -> F b`: it is read as `(G a) -> F b`, but the author probably means
+    `G (a -> F b)`. Only `require` clauses are checked. If the operand of `always` contains temporal
+    operators, as in `G F a -> G F b`, the author usually means what is written, so there is no
+    finding.
     """
     for spec in view.specs:
         for _, value in spec.clauses("require"):

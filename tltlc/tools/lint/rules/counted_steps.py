@@ -32,10 +32,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _chain(first: Unary, inside: set[int]) -> tuple[float, Expr]:
-    """Return how many steps a chain of `next` operators takes, and the operand of the last one.
+    """Return how many steps a chain of `next` takes, and the operand of the last `next`.
 
-    A `next` with a bound in seconds ends the chain. The ids of the nodes of the chain are added to
-    ``inside``.
+    For `next next after 3 steps a`, these are 4 and `a`. A `next` with a bound in seconds does not
+    belong to the chain. The ids of the nodes in the chain are added to ``inside``.
     """
     steps, tree = 0.0, without_brackets(first)
     while isinstance(tree, Unary) and tree.op == first.op and _steps(tree):
@@ -69,7 +69,8 @@ def _finding(view: FileView, chain: Unary, steps: float, awaited: Expr) -> RuleF
 def _seconds(steps: float, period: float, env: Env) -> str:
     """Return a short decimal number of seconds that the compiler turns into exactly this many steps.
 
-    The compiler rounds times up to steps, so the result is at most ``steps * period``.
+    ``period`` is the length of a step in seconds. The compiler rounds times up to whole steps, so
+    the result may be a little less than ``steps * period``.
     """
     exact = steps * period
     shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))

@@ -18,9 +18,9 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each clause, or conjunct of a clause, that repeats an earlier one.
+    """Yield a finding for each clause, or conjunct of a clause, whose formula occurs earlier in the spec.
 
-    Both must have the same formula. Formulas that are merely equivalent are reported as TLT0413.
+    Another rule, TLT0413, reports formulas that are equivalent but not equal.
     """
     for spec in view.specs:
         first: dict[Formula, Conjunct] = {}
@@ -49,7 +49,7 @@ def _fix(clause: Clause | None, view: FileView) -> Fix | None:
 
 
 def _clauses_of_one_part(clauses: Sequence[Clause], parts: Iterable[Conjunct]) -> dict[Span, Clause]:
-    """Return the clauses that consist of one conjunct; the key is the span of the conjunct."""
+    """Return the clauses that consist of a single conjunct, by the span of this conjunct."""
     starts = [clause.span.start for clause in clauses]
     covered: dict[int, list[Span]] = {}
     for part in parts:

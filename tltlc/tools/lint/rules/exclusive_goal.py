@@ -31,7 +31,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 def _conflicting_atoms(goal: ScopedExpression, spec: SpecView) -> list[str]:
     """Return the names of the exclusive atoms that make a goal impossible.
 
-    The list is empty if the goal is possible, or if it is impossible for another reason.
+    The list is empty if the goal is possible, or if it is impossible for another reason. Only the
+    conjuncts of the goal without temporal operators are considered.
     """
     formulas = [part.formula() for part in conjuncts(goal)]
     formula = and_(*(state for state in formulas if state is not None and is_state(state)))

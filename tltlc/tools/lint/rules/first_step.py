@@ -16,10 +16,11 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `require` clause that constrains only the first step.
 
-    There is no such finding for a spec of the form `spec NAME = FORMULA`.
+    A spec of the form `spec NAME = FORMULA` gets no such finding.
 
-    Also yield a finding for conjuncts like b in `eventually a and b`. They do not belong to the
-    operand of the temporal operator, but were probably meant to.
+    Also yield a finding for conjuncts like b in `eventually a and b`. This is read as
+    `(eventually a) and b`, so b must hold at the first step, but the author probably means
+    `eventually (a and b)`.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("require"):

@@ -12,9 +12,10 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each atom whose value is never negative, if an edge to the goal needs it.
+    """Yield a finding for each atom that an edge towards the goal needs, but whose value is never negative.
 
-    Yield none if the edge also needs an atom whose value can be negative.
+    Such a value is 0 until the atom holds, so progress does not tell near from far. There is no
+    finding if the edge always needs an atom with negative values, too.
     """
     for spec in view.specs:
         flat = {index for index, atom in enumerate(spec.fspa.atoms) if _is_flat(atom, spec.fspa)}
@@ -32,12 +33,14 @@ def _is_flat(atom: Atom, fspa: Fspa) -> bool:
 
 
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
-    """Return the indices of the flat atoms that must begin to hold for some edge to the goal.
+    """Return the indices of the flat atoms that must begin to hold for some edge towards the goal.
 
-    ``flat`` has the indices of the atoms whose value is never negative and can be 0. An atom is
-    left out if the self-loop of the edge's source needs it, too. All atoms of an edge are left out
-    if an atom that is not flat must always begin to hold with them. Progress uses the least value
-    of the atoms, so the value of that other atom tells near from far.
+    ``flat`` has the indices of the flat atoms: their value is never negative, and can be 0. An atom
+    does not begin to hold if the self-loop of the edge's source needs it, too.
+
+    The atoms of an edge are left out if the edge also needs an atom that is not flat, in each prime
+    implicant of its guard. Progress uses the least value of the atoms, so the value of this other
+    atom tells near from far.
     """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:

@@ -15,8 +15,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each `until` in a `reach` or `avoid` clause.
 
     `a until b` holds at every step where b holds, so the clause means the same with b alone. In a
-    chain of goals, only the last `until` gets a finding: an earlier `until` also determines from
-    which step the next goal counts.
+    chain such as `reach (a until b) then (c until d)`, only the last `until` gets a finding: an
+    earlier `until` also determines from which step on the next goal counts.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("reach", "avoid"):

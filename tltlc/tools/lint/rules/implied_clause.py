@@ -22,9 +22,9 @@ _MOST_PARTS = 24
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each clause that other clauses of its spec imply.
 
-    The first label is on the implied clause. The next labels are on the clauses that imply it. A
-    clause that constrains only the last step is usually a mistake, so it never counts as implying
-    another.
+    The first label is on the implied clause. The next labels are on the clauses that imply it. These
+    never include a clause that constrains only the last step (TLT0424), because it is usually a
+    mistake.
     """
     last_step_labels = [finding.labels[0] for finding in recurrence.check(view)]
     for spec in view.specs:
@@ -61,7 +61,7 @@ def _findings(spec: SpecView, parts: Sequence[Conjunct], reasons: Sequence[Conju
 
 
 def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
-    """Return the proved relations between the atoms of a conjunct and other atoms of the spec."""
+    """Return those of the proved :func:`relations` of a spec that mention an atom of ``part``."""
     own = set(part.formula.atoms())
     return [
         relation
@@ -73,9 +73,9 @@ def _relations(part: Conjunct, spec: SpecView) -> list[Conjunct]:
 def _reasons(
     part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: SpecView
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal subset of ``others`` that implies ``part``; () if they do not imply it.
+    """Return a minimal subset of the clauses ``others`` that implies ``part``; () if they do not imply it.
 
-    ``proved`` are proved relations between atoms.
+    ``proved`` are the relations between atoms that the implication may use.
     """
     if not _share_atoms(part, others, proved, spec.spec):
         return ()
@@ -88,10 +88,10 @@ def _reasons(
 
 
 def _share_atoms(part: Conjunct, others: Sequence[Conjunct], proved: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether ``others`` have an atom of ``part``, or one that is related to such an atom.
+    """Whether ``others`` mention an atom of ``part``, or an atom that is related to one of them.
 
-    The relations are the ``proved`` ones and the exclusive groups of the spec. If ``others`` have
-    no such atom, they cannot imply ``part``.
+    Atoms are related if a relation in ``proved`` or an exclusive group of the spec has both. If
+    ``others`` mention no such atom, they cannot imply ``part``.
     """
     own = set(part.formula.atoms()).union(*(relation.formula.atoms() for relation in proved))
     for group in spec.exclusive:

@@ -21,9 +21,10 @@ _SUGGESTION = "let a signal count the time, and ask for enough time, as in `reac
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each bounded `always` in a clause's last goal, if one step can meet it.
+    """Yield a finding for each bounded `always` in the last goal of a clause, if one step can meet this goal.
 
-    Only specs whose episodes end with success as soon as the spec is met are checked.
+    Only specs over finite traces that are judged at their goal are checked: their episodes end as
+    soon as the spec is met.
     """
     for spec in view.specs:
         if spec.fspa.semantics != "finite" or spec.fspa.judge != "goal":
@@ -39,7 +40,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _goals_of(part: ScopedExpression) -> Iterator[ScopedExpression]:
-    """Yield the operand of `eventually`, or a whole `then` chain; nothing for other expressions."""
+    """Yield the operand if ``part`` is an `eventually`, or ``part`` itself if it is a `then` chain; else nothing."""
     if isinstance(part.tree, Unary) and part.tree.op == "F":
         yield part.with_tree(part.tree.operand)
     elif isinstance(part.tree, BinaryExpr) and part.tree.op == "then":
@@ -47,9 +48,9 @@ def _goals_of(part: ScopedExpression) -> Iterator[ScopedExpression]:
 
 
 def _last_parts(goal: ScopedExpression) -> list[ScopedExpression]:
-    """Return the conjuncts that must be met last for a goal to be met.
+    """Return the conjuncts of a goal that are met last.
 
-    For a `then` chain, they are those of its last step; for `eventually a`, those of a.
+    Of a `then` chain, they are the conjuncts of the last step; of `eventually a`, the conjuncts of a.
     """
     parts: list[ScopedExpression] = []
     pending = [goal]
@@ -70,7 +71,7 @@ def _is_met_by_one_step(final: list[ScopedExpression], spec: SpecView) -> bool:
 
 
 def _findings(goal: ScopedExpression) -> Iterator[RuleFinding]:
-    """Yield a finding for each bounded `always`, or negated bounded `eventually`, in an expression."""
+    """Yield a finding for each bounded `always`, and for each negated bounded `eventually`, in ``goal``."""
     pending = [(goal, True)]
     while pending:
         part, holds = pending.pop()

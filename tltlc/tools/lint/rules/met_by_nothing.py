@@ -19,7 +19,8 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each goal that can be met while none of the atoms that it asks for holds.
 
-    Only traces that satisfy the other clauses count.
+    An example is `reach a implies b`, which a step without a and b meets. Only traces that satisfy
+    all clauses of the spec count.
     """
     for spec in view.specs:
         if not spec.is_settled:
@@ -61,7 +62,10 @@ def _findings(goal: ScopedExpression, spec: SpecView) -> Iterator[RuleFinding]:
 
 
 def _without_temporal_operators(formula: Formula) -> Formula:
-    """Return a formula without temporal operators, which means the same while no atom changes."""
+    """Remove the temporal operators from a formula: the result means the same as long as no atom changes.
+
+    For example, ``a & X b`` becomes ``a & b``.
+    """
     still: dict[Formula, Formula] = {}
     for part in formula.bottom_up():
         args = tuple(still[argument] for argument in part.args)
@@ -79,9 +83,9 @@ def _without_temporal_operators(formula: Formula) -> Formula:
 
 
 def _helpful_atoms(state: Formula) -> tuple[list[str], list[str]]:
-    """Return the atoms whose truth can make a formula true, and those whose falsehood can.
+    """Return the atoms that can help to make a formula true by being true, and those that can by being false.
 
-    An atom may be in both lists.
+    For ``a & !b``, these are ``["a"]`` and ``["b"]``. An atom may be in both lists.
     """
     signs: dict[tuple[Formula, bool], None] = {}
     pending = [(state, True)]
@@ -103,9 +107,9 @@ def _helpful_atoms(state: Formula) -> tuple[list[str], list[str]]:
 
 
 def _implications(goal: ScopedExpression) -> list[tuple[ScopedExpression, ScopedExpression]]:
-    """Return the condition and the result of each implication that a goal asks for.
+    """Return the condition and the result of each implication among the conjuncts of a goal.
 
-    The body of `all` counts once, not once for each entity.
+    An implication in the body of `all` is listed once, not once for each entity.
     """
     by_span: dict[Span, tuple[ScopedExpression, ScopedExpression]] = {}
     for part in conjuncts(goal):

@@ -18,7 +18,7 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each clause that every trace satisfies.
 
-    Yield none if every trace satisfies the whole spec: the compiler reports that.
+    If every trace satisfies the whole spec, yield nothing, because the compiler reports that.
     """
     for spec in view.specs:
         if spec.fspa.states[0].verdict == "satisfied":

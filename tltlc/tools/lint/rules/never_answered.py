@@ -18,8 +18,8 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each required implication whose two sides never hold at the same step.
 
-    Each side must be able to hold by itself. There is no finding for a clause that no trace
-    satisfies, because it does more than forbid one side.
+    Such an implication only forbids its condition. There is no finding if one of the sides never
+    holds at all, or if no trace satisfies the clause: then more is wrong.
     """
     for spec in view.specs:
         for clause, value in spec.clauses("keep", "require"):
@@ -29,9 +29,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
-    """Yield the implications that the expression requires to hold.
+    """Yield the implications in an expression that must hold for the expression to hold.
 
-    Implications in goals, in negations, in conditions and in `iff` are left out.
+    Implications inside `eventually`, `then`, `not` or `iff`, and in the conditions of other
+    implications, are left out.
     """
     pending = [value]
     while pending:

@@ -45,10 +45,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _findings_inside(tree: Expr, view: FileView, clause: Expr | None) -> Iterator[RuleFinding]:
-    """Yield findings for the operands of each unbounded `always` and `eventually` in an expression.
+    """Yield findings about the operand of each unbounded `always` and `eventually` in the expression ``tree``.
 
-    ``clause`` is ``tree`` without brackets if it is a whole clause, which another clause can
-    replace; else it is None.
+    If ``tree`` is the expression of a whole clause, then ``clause`` is ``tree`` without brackets, and
+    the advice may be to write another clause. Otherwise ``clause`` is None.
     """
     for part in parts(tree):
         if isinstance(part, Unary) and part.op in _DUAL and part.bound is None:
@@ -60,10 +60,12 @@ def _findings(
 ) -> Iterator[RuleFinding]:
     """Yield findings for the parts of an operand that constrain only the last step.
 
-    ``tree`` is the operand, and ``outer``, `F` or `G`, the operator in front of it. If ``holds`` is
-    false, the operand is negated. `always` distributes over `and`, and `eventually` over `or`, so
-    the parts that these join are checked, too. ``start`` is the offset at which the label for the
-    whole operand begins. ``is_clause`` says whether ``outer`` and its operand are a whole clause.
+    ``tree`` is the operand of the operator ``outer``, `F` or `G`. If ``holds`` is false, ``outer``
+    applies to the negation of ``tree``. `always` distributes over `and`, and `eventually` over `or`,
+    so the operands of this `and` or `or` are checked one by one.
+
+    ``start`` is the offset at which the label for the whole operand begins. ``is_clause`` says
+    whether ``outer`` and its operand are a whole clause.
     """
     whole = without_brackets(tree)
     pending = [(tree, holds)]
@@ -102,12 +104,12 @@ def _findings(
 
 
 def _once(awaited: ScopedExpression, sign: bool, outer: str, word: str, *, is_whole: bool, is_clause: bool) -> str:
-    """Return advice on what to write if it is enough that ``awaited`` holds once.
+    """Return advice on what to write in place of `G F awaited` or `F G awaited` if once is enough.
 
-    If ``sign`` is false, the negation of ``awaited`` must hold instead. ``word`` is the operator in
-    front of ``awaited``, and ``outer`` the operator around that. ``is_whole`` says whether nothing
-    else is inside the outer operator. ``is_clause`` says whether the outer operator and its operand
-    are a whole clause.
+    If ``sign`` is false, the negation of ``awaited`` is to hold. ``outer`` is the outer operator, `F`
+    or `G`, and ``word`` the inner operator as the source spells it. ``is_whole`` says whether the
+    outer operator contains nothing else, and ``is_clause`` whether the outer operator and its
+    operand are a whole clause.
     """
     if is_clause and (is_whole or outer == "G"):
         return f"write `reach {_goal(awaited, sign)}`"
@@ -123,9 +125,9 @@ def _goal(awaited: ScopedExpression, sign: bool) -> str:
 
 
 def _finding(place: Span, op: str, awaited: ScopedExpression, sign: bool, once: str) -> RuleFinding:
-    """Return the finding that ``awaited``, under operators like `G F`, is only about the last step.
+    """Return the finding that an expression such as `G F awaited` constrains only the last step.
 
-    ``op``, `F` or `G`, is the inner operator, and ``place`` the span of the operators. ``sign`` is
+    ``op`` is the inner operator, `F` or `G`, and ``place`` is the span of both operators. ``sign`` is
     false if the negation of ``awaited`` is required. ``once`` is the advice from :func:`_once`.
     """
     label = Label(

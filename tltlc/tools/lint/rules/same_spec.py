@@ -37,19 +37,19 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _form(fspa: Fspa) -> object:
-    """Return a key of an automaton. Two specs can count as the same only if their keys are equal.
+    """Return a key: only specs whose automata have equal keys can count as the same spec.
 
-    The key has the settings and ``spec_size`` of the automaton. Over finite traces, it also has the
-    edges, so that automata with equal keys accept the same traces.
+    The key has the semantics, judge, limit, level and ``spec_size`` of the automaton. Over finite
+    traces, it also has the edges, so that automata with equal keys accept the same traces.
     """
     settings = (fspa.semantics, fspa.judge, fspa.limit_steps, fspa.level, fspa.spec_size)
     return settings if fspa.semantics == "infinite" else (*settings, _edges(fspa))
 
 
 def _edges(fspa: Fspa) -> tuple[object, ...]:
-    """Return the edges in a canonical form that does not depend on the numbers of states and atoms.
+    """Return the edges in a canonical form, which does not depend on how states and atoms are numbered.
 
-    Minimal automata that accept the same traces have the same guards, and so the same form.
+    So minimal automata that accept the same traces have the same form.
     """
     leaving: dict[int, list[tuple[list[list[tuple[str, bool]]], int]]] = {state.id: [] for state in fspa.states}
     for edge in fspa.edges:
@@ -69,7 +69,10 @@ def _edges(fspa: Fspa) -> tuple[object, ...]:
 
 
 def _accept_the_same(one: Fspa, other: Fspa) -> bool:
-    """Whether two automata with the same key accept the same traces."""
+    """Whether two automata with the same key (:func:`_form`) accept the same traces.
+
+    False as well if the comparison takes more than ``_WORK`` steps.
+    """
     if one.semantics == "finite":
         return True
     from tltlc.automaton.compare import are_equivalent

@@ -17,18 +17,18 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _MOST_LABELS: Final = 4
 _MOST_STATES: Final = 1_000
-"""The most states of the automaton that is built to see the effect of `exclusive`.
+"""The most states of the automaton that is built to see what declaring atoms `exclusive` would change.
 
-A note must not take longer than the compilation.
+The limit keeps this rule, which reports only notes, faster than the compilation.
 """
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each group of goals over one predicate that one step can meet.
+    """Yield a finding for each group of goals, atoms of one predicate, that one step can meet together.
 
-    An example is ``near(s1)`` and ``near(s2)``. There is a finding only if the path to the goal gets
-    longer once these atoms are declared exclusive. Also yield a finding for each goal that asks for
-    several of these atoms at one step.
+    An example is ``near(s1)`` and ``near(s2)``. There is a finding only if the spec needs more steps
+    once these atoms are declared exclusive. Also yield a finding for each goal that asks for several
+    of these atoms at one step.
     """
     entities = {binding.name for binding in view.env.scope.names.values() if binding.kind == "entity"}
     for spec in view.specs:
@@ -44,9 +44,9 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _joint_goals(groups: list[set[int]], spec: SpecView) -> Iterator[RuleFinding]:
-    """Yield a finding for each goal that asks for several atoms of a group at one step.
+    """Yield a finding for each goal, such as ``near(s1) and near(s2)``, that asks for two atoms of a group.
 
-    The author may mean several goals, one after the other.
+    The author may mean two goals, one after the other. ``groups`` has sets of indices of atoms.
     """
     for goal in goals(spec):
         parts = [part for part in conjuncts(goal) if _atom(part)]
@@ -68,9 +68,10 @@ def _atom(part: ScopedExpression) -> str:
 
 
 def _goal_atoms(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
-    """Return the groups restricted to atoms that goals ask for; groups of one atom are left out.
+    """Remove from each group the atoms that no goal asks for; leave out groups with fewer than two atoms left.
 
-    Atoms of `keep` clauses, or below an `until`, are not goals.
+    Groups are sets of indices of atoms. A goal asks for its atoms that are not below an operator
+    other than `and` and `or`.
     """
     names = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
     reached = [{index for index in group if spec.fspa.atoms[index].name in names} for group in groups]
@@ -78,7 +79,10 @@ def _goal_atoms(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
 
 
 def _operands(formula: Formula | None) -> Iterator[Formula]:
-    """Yield the operands of `and` and `or`, or the formula itself if it is neither."""
+    """Yield the operands of nested `and` and `or`; for any other formula, the formula itself.
+
+    For ``a & (b | X c)``, these are ``a``, ``b`` and ``X c``. Yield nothing for None.
+    """
     pending = [] if formula is None else [formula]
     while pending:
         part = pending.pop()
@@ -89,10 +93,7 @@ def _operands(formula: Formula | None) -> Iterator[Formula]:
 
 
 def _with_exclusive(spec: Spec, indices: list[int]) -> Spec:
-    """Return the spec with these atoms declared exclusive.
-
-    The indices are those of the automaton, which has the same atoms as the spec.
-    """
+    """Return the spec with the atoms at these indices declared exclusive."""
     return replace(spec, exclusive=(*spec.exclusive, tuple(indices)))
 
 
@@ -119,17 +120,20 @@ def _same_predicate(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
 
 
 def _atoms_together(edge: Edge, group: set[int]) -> set[int]:
-    """Return the atoms of a group that must hold together for an edge to be taken.
+    """Return the atoms of a group that occur in the guard of an edge that needs several of them at once.
 
-    They are the union over all prime implicants of the guard. The set is empty if one of these
-    implicants needs at most one atom of the group.
+    ``group`` and the result have indices of atoms. The result is empty if the edge can be taken with
+    at most one atom of the group, that is, if a prime implicant of the guard has at most one.
     """
     together = [group.intersection(atom for atom, holds in prime if holds) for prime in edge.guard.primes]
     return set().union(*together) if all(len(atoms) > 1 for atoms in together) else set()
 
 
 def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
-    """Whether the goal is farther away, but still reachable, if these atoms are exclusive."""
+    """Whether declaring these atoms exclusive makes the goal of the spec farther away, but not unreachable.
+
+    False as well if the automaton would be too large.
+    """
     try:
         apart = build(_with_exclusive(spec.spec, indices), state_budget=_MOST_STATES)
     except TltlError:
@@ -138,7 +142,7 @@ def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
 
 
 def _length(fspa: Fspa) -> tuple[int, int]:
-    """Return the distance from the initial state to the goal, and the greatest from any state.
+    """Return the least number of steps to the goal, from the initial state and from the state farthest away.
 
     Both are 0 if no trace satisfies the spec.
     """

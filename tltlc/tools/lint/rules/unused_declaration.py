@@ -18,7 +18,7 @@ _CheckedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each signal, param, entity, predicate and let that is not used.
 
-    A use is a mention of the name in this file or in a file that imports it.
+    A name is used if an expression in this file, or a file that imports this file, mentions it.
     """
     if not view.specs:
         return
@@ -50,9 +50,9 @@ def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view:
 
 
 def _is_refined(declaration: _CheckedDeclaration, view: FileView) -> bool:
-    """Whether an imported module declares the same signal or param.
+    """Whether an imported module declares a signal or param with the same name.
 
-    Then the declaration narrows the range of that signal or param, which is a use.
+    Then the declaration narrows the range of the imported one, so it is not unused.
     """
     return any(
         isinstance(imported, (SignalDecl, ParamDecl)) and imported.name == declaration.name

@@ -44,9 +44,9 @@ def _unused_names(declaration: Import, used_names: Container[str], view: FileVie
 
 
 def _used_by_target(used_names: Container[str], view: FileView) -> dict[str, list[str]]:
-    """Map the target of each import to the used names that come from it, sorted.
+    """Map the target of each import to the names that come from it and are used, sorted.
 
-    If several imports provide a name, it counts for the first of them.
+    If several imports provide a name, it counts only for the first of them.
     """
     by_target: dict[str, list[str]] = {}
     for name, binding in view.env.scope.names.items():
@@ -56,7 +56,7 @@ def _used_by_target(used_names: Container[str], view: FileView) -> dict[str, lis
 
 
 def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
-    """Whether an import provides any of ``names``, which are sorted."""
+    """Whether an import provides any of ``names``, a sorted list of used names from its target."""
     if declaration.names is not None:
         return any(_first(names, entry.name) == entry.name for entry in declaration.names)
     prefix = _prefix(declaration)
@@ -64,7 +64,7 @@ def _provides_any(declaration: Import, names: Sequence[str]) -> bool:
 
 
 def _first(names: Sequence[str], start: str) -> str:
-    """Return the first of ``names``, which are sorted, that is not before ``start``; or ``""``."""
+    """Return the first name in the sorted ``names`` that is ``start`` or comes after it; ``""`` if there is none."""
     place = bisect_left(names, start)
     return names[place] if place < len(names) else ""
 
@@ -76,9 +76,9 @@ def _prefix(declaration: Import) -> str:
 def _effective_modules(modules: Iterable[LoadedModule]) -> set[int]:
     """Return the ids of the modules that have an effect even if none of their names is used.
 
-    Such a module declares a clock, exclusive atoms, or a signal or param that another module also
-    declares and whose range it narrows. A module also has an effect if one of its imports has one.
-    In ``modules``, imported modules come before the modules that import them.
+    Such a module declares a clock or exclusive atoms, or narrows the range of a signal or param that
+    another module declares. A module that imports such a module has an effect, too. In ``modules``,
+    imported modules must come before the modules that import them.
     """
     effective: set[int] = set()
     modules = tuple(modules)
