@@ -16,7 +16,7 @@ _WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
 
 @record
 class Number:
-    """The text of a number: its digits, and its unit or an empty text."""
+    """The text of a number: ``3 s`` has the digits ``3`` and the unit ``s``. The unit may be empty."""
 
     digits: str
     unit: str = ""
@@ -26,14 +26,15 @@ class Number:
 
 
 def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -> dict[str, str]:
-    """Return the forms of the bound of an operator, by the names ``words`` and ``brackets``.
+    """Return the texts of the bound of an operator, by the names ``words`` and ``brackets``.
 
-    Words look like ``within 3 steps``, and brackets like ``[0,3]``. The result is empty if the
-    operator has no bound, and has one form if the other cannot express the bound.
+    For ``eventually[0,3] a``, they are ``{"words": "within 3 steps", "brackets": "[0,3]"}``. The
+    result is empty if the operator has no bound. It has only the form of the source if the other
+    form cannot express the bound.
 
     ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
     mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
-    brackets. Neither can ``after``. ``number`` returns a number as it is written in the source.
+    brackets. Neither can ``after``. ``number`` returns a number as the source spells it.
     """
     bound = node.bound
     if bound is None:
@@ -55,9 +56,10 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
 
 
 def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
-    """Return the upper end of the brackets that mean the same as a bound in words.
+    """Convert a bound in words to brackets; return the upper end of the brackets.
 
-    ``high`` is the number after ``within`` or ``for``. None if no brackets mean the same.
+    ``high`` is the number after ``within`` or ``for``, and ``number`` its text. For ``within 3 steps``
+    return ``3``, and for ``for 3 steps`` return ``2``. Return None if no brackets mean the same.
     """
     if high.unit not in _STEPS:
         return str(number) if op == "F" else None
@@ -68,9 +70,10 @@ def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
 
 
 def _in_words(op: str, high: tree.NumberExpr, number: Number) -> str | None:
-    """Return the number and unit after ``within`` or ``for`` that mean the same as ``[0,high]``.
+    """Convert the bound ``[0,high]`` to words; return the number and unit after ``within`` or ``for``.
 
-    None if no words mean the same.
+    ``number`` is the text of ``high``. For ``F[0,3]`` return ``3 steps``, and for ``G[0,3]`` return
+    ``4 steps``. Return None if no words mean the same.
     """
     if high.unit not in _STEPS:
         return str(number) if op == "F" else None

@@ -8,9 +8,9 @@ _COLOURS: Final = {"---": "1", "+++": "1", "@@": "36", "-": "31", "+": "32"}
 
 
 def diff_text(name: str, before: str, after: str, *, color: bool = False) -> str:
-    """Return the unified diff between two texts of a file; empty if they are equal.
+    """Return the unified diff between two texts of the file ``name``; empty if they are equal.
 
-    With ``color``, lines have ANSI colours.
+    With ``color``, the lines are coloured with ANSI escape codes.
     """
     from difflib import unified_diff
 

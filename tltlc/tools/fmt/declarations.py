@@ -15,7 +15,8 @@ from tltlc.tools.fmt.page import STEP, Page
 class DeclarationPrinter:
     """Writes the declarations of a source on a page.
 
-    ``joints`` are offsets in the source. The text at a joint does not begin a line of the page.
+    ``joints`` are offsets in the source. Text that begins at such an offset in the source does not
+    begin a new line of the page, but follows on the line before.
     """
 
     def __init__(self, source: SourceFile, page: Page, one_line: OneLinePrinter, joints: Set[int]) -> None:
@@ -28,8 +29,8 @@ class DeclarationPrinter:
     def put(self, node: tree.Declaration) -> None:
         """Write a declaration on lines of its own.
 
-        Comments inside a declaration are written before its last word. After the last word, a
-        ``///`` comment would document the next declaration.
+        Comments inside the declaration are written before its last word. If a ``///`` comment came
+        after that word, it would document the next declaration.
         """
         match node:
             case tree.Import():
@@ -69,7 +70,11 @@ class DeclarationPrinter:
     # --- heads ----------------------------------------------------------------------------------
 
     def _put_words(self, keyword: str, rest: str, end: int) -> None:
-        """Write a keyword and words on one line. In the source, they end at the offset ``end``."""
+        """Write ``keyword``, a space and ``rest`` on one line.
+
+        In the source, ``rest`` ends at the offset ``end``. Comments before this offset are written
+        after the keyword.
+        """
         self._page.put(keyword)
         self._page.put_comments(end, STEP)
         self._page.put(f" {rest}")
@@ -94,7 +99,9 @@ class DeclarationPrinter:
     ) -> None:
         """Write the head of a declaration: ``keyword NAME(parameters): type in [low, high]``.
 
-        If there is a type but no range, comments before the offset ``end`` are written in the head.
+        Each part but the keyword and the name may be missing. Comments inside the head in the source
+        are written inside the head, too. If there is a type but no range, the head ends at the
+        offset ``end``.
         """
         self._put_words(keyword, node.name, node.name_span.end)
         rest = (f": {type_}" if type_ else "") + (f" {self._range(interval)}" if interval else "")
@@ -121,10 +128,11 @@ class DeclarationPrinter:
     # --- blocks ---------------------------------------------------------------------------------
 
     def _put_block(self, span: Span, head: int, items: Sequence[tree.Clause | tree.TestStep | tree.TestExpect]) -> None:
-        """Write ``{ … }``. In the source, the text before the block ends at the offset ``head``.
+        """Write a block, ``{ … }``, with its items.
 
         The block stays on one line if it is on one line in the source and fits. Otherwise, each item
-        gets a line.
+        begins a line. ``span`` is the span of the whole declaration in the source, and ``head`` the
+        offset at which the text before the block ends.
         """
         page = self._page
         brace = page.find("{", head)
@@ -149,7 +157,7 @@ class DeclarationPrinter:
         page.put("}")
 
     def _one_line_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:
-        """Return the text of an item of a block on one line, or None if it is too long."""
+        """Return an item of a block as text on one line, or None if the text would be too long."""
         if isinstance(item, tree.TestExpect):
             return f"expect {self._expectation(item)}"
         if isinstance(item, tree.TestStep):

@@ -27,7 +27,7 @@ class Item(NamedTuple):
 
     @property
     def is_name(self) -> bool:
-        """Whether the item is only a name. Then it shares lines with other names."""
+        """Whether the item is only a name. Names share lines; other items may get a line each."""
         return self.value is None and ":" not in self.head
 
 
@@ -43,7 +43,7 @@ class Expressions:
         self._one_line = one_line
 
     def put(self, node: Expr, indent: int, reserved: int = 0) -> None:
-        """Write an expression on one line if it fits, and otherwise broken."""
+        """Write an expression on the current line if it fits, else broken into several lines."""
         self._page.put_comments(node.span.start, indent)
         text = self.one_line_text(node, reserved)
         if text is None:
@@ -52,7 +52,11 @@ class Expressions:
             self._page.put(text)
 
     def put_value(self, node: Expr, indent: int) -> None:
-        """Write an expression after ``=`` or ``:``, or on lines of its own if it does not fit there."""
+        """Write an expression after ``=`` or ``:``.
+
+        It begins on the current line if all of it fits there, else on a new line. A ``when``
+        expression always begins on a new line.
+        """
         # Cases are easiest to read on lines of their own, even if they are short.
         has_cases = isinstance(node, tree.WhenExpr)
         text = None if has_cases else self.one_line_text(node, 1)
@@ -67,23 +71,26 @@ class Expressions:
             self.put(node, indent)
 
     def put_after_keyword(self, node: Expr, indent: int) -> None:
-        """Write an expression after a keyword, or on a new line if its first operand is broken."""
+        """Write an expression after a keyword.
+
+        It begins on a new line only if its first operand does not fit on the current line.
+        """
         self._page.put_comments(node.span.start, indent)
         if isinstance(node, tree.BinaryExpr) and self.one_line_text(next(chain(node))[1]) is None:
             self._page.end_line(indent)
         self.put(node, indent)
 
     def one_line_text(self, node: Expr, reserved: int = 0) -> str | None:
-        """Return the text of an expression on one line.
+        """Return an expression as text on one line.
 
-        Returns None if it does not fit on the current line, or contains a comment.
+        Return None if the text does not fit on the current line, or if the expression has a comment.
         """
         if self._page.has_comment(node.span.end):
             return None
         return self._one_line.text(node, self._page.room - reserved)
 
     def put_list(self, items: Sequence[Item], indent: int) -> None:
-        """Write items with commas, as many on each line as fit."""
+        """Write items with commas between them, as many on each line as fit."""
         for place, item in enumerate(items):
             comma = "," if place < len(items) - 1 else ""
             self._page.put_comments(item.span.start, indent)
@@ -99,8 +106,8 @@ class Expressions:
         """Write items in ``(…)``.
 
         If they fit, they stay on this line. Otherwise they share a line of their own, or get a line
-        each. ``end`` is the offset after the closing bracket in the source; for None, the method
-        searches for it.
+        each, or only one large item is broken (:meth:`_is_hugged`). ``end`` is the offset after the
+        closing bracket in the source; for None, the method searches for this offset.
         """
         page, outer = self._page, self._page.indent
         if end is None:
@@ -188,9 +195,10 @@ class Expressions:
         self.put_value(node.otherwise, indent + STEP)
 
     def _value_column(self, node: tree.WhenExpr, indent: int) -> int:
-        """Return the column after the colon of the widest condition; all values begin behind it.
+        """Return the column after the colon of the longest ``when CONDITION:``.
 
-        Return 0 if a line would then be too long.
+        If all values begin one column further, they are aligned. Return 0 if a line would then be
+        too long.
         """
         heads = [self._one_line.text(case.condition, WIDTH) for case in node.cases]
         values = [self._one_line.text(value, WIDTH) for value in (*(case.value for case in node.cases), node.otherwise)]
@@ -201,14 +209,14 @@ class Expressions:
     # --- items of lists -------------------------------------------------------------------------
 
     def _put_lines(self, items: Sequence[Item], indent: int) -> None:
-        """Begin each item on a new line. If there are several, indent the further lines of each."""
+        """Write each item on a new line. If there are several items, indent the continuation lines of each."""
         for place, item in enumerate(items):
             self._page.put_comments(item.span.start, indent)
             self._page.end_line(indent)
             self._put_item(item, indent + STEP if len(items) > 1 else indent, "," if place < len(items) - 1 else "")
 
     def _put_hugging(self, items: Sequence[Item], indent: int) -> None:
-        """Write the items one after another, and break the large one inside its brackets.
+        """Write the items one after another on this line, and break the large item inside its brackets.
 
         :meth:`_is_hugged` says which item is large.
         """
@@ -226,14 +234,17 @@ class Expressions:
             self._page.put(comma)
 
     def _item_text(self, item: Item) -> str | None:
-        """Return the text of an item on one line, or None if it is too long or has a comment."""
+        """Return an item as text on one line, or None if the text is too long or the item has a comment."""
         if self._page.has_comment(item.span.end):
             return None
         text = "" if item.value is None else self._one_line.text(item.value)
         return None if text is None else item.head + text
 
     def _joined_text(self, items: Sequence[Item], end: int) -> str | None:
-        """Return the text of all items on one line, or None if they are too long or have a comment."""
+        """Return all items as text on one line, with commas between them.
+
+        Return None if the text would be too long, or if there is a comment before the offset ``end``.
+        """
         if self._page.has_comment(end):
             return None
         texts: list[str] = []
@@ -247,12 +258,15 @@ class Expressions:
         return ", ".join(texts)
 
     def _is_hugged(self, items: Sequence[Item], end: int, room: int) -> bool:
-        """Whether a call may be laid out as ``f(1, g(`` in one line, with the arguments of ``g`` below it.
+        """Whether a call may be laid out as ``f(1, g(`` on one line, with the arguments of ``g`` below it.
 
-        That is so if exactly one of its ``items`` is large, that is more than a name, a number or a
-        constant; if this item begins with an opening bracket; and if all other items and that bracket
-        fit into the ``room`` that is left in the line. ``end`` is the offset after the call's closing
-        bracket.
+        Three things must be true:
+
+        - exactly one of ``items`` is large, that is, more than a name, a number or a constant;
+        - this item is a call or an expression in brackets;
+        - the text up to its opening bracket, and the other items, fit into ``room`` columns.
+
+        ``end`` is the offset after the closing bracket of the whole call in the source.
         """
         large = [item.value for item in items if not _is_simple(item.value)]
         if len(large) != 1 or not isinstance(large[0], (tree.CallExpr, tree.GroupExpr)):

@@ -1,4 +1,4 @@
-"""Format a source text. Its meaning and comments stay; spaces and spellings change."""
+"""Format a source text: change its spaces and the spelling of operators, but not its meaning or comments."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ def format_text(text: str, style: str = DEFAULT) -> str:
 
 
 def format_source(source: SourceFile, style: str = DEFAULT) -> str:
-    """Format a text like :func:`format_text`. Errors have the name of the source."""
+    """Return the text of ``source`` in the standard layout, as :func:`format_text` does.
+
+    Errors are the same, but their labels have the name of ``source``.
+    """
     module, diagnostics = parse(source)
     if diagnostics:
         raise TltlError(diagnostics)
@@ -52,9 +55,11 @@ _END: Final = 1 << 62
 
 
 def _format_module(module: tree.Module, style: Style) -> str:
-    """Return a layout of the module in which ``allow`` comments apply to the same statements as before.
+    """Return the text of a module in the standard layout.
 
-    Declarations are copied from the source where no new layout achieves this.
+    Each ``allow`` comment must apply to the same statements as before. So the layout is repeated
+    with more and more constraints, until this is true. At worst, declarations are copied from the
+    source as they are.
     """
     constraints = NO_CONSTRAINTS
     while True:
@@ -67,7 +72,7 @@ def _format_module(module: tree.Module, style: Style) -> str:
 
 
 def _check_size(layout: SourceFile) -> None:
-    """Raise TLT0004 if a layout is too large to be read again."""
+    """Raise TltlError, TLT0004, if the formatted text is too large for the parser."""
     if is_too_large(layout):
         title = f"the layout of `{layout.name}` would have more than 1 MiB, or more than {MAX_TOKENS:,} words and signs"
         help_ = "the file is not changed; to format it, split it: a file may `import` others"

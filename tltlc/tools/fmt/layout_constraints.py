@@ -18,10 +18,10 @@ from tltlc.grammar.tree import Comment, EntityDecl, Module
 
 @record
 class LayoutConstraints:
-    """What the layout must keep as it is in the source.
+    """What the layout must keep as it is in the source; both fields are offsets in the source.
 
-    ``joints`` and ``declarations`` are offsets in the source. The layout begins no line at a joint,
-    and copies the declarations that begin at ``declarations``.
+    The layout does not begin a new line with the text at an offset in ``joints``. It copies each
+    declaration that begins at an offset in ``declarations``.
     """
 
     joints: frozenset[int]
@@ -36,10 +36,11 @@ def required_constraints(module: Module, text: str, constraints: LayoutConstrain
 
     ``text`` is the layout of the module under ``constraints``. The function compares the statements
     to which each ``allow`` comment applies in ``text`` and in the source. If they differ, it adds
-    joints, which keep these statements on their lines. If the joints are there already, it adds the
-    declarations that contain the statements; these are then copied from the source.
+    joints that keep these statements on their lines. If these joints are in ``constraints`` already,
+    it adds the declarations that contain the statements, which are then copied from the source.
 
-    Call the function again with each new layout, until the result equals ``constraints``.
+    Make a new layout with the result and call the function again, until the result equals
+    ``constraints``.
     """
     before = commented_spans(module)
     lists = [
@@ -75,10 +76,12 @@ def required_constraints(module: Module, text: str, constraints: LayoutConstrain
 
 
 def _may_change(comment: Comment, places: tuple[Span, ...], text: str, list_spans: Container[Span]) -> bool:
-    """Whether a comment could apply to other statements after the layout.
+    """Whether the layout could make a comment apply to other statements.
 
-    This is possible if it applies to several statements, to an entry of a list, or to the block that
-    contains it. Any other comment stays above, after or within its only statement.
+    This is possible if the comment applies to several statements, to an entry of a list, or to the
+    block that contains the comment. Any other comment stays above, after or within its only
+    statement. ``places`` are the spans of the statements, and ``list_spans`` the spans of lists and
+    of their entries.
     """
     if len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places):
         return True
@@ -86,7 +89,7 @@ def _may_change(comment: Comment, places: tuple[Span, ...], text: str, list_span
 
 
 def _outermost(places: Iterable[Span]) -> set[Span]:
-    """Return the spans that are not inside another one of ``places``."""
+    """Return those of ``places`` that are not inside another of them."""
     outer: list[Span] = []
     for place in sorted(places, key=lambda place: (place.start, -place.end)):
         if not outer or place.end > outer[-1].end:
@@ -95,9 +98,10 @@ def _outermost(places: Iterable[Span]) -> set[Span]:
 
 
 def _joints(text: str, place: Span) -> Iterator[int]:
-    """Yield the start of the statement at ``place``, and the offset of its closing brace if it has one.
+    """Yield the joints that keep a statement on its lines; ``place`` is the span of the statement.
 
-    Each is yielded only if other text precedes it on its line.
+    They are the offset of its start, and of its closing brace if it has one. Each is left out if
+    nothing precedes it on its line.
     """
     for offset in (place.start, *((place.end - 1,) if text[place.end - 1] == "}" else ())):
         if text[text.rfind("\n", 0, offset) + 1 : offset].strip():

@@ -29,10 +29,10 @@ class OneLinePrinter:
         self._style = style
 
     def text(self, node: Expr, room: int = WIDTH) -> str | None:
-        """Return the text of an expression, or None if it takes more than ``room`` columns.
+        """Return an expression as text on one line, or None if it takes more than ``room`` columns.
 
-        Comments inside the expression are ignored. The printer stops as soon as the room is used
-        up, so a long expression takes no more time than a line.
+        Comments inside the expression are left out. The printer stops as soon as the room is used
+        up, so even a very long expression takes little time.
         """
         if room <= 0:
             return None
@@ -73,7 +73,7 @@ class OneLinePrinter:
         return Number(digits.rstrip(), source_text[len(digits) :])
 
     def prefix(self, node: tree.Unary) -> str:
-        """Return the text of a prefix operator with its bound, and a space after it if needed."""
+        """Return a prefix operator as text, with its bound, and with a space at the end if needed."""
         return self._style.prefix_text(node, bound_forms(node, self.number))
 
     def infix(self, op: str) -> str:
@@ -130,7 +130,8 @@ class OneLinePrinter:
 def chain(node: tree.BinaryExpr) -> Iterator[tuple[tree.BinaryExpr | None, Expr]]:
     """Yield the operands of a chain of operators with the same precedence, in order.
 
-    Each operand comes with the node of the operator before it, or None for the first one.
+    Each operand comes with the node of the operator before it, or None for the first operand. For
+    ``a + b - c``, the pairs are None and ``a``, ``+`` and ``b``, ``-`` and ``c``.
     """
     if is_speed(node):
         yield None, node

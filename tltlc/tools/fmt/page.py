@@ -1,4 +1,4 @@
-"""The page that the formatter writes: code, with the comments of the source in their places."""
+"""The page that the formatter fills with code, and with the comments of the source in between."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Page:
         self._opened = 0
 
     def put(self, text: str) -> None:
-        """Write a text. If the last line has ended, this begins a new line."""
+        """Append a text to the current line, or begin a new line with it if that line has ended."""
         if self._at_line_start:
             self._lines.append(" " * self._indent + text.lstrip(" "))
             self._at_line_start = self._is_comment = False
@@ -53,7 +53,7 @@ class Page:
             self._lines[-1] += text
 
     def end_line(self, indent: int) -> None:
-        """End the line. The next text begins a line at the column ``indent``."""
+        """End the current line. The next text begins a new line, at the column ``indent``."""
         self._at_line_start = True
         self._indent = min(indent, _DEEPEST)
 
@@ -78,7 +78,7 @@ class Page:
                 self._lines.append(line)
 
     def open_block(self) -> None:
-        """Mark the beginning of a block, after which no empty line is written."""
+        """Mark the beginning of a block, so that no empty line is written directly after it."""
         self._opened = len(self._lines)
 
     @property
@@ -93,14 +93,14 @@ class Page:
 
     @property
     def indent(self) -> int:
-        """The column at which the text of the current line begins."""
+        """The indentation of the current line, or of the next line if the current one has ended."""
         if self._at_line_start:
             return self._indent
         line = self._lines[-1]
         return len(line) - len(line.lstrip(" "))
 
     def has_comment(self, end: int, start: int = 0) -> bool:
-        """Whether a comment between these offsets in the source is not written yet."""
+        """Whether the source has a comment between these offsets that is not written yet."""
         for place in range(self._next, len(self._comments)):
             offset = self._comments[place].span.start
             if offset >= start:
@@ -108,9 +108,9 @@ class Page:
         return False
 
     def find(self, sign: str, start: int) -> int:
-        """Return the offset of the first ``sign`` in the source at or after ``start``, -1 if there is none.
+        """Return the offset of the first ``sign`` in the source at or after ``start``; -1 if there is none.
 
-        A ``sign`` in a comment does not count, unless the comment is already written to the page.
+        Comments that are not written yet are skipped.
         """
         place = self._text.find(sign, start)
         for number in range(self._next, len(self._comments)):
@@ -148,7 +148,7 @@ class Page:
             self._lines.append("")
 
     def text(self) -> str:
-        """Return all lines, each with a line feed, and with comments after adjacent lines aligned."""
+        """Return the finished page. Comments after neighbouring lines are aligned; each line has a line feed."""
         lines = [line.rstrip() for line in self._lines]
         group: list[int] = []
         for place in sorted(self._line_comments):
@@ -160,10 +160,10 @@ class Page:
         return "".join(f"{line}\n" for line in lines)
 
     def _align(self, lines: list[str], group: list[int]) -> None:
-        """Append to each line of a group the comment that belongs after it.
+        """Append to each line of a group the comment that belongs after it; change ``lines`` in place.
 
-        ``group`` has the indices of the lines in ``lines``, which is changed in place. The comments
-        begin in one column, unless one of them would then end beyond ``WIDTH``.
+        ``group`` has the indices of the lines. The comments begin in the same column, unless one of
+        them would then end beyond ``WIDTH``.
         """
         widest = max((len(lines[place]) for place in group), default=0)
         if any(widest + _GAP + len(self._line_comments[place]) > WIDTH for place in group):

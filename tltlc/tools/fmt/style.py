@@ -55,8 +55,8 @@ def _style(
 ) -> Style:
     """Return a style with the spellings of ``notation``.
 
-    ``extra_infix`` adds or replaces spellings of infix operators. ``letters`` is that of
-    :class:`Style`.
+    ``extra_infix`` adds or replaces spellings of infix operators. ``letters`` becomes the field of
+    that name in :class:`Style`.
     """
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
     return Style(
