@@ -32,9 +32,10 @@ def ending(fspa: Fspa) -> str:
 
 
 def limit_text(steps: int | None, seconds: float | None) -> str:
-    """Return a sentence about the limit of an episode.
+    """Return a sentence about the limit of an episode: ``The limit is 400 steps, 20 s.``
 
-    ``steps`` is None if there is no limit. ``seconds`` is None if the length of a step is unknown.
+    ``steps`` is None if there is no limit. ``seconds`` is the limit as a time; it is None if the
+    length of a step is unknown.
     """
     if steps is None:
         return "There is no limit."

@@ -28,7 +28,7 @@ _MOST_WORK: Final = 2_000_000
 
 @record
 class NextStep:
-    """An edge towards the goal: its condition in words (``when``), and the number of its target."""
+    """An edge towards the goal: its condition in words (``when``), and the state to which it leads."""
 
     when: str
     state: int
@@ -39,8 +39,8 @@ class StateRow:
     """A state of the automaton. ``remains`` says what remains to be satisfied.
 
     ``distance`` is the least number of steps to an accepting state; it is None in a trap. ``leads``
-    has the edges that make progress towards the goal;
-    :func:`~tltlc.tools.explain.next_steps.edges_leading_on` says which edges do.
+    has the edges from this state that make progress towards the goal, as
+    :func:`~tltlc.tools.explain.next_steps.edges_leading_on` finds them.
     """
 
     id: int
@@ -52,9 +52,10 @@ class StateRow:
 
 @record
 class CountingRun:
-    """A run of states that differ only in a count; each state of it leads to the next.
+    """States that differ only in a count, such as the steps that are left of a bound. Each leads to the next.
 
-    ``remains`` says with ranges of counts what remains to be satisfied in these states.
+    ``remains`` says what remains to be satisfied in these states. It has a range in place of the
+    count.
     """
 
     states: tuple[int, ...]
@@ -63,10 +64,10 @@ class CountingRun:
 
 @record
 class TrapCondition:
-    """A condition that breaks the spec for good in some states.
+    """A condition on one step that breaks the spec for good in some ``states``.
 
-    ``when`` is the condition in words. ``everywhere`` is true if ``states`` has every state that is
-    neither satisfied nor violated.
+    ``when`` is the condition in words. ``everywhere`` is true if the condition does so in every
+    state whose verdict is not final yet, that is, neither satisfied nor violated.
     """
 
     when: str
@@ -76,10 +77,10 @@ class TrapCondition:
 
 @record
 class TraceStep:
-    """Consecutive steps of a trace with the same condition.
+    """One or more consecutive steps of a trace with the same condition.
 
-    ``times`` is their number, ``what`` the condition in words, and ``state`` the state after the last
-    step.
+    ``times`` is the number of steps, ``what`` the condition in words, and ``state`` the state after
+    the last step.
     """
 
     times: int
@@ -133,7 +134,7 @@ class Explanation:
 
 
 def explain(fspa: Fspa) -> Explanation:
-    """Return the explanation of an automaton."""
+    """Return the explanation of the spec that an automaton was built from."""
     formula = fspa.formula
     guards = _guards(fspa)
     moves = Moves(fspa)
@@ -186,12 +187,12 @@ def _literals(fspa: Fspa, implicant: Implicant) -> Formula:
 
 
 def _condition_text(state: Formula) -> str:
-    """Return a formula about one step in words, such as the guard of an edge."""
+    """Return a formula about a single step, such as the guard of an edge, in words."""
     return ANYTHING if state is TRUE else phrase(_positive_first(state))
 
 
 def _positive_first(state: Formula) -> Formula:
-    """Return a guard, or part of one, with atoms before negated atoms: ``b and not a``."""
+    """Return a guard, or part of a guard, with atoms before negated atoms: ``b & !a`` for ``!a & b``."""
     if state.op not in ("and", "or"):
         return state
     parts = (_positive_first(part) for part in state.args)
@@ -219,7 +220,8 @@ def _counting_runs(fspa: Fspa) -> tuple[CountingRun, ...]:
 def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, ...]:
     """Return the conditions that lead into a trap, one entry for each condition.
 
-    Conditions that do so in every state that is neither satisfied nor violated come first.
+    ``guards`` has the guard of each edge as a formula. Conditions that lead into a trap from every
+    state whose verdict is not final come first.
     """
     violated = {state.id for state in fspa.states if state.verdict == "violated"}
     undecided = {state.id for state in fspa.states if state.verdict in ("pending", "holding")}
@@ -233,9 +235,9 @@ def _failures(fspa: Fspa, guards: tuple[Formula, ...]) -> tuple[TrapCondition, .
 
 
 def _witness(moves: Moves, accept: bool) -> Witness | None:
-    """Return a trace that succeeds, if ``accept``, else one that fails; None if none is found.
+    """Return a trace that succeeds if ``accept`` is true, else a trace that fails; None if none is found.
 
-    A finite trace that fails counts only if it ends in a violated state.
+    A finite trace counts as a failure only if it ends in a violated state.
     """
     try:
         witness = accepting_trace(moves, _MOST_WORK) if accept else rejecting_trace(moves, _MOST_WORK)
@@ -248,7 +250,7 @@ def _witness(moves: Moves, accept: bool) -> Witness | None:
 
 
 def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
-    """Return a witness in words; None if ``witness`` is None.
+    """Describe the steps of a trace in words; return None if ``witness`` is None.
 
     Consecutive steps with the same condition are merged.
     """

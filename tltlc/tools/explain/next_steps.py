@@ -15,10 +15,10 @@ _MOST_WORK: Final = 500_000
 def edges_leading_on(fspa: Fspa) -> tuple[int, ...]:
     """Return the indices of the edges that lead on; edges that need the fewest atoms come first.
 
-    An edge leads on if its target has a smaller distance than its source. If one step may meet two
-    goals, the distance does not change when one of the goals is met. So over finite traces, an edge
-    between states of the same distance also leads on if its target accepts strictly more traces than
-    its source.
+    An edge leads on if its target has a smaller distance than its source. If a single step can meet
+    two goals, meeting only one of them does not change the distance. So over finite traces, an edge
+    between states of the same distance also leads on if the automaton accepts strictly more traces
+    from the target than from the source.
     """
     closer, equally_far = [], []
     for index, edge in enumerate(fspa.edges):
@@ -33,9 +33,9 @@ def edges_leading_on(fspa: Fspa) -> tuple[int, ...]:
 
 
 def _edges_with_less_left(fspa: Fspa, edges: Sequence[int]) -> Iterable[int]:
-    """Return those of ``edges`` whose target accepts strictly more traces than their source.
+    """Return those of ``edges`` from whose target strictly more traces are accepted than from the source.
 
-    The result is empty if the comparison takes too much work.
+    ``edges`` and the result are indices. The result is empty if the comparison takes too much work.
     """
     if not edges:
         return ()

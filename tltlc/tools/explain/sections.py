@@ -87,9 +87,9 @@ def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
 
 
 def failure_texts(explanation: Explanation) -> tuple[str, ...]:
-    """Return texts about the conditions that break the spec for good: what, and in which states.
+    """Describe each condition that breaks the spec for good: ``seen, in states 1, 2``.
 
-    If there are more than ``_MOST_FAILURES``, the last text says how many are left out.
+    If there are more than ``_MOST_FAILURES`` conditions, the last text says how many are left out.
     """
     texts = [_failure_text(failure) for failure in explanation.failures[:_MOST_FAILURES]]
     rest = len(explanation.failures) - len(texts)
@@ -105,9 +105,9 @@ def _failure_text(failure: TrapCondition) -> str:
 
 
 def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
-    """Return a table with a row for each state.
+    """Return a table with a row for each state, and a sentence on the rows that are left out.
 
-    The states of a run that differ only in a count share a row.
+    States that differ only in a count share a row. There are at most ``_MOST_ROWS`` rows.
     """
     runs = {run.states[0]: run for run in explanation.counting}
     continued = {state for run in explanation.counting for state in run.states[1:]}
@@ -140,9 +140,9 @@ def _row(explanation: Explanation, run: CountingRun) -> tuple[str, ...]:
 
 
 def _numbers(states: Sequence[int]) -> str:
-    """Return state numbers as ranges: ``2, 4–101``.
+    """Return the numbers of states as ranges: ``2, 4–101``.
 
-    If there are more than ``_MOST_RANGES`` ranges, only the first ones and the last are shown.
+    If there are more than ``_MOST_RANGES`` ranges, leave out those before the last: ``2, 4–101, …, 200``.
     """
     ranges: list[list[int]] = []
     for state in sorted(states):

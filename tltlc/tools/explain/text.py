@@ -43,7 +43,11 @@ def _list(block: SectionList) -> Iterator[str]:
 
 
 def _table(table: SectionTable) -> Iterator[str]:
-    """Yield the lines of a table. The last two columns share the width that is left for them."""
+    """Yield the lines of a table.
+
+    The other columns are as wide as their widest cell. The last two share the rest of the line, so
+    their cells may be wrapped.
+    """
     rows = (table.header, *table.rows)
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]
     left = _WIDTH - len(_GAP) * len(widths) - sum(widths[:-2])

@@ -8,9 +8,9 @@ from tltlc.tools.explain.explanation import Explanation
 
 
 def json_values(explanation: Explanation) -> dict[str, Any]:
-    """Return the fields of an explanation by name, recursively as JSON values.
+    """Return an explanation as a JSON object: its fields by name, and records inside it as objects, too.
 
-    A run in ``counting`` becomes the list of its states.
+    Only the entries of ``counting`` are shorter: each is the list of its states.
     """
     return {**_value(explanation), "counting": [list(run.states) for run in explanation.counting]}
 
