@@ -19,7 +19,8 @@ def vocabulary_of(
 ) -> tuple[Vocabulary, FormulaOf, tuple[Diagnostic, ...]]:
     """Return the atoms of a HOA file in order, a function that resolves formulas, and warnings.
 
-    ``predicates`` maps the names of propositions to predicates of the library. A proposition that
+    ``library`` is a source text that declares predicates. ``predicates`` maps the names of
+    propositions in the file to predicates of the library, such as ``near(exit)``. A proposition that
     is not in ``predicates`` must itself have the name of a predicate. The returned function takes a
     syntax tree. It returns the formula, or None if the tree is not a formula over the library.
 
@@ -54,8 +55,8 @@ def _by_proposition(hoa: Hoa, options: Mapping[str, str]) -> dict[str, str]:
     """Return a dict from the names of propositions in the file to predicates.
 
     ``options`` has the two parts of each ``--atom NAME=PREDICATE``, which the command line splits
-    at the first ``=``. A name may contain ``=`` itself. So this function joins the parts, and
-    splits them after the longest name in the file with which the whole text begins.
+    at the first ``=``. But a name may contain ``=`` itself. So this function joins the two parts to
+    one text again, and splits it after the longest name in the file with which it begins.
 
     Raises TltlError, TLT0655, if the text begins with no name in the file.
     """
@@ -84,9 +85,9 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
 def _with_places_in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
     """Return a diagnostic about a proposition, with labels that point into the HOA file.
 
-    Each proposition was parsed as a source of its own. ``starts`` maps the name of that source to
-    the offset at which the proposition begins in the HOA file, which is ``source``. The help of the
-    result mentions ``--atom``. A diagnostic about anything else is returned unchanged.
+    Each proposition was parsed as a separate source. ``starts`` maps the names of these sources to
+    the offsets at which the propositions begin in the HOA file ``source``. The help of the result
+    mentions ``--atom``. A diagnostic about anything else is returned unchanged.
     """
     if not message.labels or message.labels[0].source.name not in starts:
         return message

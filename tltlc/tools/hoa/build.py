@@ -34,9 +34,9 @@ The node stands for a function that maps each letter to a ``Move`` or ``NOT_ALLO
 
 
 class FiniteAnalysis:
-    """The successors (``targets``) and the verdicts of an automaton's states, over finite traces.
+    """An automaton over finite traces: its accepting states, and the successors and verdict of each state.
 
-    ``goals`` are the accepting states.
+    ``goals`` are the accepting states, and ``targets`` maps each state to its successors.
     """
 
     def __init__(self, automaton: Rabin, goals: set[int]) -> None:
@@ -52,7 +52,7 @@ class FiniteAnalysis:
         return self._verdicts[state]
 
     def default_judge(self) -> JudgeMode:
-        """Return the judge for a file that names none.
+        """Return when an episode is judged if the file does not say so: at the ``goal`` or at the ``limit``.
 
         It is ``limit`` if the initial state is accepting, else ``goal``.
         """
@@ -62,10 +62,11 @@ class FiniteAnalysis:
 def automaton_of(
     hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work, state_budget: int
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
-    """Return the automaton of a file, and its analysis. The file must have passed ``check``.
+    """Return the automaton of a file, and its analysis, which gives the verdict of each state.
 
-    ``atoms`` has the names of all atoms, those of the file first. At most one atom of each group
-    of ``exclusive`` holds at a time. The labels of states are their numbers in the file. States
+    The file must have passed :func:`~tltlc.tools.hoa.checks.check`. ``atoms`` has the names of all
+    atoms, those of the file first. ``exclusive`` has groups of indices into ``atoms``; at most one
+    atom of each group holds at a time. The labels of states are their numbers in the file. States
     with the same behaviour are merged.
 
     Over infinite traces, the acceptance condition of each strongly connected component is converted
@@ -84,7 +85,7 @@ def automaton_of(
 
 
 def _moves(hoa: Hoa, transitions: HoaTransitions, state_budget: int) -> _StateFunctions:
-    """Return the moves of all reachable states: a target and acceptance sets for each letter.
+    """Return, for each reachable state, where each letter leads and which acceptance sets it visits.
 
     Raises:
         TltlError: at most ``_MOST_PROBLEMS`` errors, with the codes TLT0651, TLT0653 and TLT0654 as
@@ -167,7 +168,7 @@ def _infinite_automaton(
 
 
 def _piece(letters: Diagrams[Any], component: ComponentAutomaton) -> RabinComponent:
-    """Return a component whose acceptance condition is converted from clauses to Rabin pairs.
+    """Convert the acceptance condition of a component from clauses to Rabin pairs.
 
     If the clauses already have the form of Rabin pairs, they are kept, unless the conversion finds
     fewer pairs.

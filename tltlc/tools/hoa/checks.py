@@ -42,10 +42,11 @@ def is_finite(hoa: Hoa) -> bool:
 
 
 def _check_header(hoa: Hoa, header: Header) -> None:
-    """Check a header that has no field in :class:`~tltlc.tools.hoa.tree.Hoa`.
+    """Check one of ``hoa.headers``, the headers that have no field of their own in ``hoa``.
 
-    Raises TltlError, TLT0652. The format allows a reader to ignore an unknown header only if its
-    name begins in lower case.
+    Raises TltlError, TLT0652, if :data:`FINITE` has a wrong value or contradicts the acceptance, or
+    if the header is unknown and begins with a capital letter. The format allows a reader to ignore
+    an unknown header only if its name begins in lower case.
     """
     if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):

@@ -1,4 +1,4 @@
-"""Convert acceptance conditions to clauses over marks."""
+"""Convert acceptance conditions to disjunctive normal form, with marks on edges in place of sets."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from tltlc.tools.hoa.tree import Hoa, HoaExpression
 
 
 class Acceptance:
-    """An acceptance condition in disjunctive normal form, as ``clauses`` over marks.
+    """An acceptance condition in disjunctive normal form: one of the ``clauses`` must hold.
 
-    Each distinct ``Fin`` or ``Inf`` term of the condition has a number, called its mark. An edge
-    carries the mark of ``Fin(0)`` or ``Inf(0)`` if the edge is in set 0. It carries the mark of
-    ``Fin(!0)`` or ``Inf(!0)`` if it is not in set 0.
+    Each distinct ``Fin`` or ``Inf`` term of the condition has a number, called its mark, and the
+    clauses are about marks. An edge carries the mark of ``Fin(0)`` or ``Inf(0)`` if the edge is in
+    set 0, and the mark of ``Fin(!0)`` or ``Inf(!0)`` if the edge is not in set 0.
 
     Raises :class:`~tltlc.automaton.work.OutOfWork` if the clauses take more work than is left.
     """
@@ -29,7 +29,7 @@ class Acceptance:
         self.clauses = tuple(disjuncts)
 
     def marks(self, sets: Collection[int]) -> Marks:
-        """Return the marks of an edge that is in these acceptance sets."""
+        """Return the marks of an edge that is in exactly these acceptance sets."""
         return frozenset(place for (_, number, outside), place in self._places.items() if (number in sets) != outside)
 
     def _skeleton(self, term: HoaExpression) -> Skeleton:

@@ -44,11 +44,12 @@ class ImportOptions:
     """What :func:`load` needs besides a HOA file and a library.
 
     ``atoms`` maps the names of atomic propositions to predicates. A proposition that is not in
-    ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. Without
-    it, the header ``name:`` gives the name if a spec can have it, else the name of the file does.
-    ``level``, ``limit_steps`` and ``judge`` are those of the spec; if one of them is None, a header
-    of the file may give it. ``resolve`` has the options for the library. The automaton may have at
-    most ``state_budget`` states, and its computation may take at most ``work`` steps.
+    ``atoms`` must itself have the name of a predicate. ``name`` is the name of the spec. If it is
+    None, the name comes from the header ``name:`` if a spec can have this name, else from the name
+    of the file. ``level``, ``limit_steps`` and ``judge`` are those of the spec. If one of them is
+    None, its value comes from a header of the file, if there is one. ``resolve`` has the options for
+    the library. The automaton may have at most ``state_budget`` states, and its computation may take
+    at most ``work`` steps.
     """
 
     atoms: Mapping[str, str] = EMPTY
@@ -62,7 +63,9 @@ class ImportOptions:
 
 
 def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tuple[Fspa, tuple[Diagnostic, ...]]:
-    """Return the automaton of a HOA file, and warnings. Its propositions are predicates of ``library``.
+    """Return the automaton of the HOA file ``source``, and warnings.
+
+    The atomic propositions of the file become predicates of ``library``.
 
     Raises:
         TltlError: the errors of :func:`~tltlc.tools.hoa.reader.read_hoa`,
@@ -131,7 +134,7 @@ def _trivial_warnings(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
 
 
 def _name(hoa: Hoa) -> str:
-    """Return the automaton's name if a spec can have it, else a name made from the file name."""
+    """Return the name of the automaton in the file if a spec can have this name, else one made from the file name."""
     if hoa.name and is_plain_name(hoa.name.text):
         return hoa.name.text
     if hoa.source.kind == "text":
@@ -141,10 +144,10 @@ def _name(hoa: Hoa) -> str:
 
 
 def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
-    """Return a name for each state of the automaton.
+    """Return a name for each state of the automaton: the name in the file, or ``state 3``.
 
-    ``numbers`` has, for each state of the automaton, the number of its state in the file. States
-    that come from the same state of the file are counted: "state 3 (1 of 2)".
+    ``numbers`` has, for each state of the automaton, the number of the state in the file from which
+    it comes. If several come from the same state of the file, they are counted: ``state 3 (1 of 2)``.
     """
     names = {state.number: state.name or f"state {state.number}" for state in hoa.states}
     totals, counts = Counter(numbers), Counter[int]()
@@ -157,9 +160,9 @@ def _state_names(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
 
 
 def _label(name: str, formula_of: FormulaOf) -> Formula | Text:
-    """Return the name of a state as a formula if possible, else as text.
+    """Return the name of a state or automaton as a formula if possible, else as text.
 
-    The name is a formula if it parses as one, and if the formula is printed exactly like the name.
+    The name counts as a formula only if it parses, and if the formula is printed exactly like it.
     """
     expression, _ = parse_formula(SourceFile("<name>", name, "text"))
     formula = None if expression is None else formula_of(expression)
@@ -184,9 +187,10 @@ def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) ->
 def load_hoa(
     path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
 ) -> Fspa:
-    """Return the automaton of a HOA file.
+    """Return the automaton of the HOA file at ``path``.
 
-    Its propositions are predicates of the file ``predicates``.
+    ``predicates`` is the path of a tltl file, and the atomic propositions of the automaton must be
+    predicates of that file.
 
     Raises :class:`TltlError` if one of the files cannot be read, the automaton is not deterministic
     or not complete, or a proposition is not a predicate.

@@ -14,7 +14,7 @@ _LARGEST: Final = 10**9
 
 @record
 class Metadata:
-    """The values of tltlc's headers; None if a header is missing.
+    """The values of the headers that tltlc adds; None for each header that is missing.
 
     The fields mean the same as in :class:`~tltlc.resolve.spec.Spec`, but ``formula`` is a text.
     """

@@ -39,7 +39,9 @@ _ONCE: Final = ("States:", "AP:", "Acceptance:", "name:")
 
 
 def read_hoa(source: SourceFile) -> Hoa:
-    """Return the syntax tree of a HOA file. Numbers of states, sets and atoms are not checked yet.
+    """Return the syntax tree of a HOA file.
+
+    Whether the numbers of states, sets and atoms exist is not checked yet.
 
     Raises:
         TltlError: TLT0651 if the text does not follow the format; TLT0652 if the file has several
@@ -108,9 +110,10 @@ def _without_comments(source: SourceFile) -> str:
 
 
 def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
-    """Return the error for a part of the text that cannot be parsed.
+    """Return the error for a text that cannot be parsed: the whole file, or a label in it.
 
-    ``whole`` is the span of the part. ``at_end`` is what messages call the end of the part.
+    ``whole`` is the span of this text in the file. ``at_end`` is what messages call its end: ``the
+    end of the file``, or the bracket after a label.
     """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)

@@ -1,6 +1,7 @@
 """Combine the edges of a state into one function from letters to moves.
 
-The edges must be deterministic and complete: each letter takes exactly one edge.
+A letter says which atoms hold, and a move is where the letter leads. The edges must be deterministic
+and complete: each letter takes exactly one edge.
 """
 
 from __future__ import annotations
@@ -21,16 +22,17 @@ Move = tuple[int, frozenset[int]]
 """Where a letter leads: the target state, and the acceptance sets of the edge and its source."""
 
 NOT_ALLOWED: Final = None
-"""What takes the place of a ``Move`` for each letter that ``exclusive`` declarations rule out."""
+"""Stands in place of a ``Move`` for letters in which two ``exclusive`` atoms hold."""
 
 
 class HoaTransitions:
-    """Computes what each state of a HOA file does on each letter over ``atoms``.
+    """Computes where each letter leads from each state of a HOA file.
 
-    A :data:`Move` is a target state with the acceptance sets of the edge and of its source. The
-    result for a state is a function from letters to moves. Each function is the number of a node in
-    the decision diagrams ``letters``. ``allowed`` is a function from letters to :data:`YES` or
-    :data:`NO`. The move for a letter that is not allowed is :data:`NOT_ALLOWED`.
+    A letter says which of ``atoms`` hold. A :data:`Move` is a target state with the acceptance sets
+    of the edge and of its source. The result for a state is a function from letters to moves. Each
+    function is the number of a node in the decision diagrams ``letters``. ``allowed`` is a function
+    from letters to :data:`YES` or :data:`NO`. The move for a letter that is not allowed is
+    :data:`NOT_ALLOWED`.
 
     Raises TltlError, TLT0651, if an alias is wrong.
     """
@@ -68,11 +70,11 @@ class HoaTransitions:
         return letters.map_leaves(move, step, {})
 
     def _labelled_edges(self, state: HoaState) -> int:
-        """Return a function from each letter to the edges of the state that it takes.
+        """Return a function from letters to the edges of the state that can be taken on them.
 
-        The edges are given by their positions in ``state.edges``, without duplicates of earlier
-        edges. At most two edges are listed for a letter, because two already show that the state is
-        not deterministic.
+        The edges are given as a tuple of positions in ``state.edges``. An edge that duplicates an
+        earlier edge is left out. There are at most two edges for a letter, because two already show
+        that the state is not deterministic.
         """
         letters = self._letters
         edges = letters.leaf(())
@@ -89,10 +91,11 @@ class HoaTransitions:
         return edges
 
     def _unlabelled_edges(self, state: HoaState) -> int:
-        """Return a function from each letter to the position of its edge, for edges without labels.
+        """Return a function from letters to the position of their edge, for a state without labels.
 
-        The first edge is for the letter without atoms, the next edge for the letter with atom 0 only,
-        and so on: bit i of the position says whether atom i holds.
+        The position is in a tuple of its own. The first edge is for the letter without atoms, the
+        next edge for the letter with atom 0 only, and so on: bit i of the position says whether atom
+        i holds.
 
         Raises TltlError, TLT0651, if the state does not have one edge for each letter.
         """
@@ -120,7 +123,10 @@ class HoaTransitions:
         return self._label_functions[id(label)]
 
     def _function(self, term: HoaExpression) -> int:
-        """Return an expression as a function from letters to :data:`YES` or :data:`NO`."""
+        """Return a Boolean expression as a function from letters to :data:`YES` or :data:`NO`.
+
+        Raises TltlError, TLT0651, if the expression has an unknown alias or atom.
+        """
         letters = self._letters
         yes, no = letters.leaf(YES), letters.leaf(NO)
         match term.op:
@@ -148,7 +154,7 @@ class HoaTransitions:
         return letters.node(term.value, no, yes)
 
     def _is_unlabelled(self, state: HoaState) -> bool:
-        """Whether the edges of a state have no labels, so that their positions give their letters.
+        """Whether neither a state nor its edges have labels, so that the positions of the edges give their letters.
 
         False if there are no edges.
 

@@ -10,10 +10,11 @@ from tltlc.core.source import SourceFile, Span
 
 @record
 class HoaExpression:
-    """A Boolean expression over atoms, or an acceptance condition over sets.
+    """A Boolean expression over atoms, or an acceptance condition over sets of states and edges.
 
-    ``value`` is the index of an ``atom``, the name of an ``alias``, or the number of the set of a
-    ``fin`` or ``inf``. With ``outside``, the condition is about the edges that are not in the set.
+    ``value`` depends on ``op``: it is the index of an ``atom``, the name of an ``alias``, or the
+    number of the set in a ``fin`` or ``inf``. ``outside`` is true for ``Fin(!0)`` and ``Inf(!0)``,
+    which are about the edges that are not in the set.
     """
 
     op: Literal["true", "false", "not", "and", "or", "atom", "alias", "fin", "inf"]
@@ -46,8 +47,8 @@ class Targets:
 class HoaEdge:
     """An edge.
 
-    If ``label`` is None, the label of the state applies. If that is None, too, the position of the
-    edge among the edges of its state gives its letter.
+    If ``label`` is None, the label of its source state applies. If the state has no label either,
+    the position of the edge among the edges of the state says for which letter it is.
     """
 
     label: HoaExpression | None
@@ -97,8 +98,9 @@ class Header:
 class Hoa:
     """A HOA file.
 
-    ``count`` is the number of states that the file declares, or None. ``starts`` are the initial
-    states, ``sets`` is the number of acceptance sets, and ``condition`` the acceptance condition.
+    ``count`` is the number of states that the file declares; None if it declares none. ``starts`` are
+    the initial states, ``sets`` is the number of acceptance sets, and ``condition`` the acceptance
+    condition. ``headers`` are the headers that have no other field here.
     """
 
     source: SourceFile
