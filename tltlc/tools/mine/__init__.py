@@ -1,5 +1,5 @@
-"""Propose specs from recorded traces.
+"""Propose specs that recorded traces satisfy and counterexamples do not.
 
-Bit masks show in which traces each candidate clause holds. The best specs are then compiled, and
-their automata judge all traces again.
+Candidate clauses are tested on all traces at once, with bit masks. The best specs are then compiled,
+and their automata judge all traces again.
 """

@@ -1,9 +1,9 @@
-"""Masks: sets of samples of all traces, each as one integer with a bit for each sample.
+"""Masks: a mask is a set of samples from all traces, as one integer with a bit for each sample.
 
 So a question about every trace, such as "where does `a` hold for the first time?", takes a few
-operations on one integer. The integer has a segment for each trace, and all segments have the same
-number of bytes. The lowest bit of a segment is for the first sample of its trace. The highest bit
-belongs to no sample, so that carries and borrows do not reach the next segment.
+operations on one integer. The integer has a segment of bits for each trace, and all segments have
+the same number of bytes. The lowest bit of a segment is for the first sample of its trace. The
+highest bit belongs to no sample, so that carries and borrows do not reach the next segment.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Bits:
         self.all_traces: TraceMask = self.traces | self.counterexamples
 
     def _mask(self, traces: Sequence[LabelledTrace], name: str | None, backwards: bool) -> SampleMask:
-        """Return the samples at which an atom holds, or all samples for None."""
+        """Return the samples at which the atom ``name`` holds; all samples if ``name`` is None."""
         segments = []
         for trace in traces:
             letters = reversed(trace.letters) if backwards else trace.letters
@@ -72,19 +72,19 @@ class Bits:
     def after_first(self, samples: SampleMask) -> SampleMask:
         """Return the samples of each trace that come after its first sample in ``samples``.
 
-        For a trace without any of ``samples``, these are none.
+        A trace that has none of ``samples`` adds no sample to the result.
         """
         return self.all & ~self._up_to_first(samples)
 
     def before_first(self, samples: SampleMask) -> SampleMask:
         """Return the samples of each trace that come before its first sample in ``samples``.
 
-        For a trace without any of ``samples``, these are all its samples.
+        A trace that has none of ``samples`` adds all of its samples to the result.
         """
         return self.all & self._up_to_first(samples) & ~samples
 
     def within(self, samples: SampleMask, steps: int) -> SampleMask:
-        """Return ``samples``, and the samples that are at most ``steps`` before one of them."""
+        """Return ``samples``, and all samples at most ``steps`` steps before one of them in the same trace."""
         result = samples
         reached = 0
         while reached < steps:
@@ -94,7 +94,7 @@ class Bits:
         return result
 
     def _earlier(self, samples: SampleMask, steps: int) -> SampleMask:
-        """Return the samples that are exactly ``steps`` before one of ``samples``."""
+        """Return the samples exactly ``steps`` steps before one of ``samples`` in the same trace."""
         start = self._start(steps)
         return (samples & ~start) >> steps
 
@@ -106,7 +106,7 @@ class Bits:
     def _up_to_first(self, samples: SampleMask) -> SampleMask:
         """Return the bits of each trace up to and including its first sample in ``samples``.
 
-        For a trace without any of ``samples``, return all of its bits.
+        For a trace that has none of ``samples``, these are all of its bits.
         """
         with_end = samples | self._top
         return with_end ^ (with_end - self._low)

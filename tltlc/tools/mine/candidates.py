@@ -20,8 +20,8 @@ class Candidates:
     """A collection of conjunctions of clauses, each with the set of traces that it accepts.
 
     It keeps only the conjunctions that :func:`~tltlc.tools.mine.conjunctions.best_candidates` would
-    choose: for each set of accepted traces, a few of the shortest. If there are too many such sets,
-    it keeps those with the best scores and sets ``is_cut``.
+    choose: for each set of accepted traces, a few of the shortest. If there are too many of these
+    sets, it keeps only the sets whose conjunctions have the best scores; then ``is_cut`` is true.
     """
 
     def __init__(self, bits: Bits) -> None:
@@ -30,9 +30,10 @@ class Candidates:
         self.is_cut = False
 
     def add(self, conjunction: Conjunction, accepts: TraceMask) -> None:
-        """Add a conjunction, unless a shorter one accepts the same traces.
+        """Add a conjunction, unless a shorter one accepts the same traces; ``accepts`` is the set of these traces.
 
-        At most ``ALIKE`` conjunctions are kept for one set of traces.
+        Longer conjunctions that accept the same traces are removed. At most ``ALIKE`` conjunctions
+        are kept for one set of traces.
         """
         alike = self._groups.setdefault(accepts, [])
         if alike:
@@ -64,7 +65,8 @@ class Candidates:
 def sort_key(conjunction: Conjunction) -> tuple[int, int, list[int], list[tuple[int, str]]]:
     """Return a sort key for conjunctions that accept the same traces.
 
-    The shortest comes first. Conjunctions of equal length are sorted by templates and texts.
+    Conjunctions with fewer atoms come first, then those with fewer clauses. The rest is sorted by
+    the templates and the texts of the clauses.
     """
     ranks, texts = [clause.rank for clause in conjunction], [(clause.atoms, clause.text) for clause in conjunction]
     return (count_atoms(conjunction), len(conjunction), ranks, texts)

@@ -12,10 +12,10 @@ from tltlc.tools.mine.bits import Bits, TraceMask
 class MinedClause:
     """A clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
-    A bound counts as one atom, and so does each `and` or `or` in a step of `reach`. ``not_vacuous``
-    has the traces that test the clause, for example those in which the trigger of a response
-    occurs. ``kind`` is the name of its template, and ``rank`` the index of the template in
-    :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
+    In ``atoms``, a bound counts as one atom, and so does each `and` or `or` in a step of `reach`.
+    ``not_vacuous`` has the traces that put the clause to the test: for `always (a implies eventually
+    b)`, those in which a occurs. ``kind`` is the name of the clause's template, and ``rank`` is the
+    index of the template in :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
     """
 
     kind: str
@@ -31,7 +31,7 @@ Conjunction = tuple[MinedClause, ...]
 
 
 def count_atoms(clauses: Sequence[MinedClause]) -> int:
-    """Return the total number of atoms in the clauses."""
+    """Return the sum of ``atoms`` over the clauses: the length of a conjunction."""
     return sum(clause.atoms for clause in clauses)
 
 

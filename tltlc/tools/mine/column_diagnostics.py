@@ -1,6 +1,7 @@
-"""Diagnostics about columns that cannot be atoms because of a few traces.
+"""Diagnostics about columns that are atoms in most traces, but not in all.
 
-These traces lack the column, or have values other than `true` and `false` in it.
+In the other traces, the column is missing, or has values other than `true` and `false`. So the
+column is left out.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ _MOST_NAMED: Final = 4
 
 @record
 class TraceColumns:
-    """The columns of a trace. ``trace`` is its name.
+    """The columns of the trace with the name ``trace``.
 
-    ``columns`` maps the name of each column to True if all its values are `true`, `false`, 1 or 0.
+    ``columns`` maps the name of each column to whether all its values are `true`, `false`, 1 or 0.
     """
 
     trace: str
@@ -29,10 +30,10 @@ class TraceColumns:
 
 @record
 class OddColumns:
-    """Columns (``names``) that cannot be atoms because of the same ``traces``.
+    """Columns (``names``) that cannot be atoms because of the same few ``traces``.
 
-    These traces lack the columns. If ``has_other_values`` is true, they have the columns, but with
-    values other than `true` and `false`.
+    If ``has_other_values`` is false, these traces lack the columns. If it is true, they have the
+    columns, but with values other than `true` and `false`.
     """
 
     traces: tuple[str, ...]
@@ -40,7 +41,7 @@ class OddColumns:
     names: tuple[str, ...]
 
     def warning(self) -> Diagnostic:
-        """Return the warning TLT0763. It names the first of the traces."""
+        """Return the warning TLT0763, which names some of the columns and the first of the traces."""
         is_one = len(self.names) == 1
         listed_names, consequence = first_names(self.names), "it is left out" if is_one else "they are left out"
         if not self.has_other_values:
@@ -54,11 +55,13 @@ class OddColumns:
 
 
 def odd_columns(traces: Sequence[TraceColumns], *, truths: bool) -> tuple[OddColumns, ...]:
-    """Return the columns that at least one trace lacks, but at most half of the traces.
+    """Return the columns that would be atoms if a few traces did not differ from the others.
 
-    With ``truths``, also return columns that no trace lacks, but that have values other than `true`
-    and `false` in at least one trace and in fewer than half. Columns that are odd in the same
-    traces, for the same reason, are in one group.
+    - At least one trace lacks the column, and at most half of the traces do.
+    - With ``truths``, also: no trace lacks the column, but at least one trace, and fewer than half,
+      have values other than `true` and `false` in it.
+
+    Columns that are odd for the same reason in the same traces are in one group.
     """
     groups: dict[tuple[tuple[str, ...], bool], list[str]] = {}
     for name in dict.fromkeys(name for trace in traces for name in trace.columns):
@@ -72,9 +75,9 @@ def odd_columns(traces: Sequence[TraceColumns], *, truths: bool) -> tuple[OddCol
 
 
 def first_names(names: Sequence[str]) -> str:
-    """Return the names in words.
+    """Return a list of names as text: ```a`, `b` and `c```.
 
-    If there are more than ``_MOST_NAMED``, list the first ones and say how many more there are.
+    If there are more than ``_MOST_NAMED`` names, list the first ones and say how many more there are.
     """
     if len(names) <= _MOST_NAMED:
         return name_list(names)
@@ -83,6 +86,6 @@ def first_names(names: Sequence[str]) -> str:
 
 
 def _first(traces: Sequence[str]) -> str:
-    """Return the name of the first trace, and how many traces follow, in words."""
+    """Return the name of the first trace, and how many others there are: ```run.csv` and 2 other traces``."""
     remaining = len(traces) - 1
     return f"`{traces[0]}`" + (f" and {remaining} other trace{'s' * (remaining > 1)}" if remaining else "")

@@ -1,4 +1,4 @@
-"""Find the columns of traces. This comes first, because the columns decide which atoms exist."""
+"""Find the columns of traces, which decide the atoms. So this comes before the samples are read."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ _NamedCells = Sequence[tuple[str, bool]]
 def columns(data: bytes, name: str, kind: SourceKind = "file") -> dict[str, bool]:
     """Map each column of a trace, in order, to whether all its values are 0, 1, true or false.
 
-    ``name`` is the name of the trace in messages, and ``kind`` its kind of source. A
-    column that is missing in some sample is left out.
+    ``data`` is the content of the file, ``name`` the name of the trace in messages, and ``kind`` its
+    kind of source. In JSON lines, the columns are the keys of the objects. A column that is missing
+    in some sample is left out.
 
     Raises:
         TltlError: TLT0622, a line cannot be read.
@@ -35,9 +36,10 @@ def columns(data: bytes, name: str, kind: SourceKind = "file") -> dict[str, bool
 
 
 def common_columns(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
-    """Return the columns that all traces have, in the order of the first trace.
+    """Map each column that all traces have to whether all its values in all traces are 0, 1, true or false.
 
-    Each is mapped to whether all its values in all traces are 0, 1, true or false.
+    ``all_columns`` has the result of :func:`columns` for each trace, of which there must be at least
+    one. The columns are in the order of the first trace.
     """
     first, *rest = all_columns
     return {

@@ -19,15 +19,16 @@ from tltlc.tools.mine.vocabulary import MiningVocabulary
 from tltlc.tools.witness.blocks import letter_values
 
 _NAME: Final = "mined_candidate_"
-"""The prefix of the names of candidates, which are compiled but not written to a file."""
+"""The prefix of the names that candidates have while they are compiled."""
 
 
 @record
 class ProposalVerdict:
-    """The verdict of the automaton of a proposal on a trace.
+    """Whether the automaton of a proposal accepts a trace, and if not, where the trace violates it.
 
-    ``violated_at`` is the number of the first sample, counted from 1, after which the verdict is
-    ``violated``; None if the trace does not violate the spec.
+    ``violated_at`` is the number, from 1, of the first sample after which the verdict is
+    ``violated``. It is None if the trace does not violate the spec. Such a trace may still be
+    rejected, because a goal is not reached.
     """
 
     trace: LabelledTrace
@@ -58,10 +59,10 @@ class Proposal:
 def confirm(
     ranked: Sequence[Conjunction], evidence: Evidence, vocabulary: MiningVocabulary, options: CompileOptions, top: int
 ) -> tuple[Proposal, ...]:
-    """Return proposals for the first ``top`` conjunctions of ``ranked`` that differ in meaning.
+    """Compile the first conjunctions of ``ranked``, the best first, and return at most ``top`` proposals.
 
-    A conjunction is left out if an earlier one is equivalent: both accept the same traces, of all
-    possible traces and not only of the evidence.
+    A conjunction is left out if it is equivalent to an earlier one: both accept the same traces. All
+    possible traces count for this, not only those in ``evidence``.
 
     Raises:
         TltlError: an automaton is too large, or the library has an error.
@@ -81,7 +82,7 @@ def confirm(
 
 
 def judge(fspa: Fspa, trace: LabelledTrace) -> ProposalVerdict:
-    """Return the verdict of an automaton on a trace."""
+    """Run an automaton on a trace, and return whether it accepts the trace."""
     run = _Run(fspa)
     violated_at = None
     for number, letter in enumerate(trace.letters, start=1):
@@ -92,7 +93,10 @@ def judge(fspa: Fspa, trace: LabelledTrace) -> ProposalVerdict:
 
 
 class _Run:
-    """A run of an automaton on letters. It caches the next state for each state and letter."""
+    """A run of an automaton, letter by letter. ``state`` is the current state.
+
+    The next state for each state and letter is cached.
+    """
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
@@ -121,7 +125,7 @@ def _compile(batch: Sequence[Conjunction], vocabulary: MiningVocabulary, options
 
 
 def _are_equivalent(first: Fspa, second: Fspa) -> bool:
-    """Whether two automata accept the same traces; False if the comparison takes too long."""
+    """Whether two automata accept the same traces. False as well if the comparison takes too long."""
     if first.spec_size != second.spec_size or len(first.states) != len(second.states):
         return False
     try:

@@ -1,4 +1,7 @@
-"""Conjunctions of the best clauses: each clause rejects counterexamples that the others accept."""
+"""Build conjunctions of the best clauses.
+
+Each clause of a conjunction rejects a counterexample that its other clauses accept.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +24,10 @@ POOL: Final = 60
 def conjunctions(
     clauses: Sequence[MinedClause], bits: Bits, least: int, most_atoms: int
 ) -> Iterator[list[Conjunction]]:
-    """Yield conjunctions of two or more clauses, in portions.
+    """Yield conjunctions of two or more clauses, in portions; the search is a beam search.
 
-    Many portions are empty; they only give the caller a chance to stop the search. At least
-    ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms.
+    At least ``least`` traces satisfy each conjunction, and it has at most ``most_atoms`` atoms. Many
+    portions are empty: they only give the caller a chance to stop the search.
     """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, TraceMask]] = [((addition,), addition.accepts) for addition in pool]
@@ -49,10 +52,10 @@ def conjunctions(
 
 
 def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
-    """Return the first clauses of each template, in order.
+    """Return the first ``POOL`` clauses of each template, in order.
 
-    Without a limit for each template, many good clauses of one template would leave no room for
-    the other templates.
+    With one limit for all templates together, many good clauses of one template would leave no room
+    for the others.
     """
     counts: dict[str, int] = {}
     pool = []
@@ -66,9 +69,10 @@ def _pool(clauses: Sequence[MinedClause]) -> list[MinedClause]:
 def best_candidates(
     candidates: Iterable[tuple[Conjunction, TraceMask]], bits: Bits
 ) -> list[tuple[Conjunction, TraceMask]]:
-    """Return the candidates without superfluous ones, the highest score first.
+    """Sort candidates by score, the highest first, and leave out superfluous ones.
 
-    Of the candidates that accept the same traces, at most ``ALIKE`` of the shortest remain.
+    A candidate is a conjunction with the set of traces that it accepts. Of all candidates that
+    accept the same traces, at most ``ALIKE`` of the shortest remain.
     """
 
     def score_key(item: tuple[Conjunction, TraceMask]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
@@ -90,9 +94,9 @@ def best_candidates(
 
 
 def _all_needed(conjunction: Conjunction, accepts: TraceMask, bits: Bits) -> bool:
-    """Whether each clause rejects a counterexample that the rest of the conjunction accepts.
+    """Whether each clause rejects a counterexample that the other clauses of the conjunction accept.
 
-    ``accepts`` are the traces that the whole conjunction accepts.
+    ``accepts`` is the set of traces that the whole conjunction accepts.
     """
     accepted_by_rest = (
         accepted_traces((clause for clause in conjunction if clause is not dropped), bits) for dropped in conjunction

@@ -1,4 +1,4 @@
-"""Choose the atoms from which clauses about two atoms are built, if there are too many pairs."""
+"""Choose the atoms from which clauses about two atoms are built, if there are too many atoms to try all pairs."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ def _first_samples(trace: LabelledTrace) -> dict[str, float]:
 
 
 def _separation(values: Sequence[float], good: int) -> float:
-    """Return Youden's index, in [0, 1], of the best threshold on the values.
+    """Return how well a threshold can separate the first ``good`` values from the rest, in [0, 1].
 
-    The threshold is to separate the first ``good`` values from the rest. The index is 1 if it
-    separates all of them, and 0 if there are no values but the first ``good``.
+    The result is Youden's index of the best threshold: 1 if it separates all values correctly. The
+    result is 0 if there are no values after the first ``good``.
     """
     bad = len(values) - good
     if not bad:

@@ -8,7 +8,7 @@ from tltlc.core.record import record
 
 @record
 class LabelledTrace:
-    """A trace: its name, and for each sample the atoms that hold. It has at least one sample."""
+    """A trace with at least one sample: its name, and a letter for each sample, the set of the atoms that hold."""
 
     name: str
     letters: tuple[Letter, ...]

@@ -1,4 +1,4 @@
-"""Read trace files into evidence: find the atoms, read where they hold, report contradictions."""
+"""Read trace files: find the atoms, read at which samples they hold, and report contradictions."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ def read_evidence(
     options: ResolveOptions,
     report_progress: ProgressCallback = ignore_progress,
 ) -> tuple[MiningVocabulary, Evidence, tuple[Diagnostic, ...]]:
-    """Return the vocabulary of the traces, the evidence over its atoms, and warnings.
+    """Return the atoms of the traces (the vocabulary), at which samples they hold (the evidence), and warnings.
 
     ``good`` are the traces, and ``bad`` the counterexamples. If ``bad`` is empty, counterexamples are
-    generated.
+    generated. The atoms are predicates of ``library``; without a library, they are the columns that
+    have only the values `true` and `false`.
 
     Raises:
         TltlError: the errors of :func:`~tltlc.tools.mine.vocabulary.vocabulary_of_library`,
@@ -66,9 +67,9 @@ def read_evidence(
 def _contradictions(
     traces: Sequence[LabelledTrace], counterexamples: Sequence[LabelledTrace]
 ) -> tuple[Diagnostic, ...]:
-    """Return a warning if counterexamples have the same letters as traces.
+    """Return a warning, TLT0762, if some counterexample has the same atoms as a trace at every step.
 
-    The warning names the first of these counterexamples.
+    The warning names the first such counterexample. Without one, the result is empty.
     """
     names_by_letters = {trace.letters: trace.name for trace in traces}
     trace_names = {trace.name for trace in traces}

@@ -1,7 +1,8 @@
-"""Generate counterexamples if none were recorded: mutated traces that are most likely wrong.
+"""Generate counterexamples if none were recorded: mutations of traces, most of which should be rejected.
 
-Without counterexamples, all formulas that hold would have the same score. A spec that captures what
-happens in the traces, and in which order, rejects traces that are cut short, reordered or broken.
+Without counterexamples, all formulas that hold in the traces would have the same score. A spec that
+captures what happens in the traces, and in which order, rejects traces that are cut short, reordered
+or broken.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
-"""The least number of rounds; each round mutates one trace in all ways.
+"""The least number of rounds. Each round mutates one trace in each of the ways in :func:`with_mutants`.
 
-If there are fewer traces, each is mutated several times.
+If there are fewer traces than rounds, traces are mutated more than once.
 """
 
 Run = tuple[Letter, int]
@@ -26,7 +27,7 @@ Run = tuple[Letter, int]
 
 
 def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
-    """Return the traces with generated counterexamples, which do not depend on the order of traces.
+    """Return evidence with these traces, and with counterexamples that are generated from them.
 
     A trace is mutated in these ways:
 
@@ -35,6 +36,9 @@ def with_mutants(traces: Sequence[LabelledTrace]) -> Evidence:
     - two of these runs are swapped;
     - an atom that holds at some of its samples never holds;
     - an atom that holds at every sample of all traces fails at one sample.
+
+    A mutation that equals a trace is left out. The counterexamples are the same in every run, and do
+    not depend on the order of ``traces``.
     """
     random = Random(_SEED)
     good = {trace.letters for trace in traces}

@@ -23,9 +23,11 @@ _MEASURE: Final = (
 
 
 def proposals_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits) -> str:
-    """Return a text with the rank, figures, clauses, English sentence and reasons of each proposal.
+    """Describe the proposals in words, the best first.
 
-    It ends with an explanation of the score. Lines are at most 100 columns wide.
+    The text has the rank, the score, the clauses, an English sentence and the reasons for each
+    proposal, and ends with an explanation of the score. Lines are at most 100 columns wide, except
+    for clauses.
     """
     parts = ["\n".join(_proposal(rank, proposal, evidence, bits)) for rank, proposal in enumerate(proposals, start=1)]
     if evidence.made_up:

@@ -18,7 +18,7 @@ def document(
 ) -> dict[str, Any]:
     """Return the proposals and their figures as a JSON object.
 
-    ``complete`` is whether the search ended by itself and no limit left anything out.
+    ``complete`` is true if the search was not stopped, and no limit left anything out.
     """
     return {
         "traces": len(evidence.traces),

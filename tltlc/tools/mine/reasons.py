@@ -11,10 +11,10 @@ from tltlc.tools.mine.evidence import Evidence
 
 
 def reasons(proposal: Proposal, evidence: Evidence, bits: Bits) -> tuple[str, ...]:
-    """Return sentences that give the reasons for a proposal.
+    """Return sentences that give the reasons for a proposal: ``both traces satisfy it``.
 
-    They say how many traces satisfy it, how counterexamples violate it, what each clause adds, and
-    in how many traces a clause is vacuous.
+    They say how many traces satisfy the proposal, how counterexamples violate it, what each clause
+    adds, and in how many traces a clause holds only because nothing triggers it.
     """
     sentences = [_support(proposal)]
     if proposal.counterexamples:
@@ -57,7 +57,7 @@ def _separation(proposal: Proposal, *, made_up: bool) -> str:
 
 
 def _additions(clauses: Conjunction, bits: Bits) -> list[str]:
-    """Return a sentence for each clause: how many counterexamples only this clause rejects.
+    """Return a sentence for each clause that says how many counterexamples no other clause rejects.
 
     The list is empty if the spec has only one clause.
     """
@@ -72,7 +72,7 @@ def _additions(clauses: Conjunction, bits: Bits) -> list[str]:
 
 
 def _vacuous_clauses(clauses: Conjunction, bits: Bits) -> list[str]:
-    """Return a sentence for each clause that is vacuously satisfied in some traces."""
+    """Return a sentence for each clause that some traces satisfy only because nothing triggers it."""
     total = count(bits.traces)
     vacuous = [(clause.text, count(bits.traces & clause.accepts & ~clause.not_vacuous)) for clause in clauses]
     return [f"`{text}`: in {number} of {total} traces nothing triggers it" for text, number in vacuous if number]

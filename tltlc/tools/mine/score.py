@@ -17,12 +17,12 @@ from tltlc.core.record import record
 from tltlc.tools.mine.bits import Bits, TraceMask, count
 
 PRICE: Final = 0.01
-"""What an atom costs: an atom that separates less than one trace in a hundred is not worth it."""
+"""The price of an atom. An atom is worth it if it separates more than one trace in a hundred."""
 
 
 @record
 class Support:
-    """How many of the traces satisfy a proposal, and how many of the counterexamples violate it."""
+    """How many of the ``traces`` a proposal accepts, and how many of the ``counterexamples`` it rejects."""
 
     accepted: int
     traces: int
@@ -40,11 +40,14 @@ class Support:
         return self.rejected / self.counterexamples if self.counterexamples else 0.0
 
     def score(self, atoms: int) -> float:
-        """Return the score, at most 1. It is rounded, so that equal scores compare equal."""
+        """Return the score of a proposal with this many atoms: support + separation - 1, less a price for each atom.
+
+        The score is at most 1. It is rounded, so that rounding errors do not make equal scores differ.
+        """
         return round(self.support + self.separation - 1.0 - PRICE * atoms, 9)
 
 
 def figures(bits: Bits, accepted: TraceMask) -> Support:
-    """Return the support and separation of a proposal that accepts the traces in ``accepted``."""
+    """Return the figures of a proposal. ``accepted`` are the traces and counterexamples that it accepts."""
     traces, counterexamples = count(bits.traces), count(bits.counterexamples)
     return Support(count(accepted & bits.traces), traces, count(bits.counterexamples & ~accepted), counterexamples)

@@ -27,8 +27,8 @@ class MiningOptions:
     """Options of a search.
 
     ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
-    ``max_length`` is the most atoms that a proposal may have. A bound counts as one atom, and so does
-    each `and` or `or` in a step of `reach`.
+    ``max_length`` is the greatest number of atoms in a proposal. A bound counts as one atom, and so
+    does each `and` or `or` in a step of `reach`.
     """
 
     min_support: float = 1.0
@@ -38,7 +38,8 @@ class MiningOptions:
 class SpecSearch:
     """Searches for specs that the traces satisfy and the counterexamples violate.
 
-    ``tried_count`` is the number of candidates that have been tried so far.
+    :meth:`run` searches, and :meth:`ranking` returns what has been found so far. ``tried_count`` is
+    the number of candidates that have been tried so far, and ``bits`` has the evidence as bit masks.
     """
 
     def __init__(self, evidence: Evidence, options: MiningOptions) -> None:
@@ -81,8 +82,8 @@ class SpecSearch:
     def ranking(self) -> list[Conjunction]:
         """Return the conjunctions found so far, the best first.
 
-        A conjunction is left out if no counterexample violates it. It is also left out if a
-        conjunction of at most the same length has a better score.
+        A conjunction is left out if no counterexample violates it, or if another conjunction has a
+        better score and no more atoms.
         """
         ranked: list[tuple[float, int, Conjunction]] = []
         for conjunction, accepts in best_candidates(self._candidates.items(), self.bits):
@@ -94,7 +95,7 @@ class SpecSearch:
         return [conjunction for _, _, conjunction in ranked]
 
     def omissions(self) -> list[str]:
-        """Return a sentence for each limit on work that left something out."""
+        """Return a sentence for each limit on work because of which the search left something out."""
         sentences = []
         if self._unrelated:
             others = "1 other is" if self._unrelated == 1 else f"{self._unrelated:,} others are"
@@ -106,16 +107,16 @@ class SpecSearch:
         return sentences
 
     def _chosen_events(self) -> list[str]:
-        """Return the atoms to build pairs and sequences from, and store how many are left out."""
+        """Return the atoms from which pairs and sequences are built, and store how many are left out."""
         events = self._events()
         chosen = best_events(self._evidence, events)
         self._unrelated = len(events) - len(chosen)
         return chosen
 
     def _events(self) -> list[str]:
-        """Return the atoms for which too few traces satisfy `keep ATOM`.
+        """Return the atoms without those that hold at every sample of enough traces.
 
-        For the other atoms, this clause says all that is needed.
+        For the atoms that are left out, the clause `keep ATOM` says all that is needed.
         """
         bits = self.bits
         return [

@@ -1,9 +1,10 @@
 """Sequences of goals, `reach a then b then c`, found by a beam search.
 
-The search inserts every step at every position of the best sequences of each length. A trace meets
-a sequence if it has an `a`, a `b` after the first `a`, and a `c` after the first such `b`. So
-testing a sequence on all traces takes a few integer operations for each step. No more traces meet a
-longer sequence than meet the shorter one, so a sequence that too few traces meet is not extended.
+The search inserts every possible step at every position of the best sequences of each length. A
+trace meets the sequence above if it has an `a`, a `b` after the first `a`, and a `c` after the first
+such `b`. So testing a sequence on all traces takes a few integer operations for each step. A trace
+that meets the longer sequence also meets the shorter one. So a sequence that too few traces meet is
+not extended.
 
 A step is an atom, two atoms at once, or a choice between two such steps. Two steps are combined
 into a choice only if too few traces meet the sequence with either one alone. A trace meets a
@@ -28,20 +29,20 @@ from tltlc.tools.witness.blocks import atom_operand
 BEAM: Final = 60
 """The most sequences of one length that are extended.
 
-It applies to the sequences of single atoms, and separately to those with pairs or choices.
+The limit holds for the sequences of single atoms, and again for the sequences with pairs or choices.
 """
 ALIKE: Final = 3
-"""The most sequences that are kept for one set of accepted traces."""
+"""Of the sequences that exactly the same traces meet, at most this many are kept."""
 MOST_PAIRS: Final = 60
-"""The most steps of two atoms. Those that hold in the most traces are used."""
+"""The most pairs of atoms that are used as steps. They are the pairs that occur in the most traces."""
 MOST_PARTS: Final = 16
-"""The most steps that are combined into choices at one position."""
+"""The most steps that are combined with each other into choices at one position of a sequence."""
 
 
 class SequenceStep:
     """A step of a sequence: its text, its number of atoms, and the samples at which it holds.
 
-    `and` and `or` each count as one atom.
+    In ``atoms``, each `and` or `or` counts as one atom, too: ``(a and b)`` has 3.
     """
 
     __slots__ = ("atoms", "samples", "text")
@@ -64,11 +65,11 @@ def sequences(
     allow_repeats: bool = True,
     work: Work | None = None,
 ) -> Iterator[list[MinedClause]]:
-    """Yield the sequences of these atoms that at least ``least`` traces meet, in portions.
+    """Yield sequences of these atoms that at least ``least`` traces meet, as `reach` clauses, in portions.
 
-    A sequence has at most ``most_atoms`` atoms; `and` and `or` each count as one. With
-    ``allow_repeats``, a step may occur more than once. ``work`` counts the steps of all sequences
-    that are tried, and the search ends when it is used up.
+    A sequence has at most ``most_atoms`` atoms, where each `and` or `or` counts as one. With
+    ``allow_repeats``, a step may occur more than once. ``work`` limits the search: each sequence
+    that is tried costs as much as it has steps.
     """
     possible_steps = yield from _possible_steps(bits, atoms)
     search = _Sequences(
@@ -106,9 +107,13 @@ class _Sequences:
         self._choices: dict[tuple[SequenceStep, SequenceStep], SequenceStep] = {}
 
     def extensions(self, sequence: StepSequence, known: Mapping[StepSequence, TraceMask]) -> Iterator[AcceptedSequence]:
-        """Yield the sequences with one more step, at any position, that enough traces meet.
+        """Insert one more step into a sequence, at any position; yield the results that enough traces meet.
 
-        Sequences in ``known`` are left out.
+        Each comes with the set of traces that meet it. Sequences in ``known``, which maps sequences
+        to these sets, are left out.
+
+        Raises:
+            OutOfWork: the limit on work is reached.
         """
         bits = self._bits
         room = self._most_atoms - sum(step.atoms for step in sequence)
@@ -138,7 +143,11 @@ class _Sequences:
     def _supported_choices(
         self, steps: Sequence[tuple[SequenceStep, TraceMask]], room: int
     ) -> Iterator[tuple[SequenceStep, TraceMask]]:
-        """Yield each choice of two steps that enough traces meet, with the set of these traces."""
+        """Combine two of ``steps`` to a choice such as ``(a or b)``; yield the choices that enough traces meet.
+
+        Each of ``steps``, and each choice, comes with the set of traces that meet the sequence with
+        it. ``room`` is the number of atoms that the sequence may still add.
+        """
         bits = self._bits
 
         def sort_key(item: tuple[SequenceStep, TraceMask]) -> tuple[float, int, str]:
@@ -163,10 +172,10 @@ class _Sequences:
 
 
 def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedClause], None, list[SequenceStep]]:
-    """Yield empty lists while searching, then return steps of one atom and of two atoms.
+    """Return the steps of one atom and of two atoms, after yielding some empty lists.
 
-    The yields let the caller stop the search. A step of one atom is left out if no trace meets it.
-    Of the steps of two atoms, only those that the most traces meet are returned.
+    The empty lists let the caller stop the search. A step is left out if it holds in no trace. Of
+    the steps of two atoms, only the ``MOST_PAIRS`` that hold in the most traces are returned.
     """
     single = [SequenceStep(atom_operand(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.traces_with(step.samples) & bits.traces]
@@ -185,14 +194,17 @@ def _possible_steps(bits: Bits, atoms: Collection[str]) -> Generator[list[MinedC
 
 
 def _accepted(steps: StepSequence, remaining: SampleMask, bits: Bits) -> TraceMask:
-    """Return the traces that meet the steps in order at samples in ``remaining``."""
+    """Return the traces that meet the steps, one after the other, at samples in ``remaining``."""
     for step in steps[:-1]:
         remaining = bits.after_first(step.samples & remaining)
     return bits.traces_with(steps[-1].samples & remaining)
 
 
 def _beam(extensions: Mapping[StepSequence, TraceMask], bits: Bits) -> list[StepSequence]:
-    """Return the sequences with the best scores; of those that the same traces meet, only a few."""
+    """Return the sequences with the best scores, to be extended next.
+
+    Of the sequences that exactly the same traces meet, at most ``ALIKE`` are returned.
+    """
 
     def sort_key(item: AcceptedSequence) -> tuple[float, list[str]]:
         sequence, accepts = item

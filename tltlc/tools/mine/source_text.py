@@ -24,10 +24,10 @@ _LONGEST_TEST: Final = 40
 def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, preamble: str) -> str:
     """Return a source text with the proposals as specs `mined_1`, `mined_2` and so on.
 
-    ``preamble`` declares the names that they use. Each spec is documented by its English sentence
-    and its reasons. Its tests are the simplest trace that it accepts and the simplest
-    counterexample that it rejects. It has no limit: the traces show how long play took, not how long
-    it may take.
+    ``preamble`` declares the names that the specs use. The documentation of each spec says in English
+    what it asks for, and why it is proposed. Two tests follow it: the simplest trace that the spec
+    accepts, and the simplest counterexample that it rejects. The specs have no limit, because traces
+    show how long play took, not how long it may take.
     """
     origin = _count_text(len(evidence.traces), "trace")
     if evidence.counterexamples:
@@ -47,8 +47,9 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
 def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, import_text: str | None) -> str:
     """Return the declarations of the names that the proposals use, and no others.
 
-    Without a library, the columns are declared as signals. With a library, return ``import_text``,
-    the line that imports it, and declare the entities that the library does not declare.
+    Without a library, ``import_text`` is None, and the columns are declared as signals. With a
+    library, ``import_text`` is the line that imports it. Then the result is this line, and a
+    declaration of the entities that the library lacks.
     """
     used = {atom.name: atom for proposal in proposals for atom in proposal.fspa.atoms}
     if import_text is None:

@@ -1,6 +1,6 @@
-"""The templates with one or two atoms: keep, avoid, invariants, until, precedence, response.
+"""Build candidate clauses with one or two atoms from templates: keep, avoid, invariants, until, precedence, response.
 
-:mod:`tltlc.tools.mine.sequences` has the sequences.
+:mod:`tltlc.tools.mine.sequences` builds sequences of goals.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ _LEAST_TRIGGERED: Final = 3
 
 
 def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield, in small portions, the instances of the templates that some trace satisfies.
+    """Yield, in small portions, the clauses of the templates that some trace satisfies.
 
-    An instance is left out if no trace satisfies it other than vacuously.
+    A clause is left out if all traces that satisfy it do so only because nothing triggers it.
 
-    ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two
-    atoms use only the atoms in ``events``: for an atom that always holds, `keep` is enough. The
-    work grows with the square of the number of events, so the caller limits them. The bound of a
-    response is the smallest with which at least ``least`` traces satisfy it.
+    ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two atoms
+    use only the atoms in ``events``. The work grows with the square of their number, so the caller
+    must limit it. A response with a bound, such as `eventually within 3 steps b`, has the smallest
+    bound with which at least ``least`` traces satisfy it.
     """
     for portion in _candidates(forwards, backwards, events, least):
         # A clause that is only vacuously true says nothing about the game.
@@ -38,12 +38,12 @@ def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int
 
 
 def template_clause(kind: str, text: str, atoms: int, accepts: int, not_vacuous: int) -> MinedClause:
-    """Return a clause of the template ``kind``; the arguments are fields of :class:`MinedClause`."""
+    """Return a clause of the template ``kind``. The other arguments are fields of :class:`MinedClause`."""
     return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, not_vacuous)
 
 
 def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
-    """Yield all instances of the templates, in portions of one atom or one pair of atoms."""
+    """Yield all clauses of the templates, in portions: those of one atom, or of one pair of atoms."""
     occurs = {name: forwards.traces_with(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
         every = forwards.all_traces
@@ -83,10 +83,11 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
 
 
 def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield ``require always (FIRST implies eventually within N steps SECOND)``, or nothing.
+    """Yield the clause ``require always (FIRST implies eventually within N steps SECOND)``, or nothing.
 
     N is the smallest bound with which at least ``least`` traces satisfy the clause. Nothing is
-    yielded if N is 0 or above ``LONGEST_BOUND``, or if ``first`` holds in too few traces.
+    yielded if N is 0 or above ``LONGEST_BOUND``, or if fewer than ``_LEAST_TRIGGERED`` traces have a
+    sample at which ``first`` holds.
     """
     a_samples, b_samples = bits.holds[first], bits.holds[second]
 

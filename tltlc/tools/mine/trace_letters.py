@@ -17,16 +17,16 @@ from tltlc.tools.mine.evidence import LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary
 
 ProgressCallback = Callable[[str], None]
-"""A callback for progress messages, called at least once for each file."""
+"""A callback that gets a progress message in words, at least once for each file."""
 
 
 def ignore_progress(_: str) -> None:
-    """Ignore a progress message."""
+    """Do nothing: the default for callers that show no progress."""
 
 
 @record
 class TraceFile:
-    """A trace file: its name in messages, its bytes and its kind of source."""
+    """A trace file: its name in messages, its content and its kind of source."""
 
     name: str
     data: bytes
@@ -59,7 +59,7 @@ def read_traces(
 
 
 def check_trace(file: TraceFile) -> None:
-    """Read a trace only for the errors that :func:`tltlc.monitor.traces.read_trace` raises."""
+    """Raise the errors that :func:`tltlc.monitor.traces.read_trace` raises for a trace; return nothing."""
     for _ in _rows(file, ()):
         pass
 
@@ -71,7 +71,10 @@ def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = No
 def _letters(
     file: TraceFile, samples: Samples, vocabulary: MiningVocabulary, cache: dict[tuple[float, ...], Letter]
 ) -> Iterator[Letter]:
-    """Yield the letters of a trace. ``cache`` maps samples to letters, because samples often repeat."""
+    """Yield, for each sample of a trace, its letter: the set of the atoms that hold.
+
+    ``cache`` maps samples to letters, because samples often repeat. It is filled.
+    """
     reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]
     for number, row in enumerate(_rows(file, reader.signals, reader.clock_s), start=1):

@@ -1,6 +1,8 @@
-"""Find the atoms of traces: predicates of a library over entities, or columns of true and false.
+"""Find the atoms of traces.
 
-In both cases, the atoms are declared in a source text, which the compiler resolves.
+With a library, the atoms are its predicates, applied to entities. Without one, they are the columns
+that have only the values true and false. In both cases, a source text declares the atoms, and the
+compiler resolves them.
 """
 
 from __future__ import annotations
@@ -39,9 +41,10 @@ class MiningVocabulary:
 
     ``library`` is a source text that declares all names. ``entities`` are the entities of the
     traces that the user's library does not declare. ``reader`` is an automaton that accepts every
-    trace and has all atoms, so that their values can be computed with it. ``left_out`` lists the
-    columns that are not atoms. Those in ``misnamed`` are true or false, but have names that no atom
-    can have. ``unread_count`` is the number of possible atoms that the limits on work left out.
+    trace and has all atoms; it serves only to compute their values. ``left_out`` lists the columns
+    that are not atoms. ``misnamed`` has those of them whose values are true and false, but whose
+    names no atom can have. ``unread_count`` is the number of possible atoms that are left out
+    because there are too many.
     """
 
     library: SourceFile
@@ -53,10 +56,10 @@ class MiningVocabulary:
 
 
 def vocabulary_of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> MiningVocabulary:
-    """Return the vocabulary of the atoms that can be computed from the columns of the traces.
+    """Return the atoms of a library that can be computed from the columns of the traces.
 
-    These are predicates and `bool` signals of the library with entities as arguments, and the atoms
-    of the library's own specs.
+    Candidates are the predicates and `bool` signals of the library, with entities as arguments, and
+    the atoms of the library's own specs.
 
     Raises:
         TltlError: the library has an error; TLT0760, none of its atoms can be read.
@@ -101,9 +104,9 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
 
 
 def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
-    """Return the vocabulary whose atoms are the columns of true and false.
+    """Return a vocabulary in which each column of true and false is an atom.
 
-    ``columns`` maps each name to whether all values of the column are true or false.
+    ``columns`` maps the name of each column to whether all its values are true or false.
 
     Raises:
         TltlError: TLT0760, no column is an atom.
@@ -123,9 +126,9 @@ def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
-    """Return the error TLT0760 if no column is an atom.
+    """Return the error TLT0760: no column is an atom.
 
-    ``truths`` lists the columns of true and false, whose names no atom can have.
+    ``truths`` lists the columns of true and false. Their names are names that no atom can have.
     """
     title = "no column of the traces contains only `true` and `false`"
     help_ = "use `--predicates LIB` to compute atoms from columns of numbers"
@@ -140,10 +143,11 @@ def _no_columns(truths: Sequence[str]) -> TltlError:
 
 
 def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Return the columns such as `near(s1)`, each with its signal and its entities.
+    """Map each column such as `near(s1)` to its signal and its entities: ``("near", ("s1",))``.
 
-    ``taken`` has the names of other signals. A column is left out if its declarations would conflict
-    with one of these signals, or with the declarations of an earlier column.
+    Other columns are left out. ``taken`` has the names of other signals. A column is also left out if
+    the declarations of its signal and its entities would conflict with one of these signals, or with
+    the declarations for an earlier column.
     """
     lengths: dict[str, int] = {}
     entities: set[str] = set()
@@ -165,7 +169,7 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
 
 
 def _reader(vocabulary: Vocabulary) -> Fspa:
-    """Return an automaton that accepts every trace and has these atoms."""
+    """Return an automaton that accepts every trace and has the atoms of ``vocabulary``."""
     spec = replace(
         spec_from_formula(TRUE, "reader"),
         atoms=vocabulary.atoms,
@@ -184,7 +188,7 @@ def _module(source: SourceFile) -> Module:
 
 
 def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
-    """Return the library with further entities at its end, where they shift no other text."""
+    """Return the library with a declaration of further entities at its end, so that no other text moves."""
     return library.with_text(f"{library.text}\nentity {', '.join(names)}\n") if names else library
 
 
@@ -192,10 +196,10 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 
 
 def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
-    """Return the texts of all predicates and `bool` signals with entities as arguments.
+    """Apply all predicates and `bool` signals to all entities; return texts such as `near(s1)`.
 
-    They are texts because mined specs are written as source text: an atom counts only if its text
-    has a meaning there. Also returns how many of them the limit left out.
+    Also return how many texts are left out: there are at most ``_MOST_INSTANCES`` for each predicate.
+    The result has texts, not atoms, because mined specs are written as source text.
     """
     instances: list[str] = []
     left_out = 0
@@ -210,9 +214,9 @@ def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[
 
 
 def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
-    """Yield the predicates and `bool` signals whose required parameters are all entities.
+    """Yield the names of the predicates and `bool` signals whose required parameters are all entities.
 
-    Each comes with its number of required parameters.
+    Each comes with the number of its required parameters, which are those without a default.
     """
     for binding in bindings:
         declaration = binding.declaration
@@ -228,9 +232,9 @@ def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
 def _readable_atoms(
     module: Module, texts: Sequence[str], columns: Collection[str], options: ResolveOptions | None = None
 ) -> Vocabulary | None:
-    """Return the atoms among ``texts``, such as `near(s1)`, that read no signals but columns.
+    """Return the atoms among ``texts``, such as `near(s1)`, whose signals are all columns of the traces.
 
-    Returns None if no atom is left.
+    Return None if there is no such atom.
     """
     resolved = _resolve(module, texts, options)
     if resolved is None:
@@ -248,7 +252,7 @@ def _readable_atoms(
 def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
     """Return the atoms that ``texts`` such as `near(s1)` denote in a module.
 
-    Texts that are not atoms or that repeat an atom are left out. None if no text is left.
+    Texts that are not atoms, or that repeat an atom, are left out. Return None if no text is left.
     """
     sources = [SourceFile("<atom>", text, "text") for text in texts]
     while sources:
@@ -267,15 +271,15 @@ def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | Non
 
 
 def _entities(columns: Iterable[str]) -> list[str]:
-    """Return the names in the brackets of columns such as `distance(s1)`, in order."""
+    """Return the names in the brackets of columns such as `distance(s1)`, in order, without duplicates."""
     calls = [call for call in map(_call, columns) if call is not None]
     return list(dict.fromkeys(name for _, arguments in calls for name in arguments))
 
 
 def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
-    """Return the name and the arguments of `near(s1)`, or None if a column does not have that form.
+    """Split a column such as `near(s1)` into its name and arguments: ``("near", ("s1",))``.
 
-    Blanks around brackets and commas do not matter.
+    Return None for a column without arguments. Blanks around brackets and commas do not matter.
     """
     name, arguments = split_name(_BRACKETS_AND_COMMAS.sub(r"\1", column.strip()).replace(",", ", "))
     return (name, arguments) if arguments and all(map(_WORD.match, (name, *arguments))) else None
@@ -284,8 +288,9 @@ def _call(column: str) -> tuple[str, tuple[str, ...]] | None:
 def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]]) -> str:
     """Return declarations of `bool` signals, and of the entities that are their arguments.
 
-    Each of ``signals`` is a name with its arguments. Signals with the same name have the same number
-    of arguments, and are declared together.
+    Each of ``signals`` is a name with its arguments. For ``("near", ("s1",))``, the result is
+    ``entity s1`` and ``signal near(x1: entity): bool``. Signals with the same name must have the same
+    number of arguments, and get one declaration.
     """
     lengths: dict[str, int] = {}
     entities: dict[str, None] = {}
@@ -297,11 +302,11 @@ def signal_declarations(signals: Iterable[tuple[str, tuple[str, ...]]]) -> str:
 
 
 def _parameters(count: int) -> str:
-    """Return the parameters of a signal with this many entities."""
+    """Return the parameters of a signal that takes ``count`` entities: ``(x1: entity)`` for 1, nothing for 0."""
     return f"({', '.join(f'x{number}: entity' for number in range(1, count + 1))})" if count else ""
 
 
 def _declares(text: str) -> bool:
-    """Whether a text parses as a declaration. It does not if a name in it is a keyword."""
+    """Whether a text such as ``signal seen: bool`` parses. It does not if a name in it is a keyword."""
     errors = Session(SourceFile("<column>", text, "text")).syntax_errors
     return not any(error.severity == "error" for error in errors)
