@@ -1,7 +1,7 @@
 """Find the ``exclusive`` groups that a comparison of two specs assumes.
 
-A group is a set of atoms of which at most one holds at a time. The assumed groups can include
-groups that the specs themselves do not use.
+A group is a set of atoms of which at most one holds at a time. A comparison may also assume groups
+that the files declare, but the specs themselves do not use.
 """
 
 from __future__ import annotations
@@ -23,16 +23,18 @@ The entry of an artefact is None, because an artefact stores only the groups tha
 
 
 def assumed_groups(a: Fspa, b: Fspa, declared: DeclaredGroups, *, by_name: bool = False) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups that the comparison of two specs assumes besides the specs' own groups.
+    """Return the groups that the comparison of specs A and B assumes, besides the groups of the specs themselves.
 
-    - If both files are sources, these are the groups that both declare: the common atoms, at least
-      two, of a group of A and a group of B.
-    - If one file is an artefact, these are the groups of the source that the artefact does not
+    Each file is a source text or an artefact (a compiled spec).
+
+    - If both are sources, these are the groups that both declare: the atoms that a group of A and a
+      group of B have in common, if there are at least two.
+    - If one is an artefact, these are the groups of the source that the artefact does not
       contradict. An artefact stores a group only if its spec uses at least two of the atoms.
-    - If both files are artefacts, there are none.
+    - If both are artefacts, there are none.
 
-    Atoms with one name but different meanings in A and B are in no group. With ``by_name``, atoms
-    with the same name always count as the same atom.
+    A group has no atoms whose name has different meanings in A and B. With ``by_name``, atoms with
+    the same name always count as the same atom.
     """
     in_a, in_b = declared
     if in_a is not None and in_b is not None:
@@ -53,9 +55,10 @@ def _common_groups(in_a: Vocabulary, in_b: Vocabulary, different: tuple[str, ...
 
 
 def _uncontradicted_groups(artefact: Fspa, source: Vocabulary, *, by_name: bool) -> Iterator[tuple[str, ...]]:
-    """Yield the groups of a source that an artefact does not contradict.
+    """Yield the groups of a source that an artefact does not contradict, as names of atoms.
 
-    An artefact contradicts a group if it uses two atoms of the group, but does not have the group.
+    An artefact contradicts a group if it uses two atoms of the group, but does not declare them
+    exclusive.
     """
     atoms = {atom.name for atom in artefact.atoms}
     own_groups = [set(group) for group in _groups(artefact)]

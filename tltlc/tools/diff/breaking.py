@@ -30,10 +30,12 @@ _SHARED: Final = ("clock", "signal", "param", "atom")
 
 @record
 class Version:
-    """One version of a file: its automata, and the places of its specs by name, for messages.
+    """One version of a file.
 
-    A file without specs is a library. Then ``exports`` has the declarations that importers can use,
-    and ``rules`` the clock and the exclusive atoms that it sets for all specs that import it.
+    ``automata`` are those of its specs. ``places`` has the place of each spec in the text, by name,
+    for messages. A file without specs is a library. Then ``exports`` has the declarations that other
+    files can import, and ``rules`` has the clock and the exclusive atoms that the library sets for
+    all specs that import it.
     """
 
     automata: tuple[Fspa, ...] = ()
@@ -56,8 +58,8 @@ class MovedSpec:
 class FileChange:
     """Two versions of the file at a path.
 
-    The version of a file that does not exist is empty. ``moves`` lists the specs that moved into the
-    file; these specs are in neither version.
+    If the file did not exist, or no longer exists, that version is empty. ``moves`` lists the specs
+    that moved into the file or were renamed; ``old`` and ``new`` do not have these specs.
     """
 
     path: str
@@ -67,10 +69,11 @@ class FileChange:
 
 
 def version_changes(change: FileChange, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]:
-    """Return the changes of the specs, and then those of their clock, signals, params and atoms.
+    """Return a diagnostic for each change of a file.
 
-    If neither version has specs, return the changes of the library: its declarations, clock and
-    exclusive atoms.
+    The changes of its specs come first, then those of their clock, signals, params and atoms. If
+    neither version has specs, the file is a library. Then the changes are those of its declarations,
+    its clock and its exclusive atoms.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if a comparison takes more
     than ``work`` steps.
@@ -119,8 +122,8 @@ def _spec_changes(old: Version, new: Version, moves: Sequence[MovedSpec], work: 
 def compare_versions(old: Fspa, new: Fspa, work: int) -> SpecPair:
     """Return the differences between two versions of a spec.
 
-    Atoms with the same name count as the same atom; if their values differ, this is reported as a
-    difference of its own. A renamed atom or signal is reported as a difference under its old name.
+    Atoms with the same name count as the same atom. If their values differ, this is a separate
+    difference. A renamed atom or signal is a difference under its old name.
 
     Error (:class:`~tltlc.diagnostics.diagnostic.TltlError`): TLT0750 if the comparison takes more
     than ``work`` steps.
@@ -139,9 +142,10 @@ def compare_versions(old: Fspa, new: Fspa, work: int) -> SpecPair:
 
 
 def _shared_changes(pairs: Sequence[SpecPair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
-    """Yield the changes of the clock, signals, params and atoms.
+    """Yield a diagnostic for each change of the clock, a signal, a param or an atom.
 
-    A change that affects several specs is yielded once.
+    A change that affects several specs is yielded once. ``places`` has the place of each spec, by
+    name.
     """
     users: dict[Difference, list[SpecPair]] = {}
     for pair in pairs:

@@ -49,10 +49,10 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
 
 
 def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
-    """Return as JSON how the two specs differ in the finite beginnings of traces that they allow.
+    """Return as JSON which finite beginnings of traces only one of the two specs allows.
 
-    This is ``beginnings`` of :class:`~tltlc.tools.diff.relation.Comparison`. Returns None unless one
-    spec is over finite traces and the other over infinite traces.
+    This is the field ``beginnings`` of :class:`~tltlc.tools.diff.relation.Comparison`. Return None
+    unless one spec is over finite traces and the other over infinite traces.
     """
     comparison = pair.comparison.beginnings
     if comparison is None:
@@ -65,9 +65,9 @@ def _beginnings(pair: SpecPair) -> dict[str, Any] | None:
 
 
 def _trace(pair: SpecPair, trace: Trace | None) -> Any:
-    """Return a finite trace as a list of samples, and an infinite trace as its prefix and cycle.
+    """Return a trace as JSON: a finite trace as a list of samples, an infinite trace as its prefix and cycle.
 
-    Each sample is the list of the atoms that hold.
+    Each sample is the list of the atoms that hold. Return None if ``trace`` is None.
     """
     if trace is None:
         return None

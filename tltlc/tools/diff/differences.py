@@ -1,4 +1,7 @@
-"""Compare the settings, atoms, signals and params of two automata. Their traces are compared elsewhere."""
+"""Compare the settings, atoms, signals and params of two automata A and B.
+
+:mod:`tltlc.tools.diff.relation` compares the traces that they accept.
+"""
 
 from __future__ import annotations
 
@@ -27,13 +30,13 @@ _SETTINGS: Final[tuple[tuple[DifferenceKind, str], ...]] = (
 
 @record
 class Difference:
-    """One difference between two automata: its kind, and the values in A and B.
+    """One difference between two automata A and B.
 
     ``name`` is the name of the signal, param or atom, and empty for other kinds. ``a`` and ``b`` are
-    the values in A and B: the record of a signal, param or atom, the names of the atoms of an
-    ``exclusive`` group, or the value of a setting of the spec. A value is None if A or B lacks it.
-    ``value_difference`` is a sample at which an atom has different values in A and B; None for other
-    kinds.
+    what differs, in A and in B: the record of a signal, param or atom, the names of the atoms of an
+    ``exclusive`` group, or the value of a setting. One of them is None if A or B lacks it. For an
+    atom, ``value_difference`` is a sample at which its values in A and B differ, or None if no such
+    sample was found. For other kinds, it is None.
     """
 
     kind: DifferenceKind
@@ -44,9 +47,10 @@ class Difference:
 
 
 def differences(a: Fspa, b: Fspa) -> tuple[Difference, ...]:
-    """Return all differences between A and B other than the traces that they accept.
+    """Return all differences between two automata other than the traces that they accept.
 
-    The differences are in how a spec is judged, what its atoms mean, and what it reads.
+    They are about the settings of the spec, such as its limit, about ``exclusive`` groups, about the
+    values of atoms with the same name, and about signals and params.
     """
     return tuple(_differences(a, b))
 
@@ -54,8 +58,7 @@ def differences(a: Fspa, b: Fspa) -> tuple[Difference, ...]:
 def new_param_names(all_differences: Iterable[Difference]) -> dict[str, str]:
     """Return the new names of renamed params, by their old names.
 
-    A removed param counts as renamed if an added param differs from it only in name and
-    documentation.
+    A removed param counts as renamed if an added param has the same type, range and value.
     """
     params = [difference for difference in all_differences if difference.kind == "param"]
     names: dict[str, str] = {}
@@ -70,7 +73,10 @@ def new_param_names(all_differences: Iterable[Difference]) -> dict[str, str]:
 def declared_differences(
     kind: DifferenceKind, in_a: Iterable[Signal] | Iterable[Param], in_b: Iterable[Signal] | Iterable[Param]
 ) -> Iterator[Difference]:
-    """Yield the differences between two lists of signals or params, matched by name."""
+    """Yield the differences between two lists of signals or params, which are matched by name.
+
+    Two of them differ if their types, ranges or values do, or if one of them is missing.
+    """
     by_name_a, by_name_b = ({value.name: value for value in values} for values in (in_a, in_b))
     for name in dict.fromkeys((*by_name_a, *by_name_b)):
         a, b = by_name_a.get(name), by_name_b.get(name)
@@ -81,7 +87,7 @@ def declared_differences(
 def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> bool:
     """Whether ``exclusive`` groups imply that no two of these atoms hold together.
 
-    They do if every two of the atoms share a group.
+    They do if each pair of the atoms is inside one of the groups.
     """
     atoms = frozenset(names)
     common_groups: dict[str, set[frozenset[str]]] = {name: set() for name in atoms}

@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 
 
 def export_changes(old: Mapping[str, Export], new: Mapping[str, Export]) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each changed or removed declaration.
+    """Yield a diagnostic for each declaration of a library that was changed or removed.
 
-    Those about params come first, and then the others in the order of the old declarations. New
-    declarations break nothing, so they are left out. A changed declaration is reported only for the
-    file that declares it, not for files that import it.
+    ``old`` and ``new`` map names to declarations. Diagnostics about params come first, then the
+    others in the order of the old declarations. New declarations break nothing, so they are left
+    out. A changed declaration is reported only for the file that contains it, not for the files that
+    import it.
     """
     yield from _param_changes(old, new)
     for name, before in old.items():
@@ -78,7 +79,10 @@ def _declaration_changes(before: Export, after: Export) -> Iterator[Diagnostic]:
 
 
 def _why_uses_break(before: Export, after: Export) -> str | None:
-    """Return why some use of a declaration is no longer valid; None if all uses are still valid."""
+    """Say why some uses of a declaration are no longer valid: ```close` must now be given, too``.
+
+    Return None if all uses are still valid.
+    """
     if before.kind == "signal":
         count, now = len(before.parameters), len(after.parameters)
         return None if count == now else f"{now} instead of {count}"

@@ -11,7 +11,10 @@ ExpressionLeaf = Union[Const, SignalValue, ParamValue]
 
 
 def replace_leaves(node: Expression, change: Callable[[ExpressionLeaf], ExpressionLeaf]) -> Expression:
-    """Return the expression with ``change`` applied to each leaf."""
+    """Return the expression in which ``change(leaf)`` takes the place of each leaf.
+
+    The leaves are signals, params and constants, including those in conditions.
+    """
     match node:
         case Op():
             return Op(node.op, tuple(replace_leaves(arg, change) for arg in node.args))

@@ -23,11 +23,11 @@ _MOST: Final = 30
 
 
 class FeasibleLetters:
-    """Searches for samples of signals at which letters over the atoms of two automata occur.
+    """Checks whether a game can produce a trace: whether signals can have values that give each of its letters.
 
-    ``impossible`` collects the conjunctions of literals for which the search found no sample.
-    ``never`` has conjunctions that are known to be impossible; they are not added to
-    ``impossible``.
+    The letters are over the atoms of both automata. ``impossible`` collects the conjunctions of
+    literals for which the search found no sample. ``never`` has conjunctions that are already known
+    to be impossible; they are not added to ``impossible``.
     """
 
     def __init__(self, a: Fspa, b: Fspa, never: tuple[NamedLiterals, ...]) -> None:
@@ -38,11 +38,11 @@ class FeasibleLetters:
         self._finder = None if self._joint is None else SampleFinder(self._joint)
 
     def feasible_trace(self, trace: Trace | None, accepting: Fspa, rejecting: Fspa, work: int) -> Trace | None:
-        """Return ``trace``, which only ``accepting`` accepts, if samples are found for it.
+        """Return a trace that only ``accepting`` accepts, and for which samples are found.
 
-        Otherwise return another trace that only ``accepting`` accepts and that has samples, or None
-        if there is none. After ``_MOST`` impossible traces, the result may be a trace without
-        samples.
+        ``trace`` is a trace that only ``accepting`` accepts, or None; if samples are found for it,
+        the result is ``trace`` itself. Return None if no such trace is left. After ``_MOST``
+        impossible traces, the search gives up: then no samples may exist for the result.
 
         Raises:
             OutOfWork: a search takes more than ``work`` steps.
@@ -54,7 +54,7 @@ class FeasibleLetters:
         return trace
 
     def _obstacles(self, trace: Trace) -> list[NamedLiterals]:
-        """Return the conjunctions of literals in the letters of a trace for which no sample is found."""
+        """Return the conjunctions of literals that occur in a trace, but for which no sample is found."""
         if self._joint is None or self._finder is None:
             return []
         obstacles = []
@@ -66,10 +66,11 @@ class FeasibleLetters:
 
 
 def _joint_automaton(a: Fspa, b: Fspa) -> Fspa | None:
-    """Return an automaton with the atoms of both automata, in which params are replaced by values.
+    """Return an automaton that has the atoms of both automata, with params replaced by their values.
 
-    Only its atoms, signals and exclusive groups are meaningful. Returns None if the ranges of a
-    signal in A and B do not overlap, or if the signal is a bool in only one of them.
+    Only its atoms, signals and exclusive groups are meaningful. The range of a signal that both read
+    is the intersection of its two ranges. Return None if this intersection is empty, or if the
+    signal is a bool in only one automaton.
     """
     signals = {signal.name: signal for signal in a.signals}
     for signal in b.signals:
@@ -105,7 +106,7 @@ def _common_signal(one: Signal, other: Signal) -> Signal | None:
 
 
 def _atoms_without_params(fspa: Fspa) -> list[Atom]:
-    """Return the atoms with params replaced by their values."""
+    """Return the atoms of an automaton, with params replaced by their values."""
     values = {param.name: param.value for param in fspa.params}
 
     def bind(leaf: ExpressionLeaf) -> ExpressionLeaf:

@@ -17,7 +17,7 @@ from tltlc.tools.diff.traces import step_lines
 from tltlc.tools.diff.values import ValueDifference
 
 BREAKING: Final[Severity] = "error"
-"""The severity of a change after which a host must change, or recordings are judged differently."""
+"""The severity of a change after which a host (a game) must change, or recordings are judged differently."""
 CHANGED: Final[Severity] = "warning"
 """The severity of a change of numbers or behaviour after which everything still works."""
 COMPATIBLE: Final[Severity] = "note"
@@ -36,14 +36,20 @@ def spec_removed(name: str, place: Label) -> Diagnostic:
 
 
 def spec_renamed(old: str, new: str, before: Label, place: Label) -> Diagnostic:
-    """Return TLT0752: a spec has another name, but accepts the same traces."""
+    """Return TLT0752: a spec has another name, but accepts the same traces.
+
+    ``before`` is its old place, and ``place`` its new one.
+    """
     title = f"the spec `{old}` is now called `{new}`"
     help_ = "keep the old name, or tell the people who load its artefact or monitor by that name"
     return Diagnostic("TLT0752", title, (place, at_old_place(before)), help_, BREAKING)
 
 
 def spec_moved(name: str, before: Label, place: Label) -> Diagnostic:
-    """Return TLT0752: a spec moved to another file."""
+    """Return TLT0752: a spec moved to another file.
+
+    ``before`` is its old place, and ``place`` its new one.
+    """
     title = f"the spec `{name}` has moved here from `{before.source.name}`"
     help_ = "name this file instead of the old one; artefacts and monitors keep their names"
     return Diagnostic("TLT0752", title, (place,), help_, COMPATIBLE)
@@ -107,7 +113,10 @@ def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
 
 
 def param_changed(difference: Difference, new_name: str | None, place: Label) -> Diagnostic:
-    """Return TLT0756: a param was removed, added or renamed, or has another value or range."""
+    """Return TLT0756: a param was removed, added or renamed, or has another type, value or range.
+
+    ``new_name`` is the new name of a renamed param, and else None.
+    """
     name, old, new = difference.name, difference.a, difference.b
     if not isinstance(old, Param):
         assert isinstance(new, Param)
@@ -138,9 +147,9 @@ def param_changed(difference: Difference, new_name: str | None, place: Label) ->
 
 
 def atom_changed(difference: Difference, others: Sequence[str], pair: SpecPair, place: Label) -> Diagnostic:
-    """Return TLT0757: an atom now has other values than before, and so have ``others``.
+    """Return TLT0757: an atom now has other values than before.
 
-    These are the names of atoms of the same predicate.
+    ``others`` are the names of further atoms of the same predicate that have other values, too.
     """
     assert difference.value_difference is not None
     types: dict[str, ValueType] = {signal_.name: signal_.type for signal_ in (*pair.a.signals, *pair.b.signals)}
@@ -166,7 +175,8 @@ def values_changed(
 ) -> Diagnostic:
     """Return TLT0757: an atom or predicate now has other values than before; the help shows a sample.
 
-    ``subject`` is its name in the title. ``others`` are the names of atoms that changed alike.
+    ``subject`` is the name of the atom or predicate in the title. ``others`` are the names of further
+    atoms that changed in the same way. ``types`` has the types of the signals in the sample.
     """
     title = f"the {kind} {subject} is {'judged' if difference.differs_in_truth else 'scaled'} differently"
     if others:
@@ -183,14 +193,17 @@ def values_changed(
 
 
 def clock_changed(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
-    """Return TLT0758: ``specs`` have another clock."""
+    """Return TLT0758: the specs with the names ``specs`` have another clock."""
     are, were = ("is", "it was") if len(specs) == 1 else ("are", "they were")
     title = f"{name_list(specs)} {are} now sampled {_clock(difference.b)} ({were} sampled {_clock(difference.a)})"
     return Diagnostic("TLT0758", title, (place,), _clock_help(difference.b), BREAKING)
 
 
 def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
-    """Return TLT0758: the clock that a library declares has changed."""
+    """Return TLT0758: the clock that a library declares has changed.
+
+    ``old`` and ``new`` are its period in seconds; None without a clock.
+    """
     title = f"specs are now sampled {_clock(new)} (they were sampled {_clock(old)})"
     return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
 
@@ -210,7 +223,7 @@ def exclusive_removed(names: Sequence[str], place: Label) -> Diagnostic:
 
 
 def setting_changed(name: str, difference: Difference, place: Label) -> Diagnostic:
-    """Return TLT0758: a spec has another limit, judge, level, semantics, or ``exclusive`` group."""
+    """Return TLT0758: the spec ``name`` has another limit, judge, level, semantics or ``exclusive`` group."""
     old, new = difference.a, difference.b
     severity, help_ = BREAKING, _ANEW
     match difference.kind:
@@ -242,7 +255,10 @@ def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
 
 
 def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
-    """Return TLT0759: uses of a library declaration are no longer valid; ``why`` is the reason."""
+    """Return TLT0759: uses of a declaration in a library are no longer valid.
+
+    ``why`` is the reason in words: ```close` must now be given, too``.
+    """
     help_ = "add new parameters after the others, with a default, and leave the others as they are"
     if kind == "signal":
         help_ = "leave its parameters as they are, and declare another signal for the new ones"
@@ -257,15 +273,15 @@ def signals_added(predicate: str, signals: Sequence[str], place: Label) -> Diagn
 
 
 def at_old_place(place: Label) -> Label:
-    """Return the label with the message that something removed was here."""
+    """Return the label with the message ``it was here``, for something that was removed."""
     return replace(place, message="it was here")
 
 
 def _trace(pair: SpecPair, trace: Trace) -> str:
-    """Return the text of a trace, to be written after a colon.
+    """Return a trace as text that can follow a colon.
 
-    A trace of one line stays on the line of the colon. A longer trace has lines of its own, at most
-    ``_MOST_LINES``.
+    A trace of one line stays on the line of the colon. A longer trace has lines of its own, of which
+    there are at most ``_MOST_LINES``.
     """
     lines = step_lines(pair, trace.prefix)
     if trace.cycle:

@@ -52,7 +52,7 @@ class _File:
 
 
 def repository(folder: Path) -> Path | None:
-    """Return the top folder of the repository that contains a folder; None if none contains it.
+    """Return the top folder of the git repository that contains ``folder``; None if there is no repository.
 
     Raises:
         TltlError: TLT0751, git cannot use the repository, or it has no working files;
@@ -79,7 +79,10 @@ def repository(folder: Path) -> Path | None:
 
 
 def commit(repository: Path, revision: str) -> str:
-    """Return the hash of the commit that a revision names. Error TLT0751 if it names no commit."""
+    """Return the hash of the commit that a revision such as ``HEAD~2`` names.
+
+    Error TLT0751 if there is no such commit.
+    """
     name = _object_hash(repository, f"{revision}^{{commit}}")
     if name is not None:
         return name
@@ -89,19 +92,20 @@ def commit(repository: Path, revision: str) -> str:
 
 
 def _object_hash(repository: Path, name: str) -> str | None:
-    """Return the hash of the object that a name refers to in git.
+    """Return the hash of the git object with this name; None if no object has it.
 
-    Returns None if it refers to no object, like ``^HEAD``.
+    A name such as ``^HEAD``, which does not stand for a single object, also gives None.
     """
     output = (_run(repository, "rev-parse", "--verify", "--quiet", "--end-of-options", name) or b"").decode().strip()
     return output if _HASH.fullmatch(output) else None
 
 
 def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[[str], bool], folder: Path) -> None:
-    """Write the wanted files of a commit into a folder, each at its path.
+    """Write files of a commit into a folder, each at its path in the repository.
 
-    A link to a file becomes a copy of that file as it was in the commit. Links to folders, to
-    nothing and out of the repository are left out. Messages call the commit ``revision``.
+    ``is_wanted`` says, given the path of a file, whether to write it. A link to a file becomes a copy
+    of that file as it was in the commit. Links to folders, to nothing and out of the repository are
+    left out. Messages call the commit ``revision``.
 
     Raises:
         TltlError: TLT0751, git does not provide the files; TLT0764, they exceed
@@ -124,9 +128,9 @@ def _archive(revision: str) -> Archive:
 
 
 def _wanted_files(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
-    """Return the files for which ``is_wanted`` is true.
+    """Return the files for whose path ``is_wanted`` returns true.
 
-    Errors: TLT0764 if there are too many of them, TLT0009 if a path is too long.
+    Errors: TLT0764 if there are too many of these files, TLT0009 if the path of one is too long.
     """
     wanted: list[_File] = []
     for file in files:
@@ -177,9 +181,9 @@ def _parse_listing(stream: IO[bytes], revision: str) -> Iterator[_File]:
 
 
 def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
-    """Yield the parts of a stream that end with NUL, without the NUL, in linear time.
+    """Yield the lines of a stream in which each line ends with NUL, without the NUL.
 
-    Error TLT0764 if there are too many, or if they are too long.
+    Takes linear time. Error TLT0764 if there are too many lines, or if they are too long.
     """
     size = count = 0
     partial: list[bytes] = []
@@ -201,9 +205,9 @@ def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
 
 
 def _link_targets(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
-    """Yield, for each link, the git hash of the file that it leads to, with the path of the link.
+    """Yield a file for each link: with the path of the link, and the content of the file to which it leads.
 
-    Links that lead to no file in the commit are left out.
+    ``links`` are the paths of the links. Links that lead to no file in the commit are left out.
     """
     # git reads one path from each line, so a path with a line feed cannot be looked up.
     paths = [path for path in links if "\n" not in path]
@@ -239,7 +243,7 @@ def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> Non
 
 
 def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterator[tuple[str, bytes]]:
-    """Yield the path and content of each file. Error TLT0751 if git does not provide a content."""
+    """Yield the path and the content of each file. Error TLT0751 if git does not have a content."""
     request = "".join(f"{file.name}\n" for file in files).encode()
     contents = _run(repository, "cat-file", "--batch", stdin=request) or b""
     start = 0
@@ -289,15 +293,16 @@ def _git(folder: Path, *arguments: str, stdin: bytes = b"") -> CompletedProcess[
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment variables for a git process, which then writes English messages.
+    """Return the environment variables for a git process.
 
-    They are those of this process, except those by which a git hook refers to its repository.
+    They are those of this process, with two changes: git writes messages in English, and the
+    variables with which a git hook names its own repository are left out.
     """
     return {name: value for name, value in os.environ.items() if name not in _HOOK_VARIABLES} | {"LC_ALL": "C"}
 
 
 def _revision_help(repository: Path, revision: str) -> str:
-    """Return what to try instead of a revision that does not exist, for example a similar name."""
+    """Return a help text for a revision that does not exist: ``did you mean `main`?``."""
     from difflib import get_close_matches
 
     output = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""
@@ -316,5 +321,5 @@ def _too_large(revision: str, contents: str) -> TltlError:
 
 
 def no_version(title: str, help_: str) -> TltlError:
-    """Return the error TLT0751 with this title and help: no earlier version is available."""
+    """Return the error TLT0751, that no earlier version is available, with this title and help."""
     return TltlError([Diagnostic("TLT0751", title, help=help_)])

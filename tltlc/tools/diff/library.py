@@ -26,10 +26,12 @@ class Export:
     """A name that a library exports, with its declaration.
 
     ``is_own`` is true if the library itself declares the name, and false if it imports the name.
-    ``value`` is set for a signal or param. ``meanings`` is set for a predicate that the library
-    declares itself. It maps each number of arguments that a use can have to the meaning of a sample
-    use. There, the argument for a parameter ``p`` is a signal or an entity that is itself called
-    ``p``. Parameters without an argument have their defaults.
+    ``value`` is set for a signal or param.
+
+    ``meanings`` is set for a predicate that the library itself declares. It maps each number of
+    arguments that a use may have to the meaning of an example. For ``near(target: entity, close:
+    length = 1 m)``, the examples are ``near(target)`` for 1 and ``near(target, close)`` for 2. Their
+    arguments are an entity called ``target`` and a signal called ``close``.
     """
 
     name: str
@@ -42,9 +44,10 @@ class Export:
 
 
 def exports(env: Env) -> Mapping[str, Export]:
-    """Return the names that a module exports: its own and those that it imports.
+    """Return the exports of a module by name: what it declares, and what it imports.
 
-    ``env`` is the environment of the module, which must have resolved without errors.
+    ``env`` is the environment in which the names of the module are resolved. The module must have
+    been resolved without errors.
     """
     return {name: _export(name, binding, env) for name, binding in env.scope.names.items()}
 
@@ -75,10 +78,11 @@ def _meanings(binding: Binding, parameters: tuple[Parameter, ...], env: Env) -> 
 
 
 def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env) -> Meaning | None:
-    """Return what a predicate means if only ``open_parameters`` get arguments, the rest defaults.
+    """Return what an example use of a predicate means, for instance ``near(target, close)``.
 
-    The argument for a parameter ``p`` is a signal or an entity that is itself called ``p``. The
-    result is None if this use does not resolve, for example because of unknown units.
+    Only ``open_parameters`` get arguments; the other parameters have their defaults. Each argument is
+    an entity or a signal with the name of its parameter. Return None if this use does not resolve,
+    for example because of unknown units.
     """
     local: dict[str, ResolvedValue] = {}
     signals: list[Signal] = []

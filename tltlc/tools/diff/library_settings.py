@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Rules:
     """The ``exclusive`` groups and the clock that a file declares, with their places in its text.
 
-    Groups and clocks of imported files do not count. ``exclusive`` maps the sorted names of each
-    group to its place. ``clock_s`` is the period of the clock in seconds, and ``clock`` its place;
+    Groups and clocks of imported files do not count. ``exclusive`` maps each group, as sorted names of
+    atoms, to its place. ``clock_s`` is the period of the clock in seconds, and ``clock`` its place;
     both are None if the file declares no clock.
     """
 
@@ -32,9 +32,9 @@ class Rules:
 
 
 def rules(module: Module, program: ResolvedFile) -> Rules:
-    """Return the ``exclusive`` groups and the clock of a module.
+    """Return the ``exclusive`` groups and the clock that a module declares.
 
-    ``program`` is the module as resolved, which must have had no errors.
+    ``program`` is the result of resolving the module, which must have had no errors.
     """
     own = [declaration for declaration in module.declarations if isinstance(declaration, ExclusiveDecl)]
     vocabulary = program.exclusive
@@ -49,7 +49,7 @@ def rules(module: Module, program: ResolvedFile) -> Rules:
 
 
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each change of groups or clock between two versions of a file."""
+    """Yield a diagnostic for each change of an ``exclusive`` group or the clock between two versions of a file."""
     for names, place in old.exclusive.items():
         if not are_exclusive(names, new.exclusive):
             yield findings.exclusive_removed(names, place)

@@ -29,8 +29,8 @@ class SpecPair:
     def is_same(self) -> bool:
         """Whether both specs accept the same traces and nothing else differs.
 
-        It is false if traces were left out of the comparison because of
-        :attr:`Comparison.impossible`.
+        False as well if the comparison left out traces for which no samples were found
+        (:attr:`Comparison.impossible`).
         """
         comparison = self.comparison
         return comparison.relation == "equivalent" and not comparison.impossible and not self.differences
@@ -65,13 +65,13 @@ def diff_files(
     work: int = DEFAULT_WORK,
     declared: DeclaredGroups = (None, None),
 ) -> FileDiff:
-    """Return the differences between the specs of A and of B.
+    """Return the differences between the specs of two files A and B.
 
-    ``a`` and ``b`` are the name of each file and its automata. Specs are paired by name, in the order
-    of A. With ``one_each``, only the first spec of A is compared with the first of B, whatever their
-    names. With ``by_name``, atoms with the same name always count as the same atom. ``declared`` has
-    for each file the ``exclusive`` groups that it declares, also those that no spec uses; None for
-    an artefact, that is, a compiled spec.
+    ``a`` and ``b`` are pairs: the name of the file, and its automata. Specs are paired by name, in the
+    order of A. With ``one_each``, only the first spec of A is compared with the first spec of B,
+    whatever their names. With ``by_name``, atoms with the same name always count as the same atom.
+    ``declared`` has the ``exclusive`` groups that each file declares, even if no spec uses them; its
+    entry is None for an artefact, that is, a compiled spec.
 
     Errors: TLT0750 if a comparison takes more than ``work`` steps.
     """
@@ -104,9 +104,9 @@ def diff(
     *,
     feasible_only: bool = False,
 ) -> SpecPair:
-    """Return the differences between two specs.
+    """Compare two specs: the traces that they accept, and everything else.
 
-    The arguments are those of :func:`~tltlc.tools.diff.relation.compare`.
+    The arguments mean the same as in :func:`~tltlc.tools.diff.relation.compare`.
 
     Errors: TLT0750 if the comparison takes more than ``work`` steps.
     """

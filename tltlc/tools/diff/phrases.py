@@ -18,9 +18,9 @@ _KINDS: Final = {"finite": "traces that end", "infinite": "traces that never end
 
 
 def unrelated_reason(a: Fspa, b: Fspa) -> str:
-    """Return why a spec over finite traces and one over infinite traces cannot be compared.
+    """Return sentences that say why two specs cannot be compared, and what to do.
 
-    The text also says what to do.
+    One of the specs must be over finite traces, and the other over infinite traces.
     """
     return (
         f"A and B are of different kinds: A is about {_KINDS[a.semantics]}, B is about {_KINDS[b.semantics]}, so no "
@@ -29,7 +29,7 @@ def unrelated_reason(a: Fspa, b: Fspa) -> str:
 
 
 def name_list(names: Sequence[str], most: int = 4) -> str:
-    """Return names in backquotes, with ``and`` before the last one.
+    """Return a list of names as text: ```a`, `b` and `c```. There must be at least one name.
 
     If there are more than ``most`` names, the text has the first ones, and says how many are left
     out.
@@ -43,7 +43,7 @@ def name_list(names: Sequence[str], most: int = 4) -> str:
 def type_text(value: Union[Signal, Param]) -> str:
     """Return the type and range of a signal or param: ``length in [0 m, inf]``.
 
-    Without a range, or for a bool, it is the type alone.
+    Without a range, and for a bool, return the type alone.
     """
     if value.type == "bool" or (value.low is None and value.high is None):
         return value.type
@@ -51,7 +51,7 @@ def type_text(value: Union[Signal, Param]) -> str:
 
 
 def ends_text(value: Union[Signal, Param]) -> str:
-    """Return the range of a signal or param: ``[0 m, inf]``."""
+    """Return the range of a signal or param as text: ``[0 m, inf]``."""
     low, high = -inf if value.low is None else value.low, inf if value.high is None else value.high
     return range_text(low, high, units.TYPES[value.type])
 
@@ -74,10 +74,10 @@ def sample_text(sample: Iterable[tuple[str, float]], types: Mapping[str, ValueTy
 
 
 def values_text(difference: ValueDifference) -> tuple[str, str]:
-    """Return the values of an atom in A and in B at a sample, in words.
+    """Return two texts: the value of an atom in A and its value in B, at the same sample.
 
-    If the atom holds in only one version, each text also says whether it holds there. If it has no
-    value in a version, the text for this version says why.
+    If the atom holds in only one of A and B, each text also says whether it holds:
+    ``-0.2 (it does not hold)``. If it has no value in A or B, that text says why.
     """
     first, second = (_value(difference, side) for side in (0, 1))
     return first, second

@@ -27,7 +27,7 @@ OF_B: Final = " of B"
 
 @record
 class ExclusiveGroup:
-    """Atoms of which at most one holds at a time, and whether spec A and spec B declare this."""
+    """The names of atoms of which at most one holds at a time, and whether A and B declare this."""
 
     names: tuple[str, ...]
     in_a: bool
@@ -43,14 +43,14 @@ class Comparison:
     ``only_a`` is a trace that only A accepts, and ``only_b`` a trace that only B accepts; over
     finite traces, they are shortest.
 
-    Each name in ``split_names`` is the name of two different atoms, which traces call ``NAME of A``
-    and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample was found.
-    The comparison leaves out traces that contain one of them, and traces in which two atoms of an
-    ``exclusive`` group hold together.
+    For each name in ``split_names``, A and B have different atoms with this name; traces call them
+    ``NAME of A`` and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample
+    was found. The comparison leaves out traces in which one of these occurs, and traces in which two
+    atoms of an ``exclusive`` group hold together.
 
     ``relation`` is None if one spec is over finite traces and the other over infinite traces. Then
-    ``beginnings`` compares two other sets: the finite beginnings of traces after which A can still
-    be met, and those after which B can.
+    ``beginnings`` compares finite beginnings of traces instead: those after which A can still be
+    met with those after which B can still be met.
     """
 
     relation: Relation | None
@@ -71,7 +71,7 @@ def compare(
     work: int = DEFAULT_WORK,
     exclusive: Iterable[ExclusiveGroup] = (),
 ) -> Comparison:
-    """Return how the traces that B accepts relate to the traces that A accepts.
+    """Compare the traces that B accepts with the traces that A accepts.
 
     Traces are over the atoms of both automata. Two atoms with the same name count as one atom if
     their expressions are equal, and if a search finds no sample at which only one of them holds.
@@ -114,7 +114,7 @@ def compare(
 
 
 def _unbroken_prefixes(fspa: Fspa) -> Fspa:
-    """Return an automaton that accepts the finite traces after which ``fspa`` is not violated."""
+    """Return an automaton that accepts the finite traces that do not violate ``fspa`` for good."""
     states = tuple(replace(state, accepting=state.verdict != "violated") for state in fspa.states)
     return replace(fspa, semantics="finite", acceptance=(), states=states)
 
@@ -129,10 +129,10 @@ def _own_groups(a: Fspa, b: Fspa) -> list[ExclusiveGroup]:
 
 
 def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[ExclusiveGroup, ...]:
-    """Return the groups without atoms that are not in ``atoms``.
+    """Remove all atoms but ``atoms`` from the groups, and leave out duplicates and groups of one atom.
 
-    Duplicates, and groups of which at most one atom is left, are left out. A reduced group counts
-    as declared in A if A declares a group that contains it. The same goes for B.
+    A group in the result counts as declared in A if A declares a group that contains it, and as
+    declared in B if B does.
     """
     restricted = [replace(group, names=tuple(name for name in group.names if name in atoms)) for group in groups]
     merged: dict[frozenset[str], ExclusiveGroup] = {}
@@ -147,7 +147,7 @@ def _merge(groups: Iterable[ExclusiveGroup], atoms: set[str]) -> tuple[Exclusive
 def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[ExclusiveGroup]) -> Iterator[NamedLiterals]:
     """Yield each pair of exclusive atoms, as two literals that cannot both be true.
 
-    Groups that are part of a group in ``own_groups`` are left out.
+    Groups inside a group of ``own_groups`` are left out, because the automata already have them.
     """
     own = [set(group.names) for group in own_groups]
     for group in groups:
@@ -156,7 +156,10 @@ def _exclusive_pairs(groups: Iterable[ExclusiveGroup], own_groups: Iterable[Excl
 
 
 def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ...]:
-    """Return the names whose atoms in ``a`` and ``b`` differ in meaning, in the order of ``a``."""
+    """Return the names of atoms that ``a`` and ``b`` both have, but with different meanings, in the order of ``a``.
+
+    Meanings differ if the expressions do, or if the search finds a sample at which only one holds.
+    """
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     names = []
     for index, atom in enumerate(a.atoms):

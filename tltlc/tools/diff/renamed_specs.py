@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
 
 _SOURCE: Final = ".tltl"
-"""The ending of source files. Only their specs can move: a host finds an artefact by its file."""
+"""The ending of source files. Specs can move only between these: a game finds an artefact by its file name."""
 _MOST_RENAMED: Final = 6
 """The most new specs that a removed spec is compared with."""
 
 
 @record
 class _SpecInChange:
-    """A spec that is in only one version of a file.
+    """A spec that is in only one of the two versions of a file: it was removed or added.
 
     ``number`` is the index of the file in the list of changed files.
     """
@@ -31,7 +31,7 @@ class _SpecInChange:
 
 
 def follow_moves(changes: Sequence[FileChange], work: int = DEFAULT_WORK) -> tuple[FileChange, ...]:
-    """Return the changes of files, in which moved and renamed specs are listed as moves.
+    """Find the specs that were moved or renamed, and return the changes with these specs in ``moves``.
 
     A removed spec counts as moved if another file has a new spec of the same name. Otherwise it
     counts as renamed if a new spec accepts the same traces; specs in the same file are tried first.
@@ -61,14 +61,20 @@ def follow_moves(changes: Sequence[FileChange], work: int = DEFAULT_WORK) -> tup
 def _specs_in_one_version(
     version: Version, other_version: Version, number: int, change: FileChange
 ) -> Iterator[_SpecInChange]:
-    """Yield the specs of one version of a source file that the other version does not have."""
+    """Yield the specs of ``version`` that ``other_version`` of the same file does not have.
+
+    Yield nothing for an artefact. ``number`` is the index of ``change``, the change of the file.
+    """
     names = {fspa.name for fspa in other_version.automata}
     if change.path.endswith(_SOURCE):
         yield from (_SpecInChange(number, fspa) for fspa in version.automata if fspa.name not in names)
 
 
 def _candidates(old: _SpecInChange, added: Iterable[_SpecInChange]) -> list[_SpecInChange]:
-    """Return at most ``_MOST_RENAMED`` new specs that an old one may have become, the most likely first."""
+    """Return at most ``_MOST_RENAMED`` of the new specs ``added`` that ``old`` may have become.
+
+    Those with the same name come first, then those in the same file.
+    """
     return sorted(added, key=lambda side: (side.fspa.name != old.fspa.name, side.number != old.number))[:_MOST_RENAMED]
 
 
@@ -89,11 +95,11 @@ def _with_moves(
     matches: Sequence[tuple[_SpecInChange, _SpecInChange]],
     changes: Sequence[FileChange],
 ) -> FileChange:
-    """Return ``change``, the change of one file, with moved specs listed as moves.
+    """Return the change of one file in which moved and renamed specs are listed in ``moves``.
 
-    ``matches`` has the old and the new form of each spec that moved or was renamed, and ``number``
-    is the index of ``change`` in ``changes``. The old form of such a spec is no longer
-    listed as removed from its file. The new form is listed as a move, and no longer as added.
+    ``matches`` has the old and the new form of each such spec, and ``number`` is the index of
+    ``change`` in ``changes``. Old forms are removed from the old version of their file, and new forms
+    from the new version, so that they no longer count as removed and added.
     """
     moved_away = [old.fspa for old, _ in matches if old.number == number]
     moved_here = [(old, new) for old, new in matches if new.number == number]

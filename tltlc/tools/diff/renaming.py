@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
-    """Return the automaton ``new``, in which renamed atoms have their old names.
+    """Return the automaton ``new`` with the old names of renamed atoms.
 
-    A new atom counts as renamed if a removed atom has the same expression, except for the names of
-    params.
+    An added atom counts as renamed if a removed atom has the same expression. The names of params in
+    the expressions may differ.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     removed: dict[object, Atom] = {}
@@ -37,9 +37,9 @@ def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
 def new_signal_names(old: Fspa, new: Fspa) -> dict[str, str]:
     """Return the new names of renamed signals, by their old names.
 
-    A removed signal counts as renamed if an atom that read it now reads a new signal of the same
-    type instead. Apart from the names of renamed signals and of params, the atom's expression must
-    be the same.
+    A removed signal counts as renamed if an atom that read this signal now reads an added signal of
+    the same type in its place. Apart from the names of renamed signals and of params, the expression
+    of the atom must be the same.
     """
     types, new_types = ({signal.name: signal.type for signal in fspa.signals} for fspa in (old, new))
     new_expressions = {atom.name: atom.expression for atom in new.atoms}
@@ -85,13 +85,13 @@ def _rename_signals(expression: Expression, names: Mapping[str, str]) -> Express
 
 
 def _key(expression: Expression, fspa: Fspa) -> object:
-    """Return a key that is equal for expressions that differ only in the names of params."""
+    """Return a key of an expression; expressions that differ only in the names of params have equal keys."""
     params = {param.name: param for param in fspa.params}
     return tuple(_token(node, params) for node in nodes(expression))
 
 
 def _token(node: Expression | Condition, params: Mapping[str, SpecParam]) -> object:
-    """Return a key for a node that includes the number of its children, but not the children."""
+    """Return a key of a single node. It has the number of the node's children, but not the children."""
     if isinstance(node, ParamValue):
         return "param", type_and_range(params[node.name])
     if isinstance(node, (Const, SignalValue)):

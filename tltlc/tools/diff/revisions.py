@@ -26,8 +26,8 @@ _PROJECT: Final = "tltl.toml"
 class EarlierTree:
     """A folder ``root`` with earlier versions of the files below the folder ``current_root``.
 
-    In messages, the name of the file ``root/x`` is ``{prefix}x``. ``is_revision`` is true if the
-    files come from a git revision, and false if ``root`` is a folder that the user named.
+    In messages, the file ``root/x`` is called ``{prefix}x``, such as ``HEAD:x``. ``is_revision`` is
+    true if the files come from a git revision, and false if ``root`` is a folder that the user named.
     """
 
     root: Path
@@ -36,11 +36,11 @@ class EarlierTree:
     is_revision: bool
 
     def old_path(self, path: str) -> str | None:
-        """Return the path of the earlier version of a current file or folder; None if it has none.
+        """Return the path of the earlier version of the file or folder at ``path``; None if there is none.
 
-        In a revision, the earlier version has the same path. In a folder, the path may lack its first parts:
-        ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for ``specs/x.tltl``. Error TLT0001 if permissions hide
-        whether the path exists.
+        In a revision, the earlier version has the same path. In a folder, the first parts of the path
+        may be missing: the earlier version of ``specs/x.tltl`` is ``OLD/specs/x.tltl`` or
+        ``OLD/x.tltl``. Error TLT0001 if permissions hide whether a path exists.
         """
         inside = _relative_path(path, self.current_root)
         if inside is None and self.is_revision:
@@ -53,7 +53,7 @@ class EarlierTree:
         )
 
     def old_libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
-        """Return the earlier versions of library folders; a folder without one stays as it is."""
+        """Return the earlier version of each library folder, or the folder itself if it has no earlier version."""
         return tuple(Path(self.old_path(str(folder)) or folder) for folder in folders)
 
     def contains(self, path: Path) -> bool:
@@ -63,10 +63,11 @@ class EarlierTree:
     def with_current_labels(
         self, diagnostics: Iterable[Diagnostic], path: str, before: str | None
     ) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics, with labels on old versions of files moved to the current ones.
+        """Return the diagnostics with labels that point into current files, not into earlier versions.
 
         Tools that know only the current files need this, such as the review page of a pull request.
-        ``before`` is the path of the old version of ``path``, or None.
+        The message of such a label names the place in the earlier version. ``before`` is the path of
+        the earlier version of ``path``, or None.
         """
         return tuple(
             replace(
@@ -87,7 +88,7 @@ class EarlierTree:
         return Label(SourceFile(now, ""), Span(0, 0), message)
 
     def with_display_names(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the path ``{prefix}x`` for each old file ``root/x``."""
+        """Return the diagnostics, in which each earlier file ``root/x`` is called ``{prefix}x``."""
         root = f"{self.root}{os.sep}"
 
         def text(original: str) -> str:
@@ -113,8 +114,8 @@ def earlier_files(against: str, paths: Collection[str]) -> Iterator[EarlierTree]
     """Yield the tree with the earlier versions of ``paths``.
 
     ``against`` names a folder or, if there is no such folder, a git revision. The revision is looked
-    up in the repository of the first path. Its specs, artefacts and project files are written to a
-    temporary folder, which is removed at the end.
+    up in the repository of the first path. Its specs, artefacts (compiled specs) and project files
+    are written to a temporary folder, which is removed at the end.
 
     Errors: TLT0751 if ``against`` is neither a folder nor a revision, TLT0730 if git is not
     installed, TLT0005 if there is no temporary folder.
@@ -177,9 +178,9 @@ def _path_in_repository(repository: Path, path: str) -> str:
 def _relative_path(path: str, folder: Path) -> Path | None:
     """Return a path relative to a folder, or None if the path is outside the folder.
 
-    A link to a file is kept as it is if the link is in the folder: it may have another target in
-    another revision. Every other link is resolved: one outside the folder, and one to a folder,
-    since links to folders are left out of revisions.
+    Links are resolved first, with one exception: a link to a file is kept if the link itself is in
+    the folder, because it may have another target in another revision. Links to folders are always
+    resolved, because revisions are written without them.
     """
     parent, name = os.path.split(os.path.abspath(path))  # noqa: PTH100
     places = [os.path.realpath(path)]

@@ -34,8 +34,7 @@ _BREAKING: Final[Mapping[Relation | None, str]] = {
 }
 """What to print about the beginnings of traces that violate A or B.
 
-The key is the relation between A and B that ``Comparison.beginnings`` has. It is about the
-beginnings that do not violate them.
+The key is ``Comparison.beginnings.relation``, which compares the beginnings that do not violate them.
 """
 
 _WIDTH: Final = 100
@@ -44,7 +43,7 @@ _MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 """Titles of printed tests, by the spec that accepts the trace."""
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
-"""Titles of printed tests with the beginning of a trace, by the spec that the beginning does not violate."""
+"""Titles of printed tests that show the beginning of a trace, by the spec that it does not violate."""
 
 
 def text(report: FileDiff) -> str:
@@ -160,7 +159,7 @@ def _indent(text: str) -> str:
 
 
 def sentence(difference: Difference, pair: SpecPair) -> str:
-    """Return one difference in words, without a full stop."""
+    """Describe one difference in words, without a full stop: ``limit: 400 steps in A, none in B``."""
     a, b, name = difference.a, difference.b, difference.name
     match difference.kind:
         case "semantics":

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @record
 class TraceDescription:
-    """A trace that only one spec accepts, and the states of A and B after the trace.
+    """A trace that only one of the specs A and B accepts, and the states of A and B after the trace.
 
     For an infinite trace, these are the states after its prefix and one round of its cycle.
     """
@@ -31,7 +31,7 @@ class TraceDescription:
 
 
 def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
-    """Return a trace over the atoms of both specs, with the states that A and B reach on it."""
+    """Return a description of ``trace``, which is over the atoms of both specs."""
     letters = (*trace.prefix, *trace.cycle)
     split_names = pair.comparison.split_names
     a = _state(pair.a, [own_letter(letter, split_names, pair.a, OF_A) for letter in letters])
@@ -41,11 +41,11 @@ def trace_description(pair: SpecPair, trace: Trace) -> TraceDescription:
 
 
 def difference_test(pair: SpecPair, description: TraceDescription, title: str) -> tuple[str, str] | None:
-    """Return the name of the spec that a test is for, ``A`` or ``B``, and its ``test`` block.
+    """Write a ``test`` block that shows how two specs differ on a trace; also return its spec, ``A`` or ``B``.
 
-    The test is for B, or for A if only A has all atoms of the trace. Returns None if no test can show
-    the difference: the verdicts are the same, or an atom of the trace has different meanings in A
-    and B. Of an infinite trace, the test has the prefix and one round of the cycle.
+    The test is for B, or for A if only A has all atoms of the trace. Return None if no test can show
+    the difference, because the verdicts are the same, or because an atom of the trace has different
+    meanings in A and B. For an infinite trace, the test has the prefix and one round of the cycle.
     """
     letters = (*description.trace.prefix, *description.trace.cycle)
     named = frozenset[str]().union(*letters)
@@ -61,8 +61,9 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
 def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
     """Return the atoms of a letter that belong to the spec ``fspa``, as that spec names them.
 
-    For a name in ``split_names``, both specs have an atom, but with different meanings. In the
-    letter, ``suffix`` follows such a name if it means the atom of this spec.
+    The letter is over the atoms of two specs. For each name in ``split_names``, the specs have
+    different atoms with this name. The letter tells them apart by a suffix, and ``suffix`` is the one
+    of this spec: with the suffix `` of A``, the name ``seen of A`` becomes ``seen``.
     """
     own_names = {name + suffix: name for name in split_names}
     common = {atom.name for atom in fspa.atoms} - set(split_names)
@@ -70,7 +71,7 @@ def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: s
 
 
 def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
-    """Return lines that say what holds at each step; equal consecutive steps share a line.
+    """Return lines that say which atoms hold at each step; equal consecutive steps share a line.
 
     Lines look like ``step 1: alive`` and ``steps 2 to 9: nothing holds``.
     """
@@ -91,7 +92,10 @@ def ordered_atoms(pair: SpecPair, letter: Letter) -> list[str]:
 
 
 def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
-    """Return the state after a trace, which must respect the ``exclusive`` groups of the automaton."""
+    """Return the state of an automaton after a trace.
+
+    No two atoms of an ``exclusive`` group of the automaton may hold together in the trace.
+    """
     leaving = tables(fspa).edges
     state = 0
     for letter in letters:

@@ -22,20 +22,17 @@ _ROUNDING: Final = 1e-9
 
 @record
 class Meaning:
-    """What determines the value of an atom: its expression, signals and params.
-
-    ``signals`` and ``params`` are only those that the expression uses.
-    """
+    """What determines the value of an atom: its expression, and the signals and params in the expression."""
 
     expression: Expression
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
 
     def value_at(self, sample: Mapping[str, float]) -> tuple[float | None, str]:
-        """Return the value of the atom at a sample, as a monitor computes it, and an empty text.
+        """Return the value of the atom at a sample, in [-1, 1], as a monitor computes it.
 
-        The value is in [-1, 1]. If the expression has no value at the sample, return None and the
-        reason.
+        The text in the result is then empty. If the expression has no value at the sample, for
+        example because it divides by zero, return None and the reason as a text.
         """
         from tltlc.resolve.range_proof.witness import value_at
 
@@ -52,8 +49,8 @@ class Meaning:
 class ValueDifference:
     """A sample at which two atoms have different values.
 
-    ``sample`` has pairs of a signal and its value. ``values`` are the values of the two atoms. If
-    an atom has no value at the sample, its entry in ``values`` is None, and its entry in
+    ``sample`` has the name and the value of each signal. ``values`` are the values of the two atoms.
+    If an atom has no value at the sample, its entry in ``values`` is None, and its entry in
     ``reasons`` says why.
     """
 
@@ -105,11 +102,11 @@ def value_difference(one: Meaning, other: Meaning) -> ValueDifference | None:
 
 
 def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[float, float]], frozenset[Variable]]:
-    """Return, for each signal, the interval in which to search its values; and the bool signals.
+    """Return the interval in which to search the values of each signal, and the bool signals.
 
-    If both atoms read a signal, the interval is the intersection of the ranges that they declare
-    for it. If these ranges do not overlap, the interval is the gap between them: there, each atom
-    clamps the value to an end of its own range.
+    If both atoms read a signal, the interval is the intersection of the two ranges of the signal. If
+    these ranges do not overlap, it is the gap between them. At values in the gap, each atom clamps
+    the signal to an end of its own range.
     """
     ends: dict[SignalNode, list[tuple[float, float]]] = {}
     numbers: set[SignalNode] = set()
@@ -128,10 +125,10 @@ def _common_box(one: Meaning, other: Meaning) -> tuple[dict[Variable, tuple[floa
 
 
 def _shorten(difference: ValueDifference, one: Meaning, other: Meaning, box: Box) -> ValueDifference:
-    """Return a difference between two atoms at a sample whose values have few digits.
+    """Round the values in the sample of a difference to few digits, and return the difference there.
 
-    It has the same ``differs_in_truth`` as ``difference``. If rounding the values of
-    ``difference.sample`` gives no such sample in ``box``, return ``difference`` itself.
+    The result has the same ``differs_in_truth`` as ``difference``, and its sample is in ``box``. If no
+    rounding gives such a result, return ``difference`` itself.
     """
     for digits in (2, 3, 4, 6):
         sample = {name: float(f"{value:.{digits}g}") for name, value in difference.sample}

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def version_of_specs(program: ResolvedFile, automata: tuple[Fspa, ...]) -> Version:
-    """Return the specs of a compiled source as a :class:`Version`."""
+    """Return a source file with specs as a :class:`Version`.
+
+    ``program`` is the resolved file, and ``automata`` are those of its specs.
+    """
     return Version(automata, {spec.name: Label(spec.source, spec.name_span) for spec in program.specs})
 
 
