@@ -33,7 +33,7 @@ _LONGEST_LABEL = 300
 class BlockWriter:
     """Writes ``test`` blocks of one spec.
 
-    If a trace begins like the previous one, the monitor runs only on the part that differs. So
+    If a trace begins like the previous trace, the monitor runs only on the part that differs. So
     traces with long common beginnings are cheap. ``monitor_steps`` counts the steps of the monitor.
     """
 
@@ -47,9 +47,10 @@ class BlockWriter:
     def block(self, title: str, letters: Iterable[Letter], expects: Expectations) -> str:
         """Return the text of a ``test`` block, with a newline at the end.
 
-        The block has a step for each letter; equal consecutive letters share a step. Names in
-        letters that are not atoms of the spec are left out. The test passes only if the letters
-        respect the ``exclusive`` groups of the spec.
+        The block has a step for each letter, that is, for each set of atoms that hold; equal
+        consecutive letters share a step. Names in letters that are not atoms of the spec are left
+        out. ``expects`` says what to expect after which step. The test passes only if no two atoms of
+        an ``exclusive`` group hold together.
 
         Raises:
             ValueError: there is no letter or no expectation, or the spec has no atoms.
@@ -70,11 +71,12 @@ class BlockWriter:
         return "\n".join([*lines, "}", ""])
 
     def expectations(self, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
-        """Return what the monitor reports after ``steps``, by step number from 1.
+        """Run the monitor on a trace; return what it reports after ``steps``, by step number from 1.
 
-        ``steps`` are the numbers of the steps to report on; for None, only on the last step. The
-        report has the verdict, the progress rounded down to four decimals if it is above 0, and the
-        label of the state unless it is very long.
+        ``steps`` are the numbers of the steps to report on; for None, only the last step. A report is
+        for example ``("pending", "progress >= 0.5", 'state "F a"')``. It has the progress, rounded
+        down to four decimals, only if this is above 0, and the label of the state unless it is very
+        long or hard to quote.
         """
         results = self.results(letters)
         numbers = {len(results)} if steps is None else set(steps)
@@ -97,9 +99,10 @@ class BlockWriter:
         return [step.result for step in self._last_trace]
 
     def _literals(self, letters: Sequence[Letter]) -> list[tuple[str, ...]]:
-        """Return, for each letter, the texts of its step: the atoms that hold.
+        """Return, for each letter, the texts that its step has: the names of the atoms that hold.
 
-        If no atom holds, return one negated atom, because a step must name an atom.
+        If no atom holds, the only text is a negated atom, such as ``not seen``, because a step must
+        name an atom.
         """
         all_literals: list[tuple[str, ...]] = []
         state = 0
@@ -112,9 +115,9 @@ class BlockWriter:
         return all_literals
 
     def _successor_and_literals(self, state: int, letter: Letter) -> tuple[int, tuple[str, ...]]:
-        """Return the state after a letter, and the texts of the letter's step.
+        """Return the state after a letter, and the texts that the step for this letter has.
 
-        If no atom holds, the text is the negation of the first atom that the guard of the edge
+        If no atom holds, the only text is a negated atom: the first one that the guard of the edge
         names.
         """
         spec, atom_values = self._spec, letter_values(self._spec, letter)
@@ -138,7 +141,7 @@ class BlockWriter:
 
 
 class _MonitoredStep(NamedTuple):
-    """A step of the last trace: its letter, and the output and the monitor after this step."""
+    """A step of the last trace: its letter, what the monitor reported, and a copy of the monitor after the step."""
 
     letter: Letter
     result: Step
@@ -146,12 +149,12 @@ class _MonitoredStep(NamedTuple):
 
 
 def test_block(title: str, spec: Fspa, letters: Iterable[Letter], expects: Expectations) -> str:
-    """Return the text of one ``test`` block, as in :meth:`BlockWriter.block`."""
+    """Return the text of a single ``test`` block, as :meth:`BlockWriter.block` does."""
     return BlockWriter(spec).block(title, letters, expects)
 
 
 def expectations(fspa: Fspa, letters: Iterable[Letter], steps: Iterable[int] | None = None) -> Expectations:
-    """Return the expectations of one trace, as in :meth:`BlockWriter.expectations`."""
+    """Return what the monitor reports on a single trace, as :meth:`BlockWriter.expectations` does."""
     return BlockWriter(fspa).expectations(letters, steps)
 
 
@@ -162,15 +165,15 @@ def _report(step: Step) -> tuple[str, ...]:
 
 
 def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return the value of each atom of an automaton for a letter, in order.
+    """Return a value for each atom of an automaton, in order: 1 if the atom holds in the letter, else -1.
 
-    It is 1 if the atom holds, and else -1. Test blocks use these values, too.
+    The atoms of ``test`` blocks have the same values.
     """
     return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
 
 
 def _state_expectation(label: str) -> tuple[str, ...]:
-    """Return the expectation that the state has this label, as a tuple of one text.
+    """Return the expectation that the state has this label, as a tuple of one text: ``('state "F a"',)``.
 
     The tuple is empty if the label is too long to read, or contains a quote or a line break.
     """
@@ -178,12 +181,12 @@ def _state_expectation(label: str) -> tuple[str, ...]:
 
 
 def atom_operand(name: str) -> str:
-    """Return the name of an atom as an operand of ``not``: a comparison gets brackets."""
+    """Return the name of an atom as an operand of ``not``: ``near(exit)``, but ``(x > 5)`` with brackets."""
     return operand_text(atom(name))
 
 
 def _step(literals: Sequence[str], times: int) -> list[str]:
-    """Return the lines of a ``step``; long lines are broken after commas."""
+    """Return the lines of a step such as ``step 3x alive, seen``; long lines are broken after commas."""
     lines = [f"{_INDENT}step {f'{times}x ' if times > 1 else ''}{literals[0]}"]
     for literal in literals[1:]:
         if len(lines[-1]) + len(literal) + 3 > _WIDTH:

@@ -1,4 +1,4 @@
-"""The titles of the traces, and the diagnostics about traces that do not exist."""
+"""The titles of the traces that were found, and the diagnostics about those that were not."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _MOST_NAMED = 10
 def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
     """Return the title of the test that shows a trace.
 
-    For a trace of a cover, ``number`` is its number, counted from 1, and ``count`` is the number of
-    traces in the cover.
+    A cover is a set of traces that together take every edge. If the trace is part of a cover,
+    ``number`` is its number, from 1, and ``count`` the number of traces in the cover.
     """
     if witness.kind == "cover":
         return f"{fspa.name}: way {number} of {count} through its automaton"
@@ -33,9 +33,10 @@ def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
 
 
 def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
-    """Return the warning that no trace is accepted, or rejected, as ``outcome`` says.
+    """Return the warning TLT0741, that no trace is accepted or rejected.
 
-    If the reason is that no samples were found, the warning says so.
+    ``outcome`` is ``accepted`` or ``rejected``. If there may be such a trace, but no samples were
+    found for it, the warning says so.
     """
     fspa = moves.fspa
     if moves.obstacles:
@@ -53,7 +54,7 @@ def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
 
 
 def untaken_warnings(fspa: Fspa, edges: Sequence[UntakenEdge]) -> list[Diagnostic]:
-    """Return the warnings about edges that no trace takes."""
+    """Return warnings about edges that no trace takes: one for each of the first edges, and one for the rest."""
     warnings = []
     for untaken_edge in edges[:_MOST_NAMED]:
         guard = fspa.edges[untaken_edge.edge].guard.text
@@ -88,16 +89,16 @@ def no_signals_error(fspa: Fspa) -> Diagnostic:
 
 
 def _none_found(literals: str) -> str:
-    """Return a text that says that no sample was found for some literals.
+    """Return a sentence that says that no sample was found for these literals.
 
-    The search is incomplete, so the text does not say that no sample exists.
+    It does not say that no sample exists, because the search may miss samples.
     """
     return f"no values of the signals were found that give {literals}"
 
 
 @contextmanager
 def reporting_out_of_work(fspa: Fspa) -> Iterator[None]:
-    """Raise TLT0743 in place of ``OutOfWork``, when the search for an infinite trace takes too long."""
+    """Turn ``OutOfWork`` in the body into TltlError, TLT0743: the search for an infinite trace takes too long."""
     try:
         yield
     except OutOfWork:

@@ -13,7 +13,7 @@ from tltlc.tools.witness.wanted_edges import WantedEdges
 
 @record
 class UntakenEdge:
-    """An edge, by index, that no trace takes.
+    """An edge that no trace of a cover takes; ``edge`` is its index.
 
     ``obstacles`` are sets of literals of its guard for which no sample was found. If there are
     none, no trace reaches the source of the edge.
@@ -35,10 +35,11 @@ class Cover:
 
 
 def cover(moves: Moves) -> Cover:
-    """Return traces that together take every edge for which a sample is found.
+    """Return traces that together take every edge that can be reached, and for which a sample is found.
 
-    Each trace goes on to the nearest edge that no trace has taken yet, and ends when it can reach
-    none. If the spec is over infinite traces, the result has finite beginnings of traces.
+    Each trace goes to the nearest edge that no trace has taken yet, from there to the next one, and
+    so on. It ends when it can reach no such edge. If the spec is over infinite traces, the result
+    has finite beginnings of traces.
     """
     edges = moves.fspa.edges
     wanted = WantedEdges(
@@ -54,9 +55,10 @@ def cover(moves: Moves) -> Cover:
 
 
 def _trace(moves: Moves, wanted: WantedEdges) -> Iterator[SampledEdge]:
-    """Yield the moves of a trace from the initial state to one untaken edge after another.
+    """Yield the moves of a trace that starts in the initial state and takes one wanted edge after another.
 
-    Nothing is yielded if no untaken edge can be reached.
+    An edge is wanted if no trace has taken it yet. Nothing is yielded if no wanted edge can be
+    reached.
     """
     state = 0
     while path := wanted.take(state):
@@ -68,7 +70,7 @@ def _trace(moves: Moves, wanted: WantedEdges) -> Iterator[SampledEdge]:
 
 
 def _witnesses(traces: Iterable[tuple[SampledEdge, ...]]) -> Iterator[Witness]:
-    """Yield the traces as witnesses; ``new_steps`` are the steps that take a new edge."""
+    """Yield the traces as witnesses, whose ``new_steps`` are the steps with an edge that no earlier step took."""
     taken: set[int] = set()
     for trace in traces:
         new_steps = []

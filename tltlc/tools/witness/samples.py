@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 @record
 class UnsatisfiedLiterals:
-    """Literals for which no sample was found that makes them all true.
+    """A set of literals for which no sample was found that makes all of them true.
 
-    Each literal is the index of an atom and its truth value. The set is minimal: if any literal is
-    left out, the search finds a sample for the remaining ones.
+    Each literal is the index of an atom and its truth value. The set is minimal: the search finds a
+    sample if one of the literals is left out. Only if a sample is rejected because exclusive atoms
+    hold together, the set has all literals that were asked for.
     """
 
     literals: Implicant
@@ -46,7 +47,7 @@ class MissingSample:
 
 
 class SampleFinder:
-    """Finds samples for the atoms of an automaton, and caches them."""
+    """Finds samples at which given atoms of an automaton hold or do not hold, and caches them."""
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
@@ -55,11 +56,11 @@ class SampleFinder:
         self._cache: dict[Implicant, TraceSample | UnsatisfiedLiterals] = {}
 
     def sample_for_letter(self, letter: Letter) -> TraceSample | UnsatisfiedLiterals:
-        """Return a sample at which exactly the atoms of a letter hold, or why none was found."""
+        """Return a sample at which exactly the atoms of a letter hold, or the literals that prevent it."""
         return self.sample_for_literals(tuple((i, atom.name in letter) for i, atom in enumerate(self._fspa.atoms)))
 
     def sample_for_literals(self, literals: Implicant) -> TraceSample | UnsatisfiedLiterals:
-        """Return a sample at which the literals are true, or why none was found.
+        """Return a sample at which the literals are true, or those of them for which none was found.
 
         If possible, no other atom holds at the sample.
         """
@@ -68,11 +69,11 @@ class SampleFinder:
         return self._cache[literals]
 
     def obstacles(self, letter: Letter) -> tuple[UnsatisfiedLiterals, ...]:
-        """Return why no sample was found for a letter; empty if one was found.
+        """Return sets of literals that explain why no sample was found for a letter; empty if one was found.
 
-        There is one reason for each group of atoms with common signals for which no sample was
-        found. If samples were found for all groups, the only reason is that exclusive atoms hold
-        together.
+        Each group of atoms with common signals is searched separately, and each group without a
+        sample gives one set. If samples were found for all groups, exclusive atoms hold together.
+        Then the only set has all literals of the letter.
         """
         sample = self.sample_for_letter(letter)
         if not isinstance(sample, UnsatisfiedLiterals):
@@ -104,7 +105,7 @@ class SampleFinder:
 
 
 def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[TraceSample, ...] | MissingSample:
-    """Return a sample for each letter of a trace, or the first step for which none was found."""
+    """Return a sample for each letter of a trace, or the first step for which no sample was found."""
     finder = SampleFinder(fspa)
     trace_samples: list[TraceSample] = []
     for step, letter in enumerate(letters, start=1):
@@ -116,7 +117,7 @@ def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[TraceSample, ...] | 
 
 
 def csv_text(fspa: Fspa, samples: Iterable[TraceSample]) -> str:
-    """Return samples as CSV, with a column for each signal and its name in the first row.
+    """Return samples as CSV: a header with the names of the signals, and a row for each sample.
 
     ``tltlc monitor`` and generated monitors read this format.
     """
@@ -138,10 +139,11 @@ def _cell(signal: Signal, value: float) -> str:
 
 
 def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> SignalPoint | UnsatisfiedLiterals:
-    """Return values of a group's signals at which its atoms have the truth values in ``polarity``.
+    """Return values of the signals of a group at which its atoms have the truth values in ``polarity``.
 
-    If possible, atoms that are not in ``polarity`` do not hold. If no such values are found, return
-    a minimal set of literals for which none are found.
+    ``polarity`` maps indices of atoms to truth values. If possible, the atoms that are not in
+    ``polarity`` do not hold. If no values are found, return a minimal set of literals for which no
+    values are found.
     """
     literals = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
     point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(literals)
@@ -149,7 +151,7 @@ def _point(group: AtomGroup, polarity: Mapping[int, bool]) -> SignalPoint | Unsa
 
 
 def _minimal(literals: Implicant, group: AtomGroup) -> Implicant:
-    """Return a minimal subset of literals for which no point is found."""
+    """Return a minimal subset of ``literals`` for which no point is found; none is found for all of them."""
     for literal in literals:
         fewer = tuple(candidate for candidate in literals if candidate != literal)
         if fewer and group.find(fewer) is None:

@@ -42,9 +42,9 @@ _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
 class AtomGroup:
-    """Atoms that share signals, directly or through other atoms.
+    """Atoms that share signals, directly or through other atoms, so that they must be searched together.
 
-    ``atoms`` has their indices in the automaton; literals use the same indices.
+    ``atoms`` has their indices in the automaton. Literals have the same indices.
     """
 
     def __init__(self, fspa: Fspa, atoms: Sequence[int], signals: Sequence[Signal]) -> None:
@@ -84,10 +84,10 @@ class AtomGroup:
         return summit or self._best(self._far_candidates, literals)
 
     def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> SignalPoint | None:
-        """Return the first candidate with a margin of at least ``_CLEAR``.
+        """Return the first candidate at which the literals are true with a margin of at least ``_CLEAR``.
 
-        Without one, return the candidate with the largest margin, or None if the literals are true
-        at no candidate. The margin is that of :meth:`_margin`.
+        If there is none, return the candidate with the largest margin at which the literals are
+        true, or None. :meth:`_margin` defines the margin.
         """
         inside: list[tuple[float, SignalPoint]] = []
         for point, values in candidates:
@@ -101,7 +101,7 @@ class AtomGroup:
     # --- truth ------------------------------------------------------------------------------------
 
     def _values(self, point: SignalPoint) -> tuple[float, ...] | None:
-        """Return the values of the atoms, or None if one of them has no value."""
+        """Return the values of the atoms at a point, or None if one of them has no value there."""
         inputs = [point[name] for name in self._names]
         try:
             values = tuple([function(inputs) for function in self._functions])
@@ -115,7 +115,10 @@ class AtomGroup:
         )
 
     def _margin(self, values: Sequence[float], literals: Implicant) -> float:
-        """Return by how much the literals are true: the least distance of a value from 0."""
+        """Return by how much the literals are true: the least distance of an atom's value from 0.
+
+        The result is negative if a literal is false, and 1 if there are no literals.
+        """
         sides = (values[self._place[atom]] if holds else -values[self._place[atom]] for atom, holds in literals)
         return min(sides, default=1.0)
 
@@ -131,7 +134,7 @@ class AtomGroup:
 
     @cached_property
     def _simple(self) -> list[SignalPoint]:
-        """The points to try first, without regard to literals; empty if there are no signals."""
+        """The points to try first, whatever the literals are."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
@@ -146,7 +149,7 @@ class AtomGroup:
                 yield from self._between_borders(self._simple[0], name, ladder)
 
     def _far_points(self) -> Iterator[SignalPoint]:
-        """Yield points with very large values of one signal that has no finite range."""
+        """Yield points at which one signal without a finite range has a very large value."""
         for name in self._names:
             low, high = self._ranges[name]
             far = [value for value in _FAR if low <= value <= high]
@@ -157,10 +160,11 @@ class AtomGroup:
             yield from self._between_borders(self._simple[0], name, ladder)
 
     def _between_borders(self, start: SignalPoint, name: str, ladder: Sequence[float]) -> Iterator[SignalPoint]:
-        """Yield points on both sides of each border of an atom, varying the signal ``name``.
+        """Vary the signal ``name``; yield points on both sides of each border of an atom.
 
-        Then yield a point in the middle between each two borders. Borders are searched between
-        neighbouring values of ``ladder``, which is sorted.
+        The other signals have their values in ``start``. After these points, yield a point in the
+        middle between each two neighbouring borders. Borders are searched between neighbouring
+        values of ``ladder``, which is sorted.
         """
         borders: list[float] = []
         for index in range(len(self._functions)):
@@ -173,7 +177,11 @@ class AtomGroup:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
-        """Return two almost equal values of a signal. The truth of an atom changes between them."""
+        """Return two almost equal values of a signal between which the truth of an atom changes.
+
+        The search is a bisection between ``low`` and ``high``, at which the truth values differ.
+        ``index`` is the place of the atom in the group.
+        """
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
             middle = _middle(low, high)
@@ -191,10 +199,10 @@ class AtomGroup:
         return value > 0.0
 
     def _climb(self, start: SignalPoint, literals: Implicant) -> SignalPoint | None:
-        """Return a point at which the literals are true, or None.
+        """Search from ``start`` for a point at which the literals are true; return None if none is found.
 
-        The climb changes one signal at a time. The next change of that signal is larger if this one
-        helped, and else smaller.
+        The climb changes one signal at a time. If a change helps, the next change of this signal is
+        twice as large, else half as large.
         """
         goals = [goal for literal in literals for goal in self._sign_functions(literal)]
         best, deficit = dict(start), self._deficit(start, goals)
@@ -214,7 +222,11 @@ class AtomGroup:
         return None
 
     def _deficit(self, point: SignalPoint, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
-        """Return by how much, in total, the functions in ``goals`` miss their signs at a point."""
+        """Return by how much, in total, the functions in ``goals`` miss their required signs at a point.
+
+        Each goal is a function, and whether its value must be positive. The result is 0 or more;
+        infinity if a function has no value at the point.
+        """
         inputs = [point[name] for name in self._names]
         try:
             # Aim beyond the border: at the border the value is 0 and the atom does not hold.
@@ -223,10 +235,10 @@ class AtomGroup:
             return inf
 
     def _sign_functions(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
-        """Return functions of the signals that together decide whether a literal is true.
+        """Return functions of the signals that must all have the right sign for a literal to be true.
 
         Each comes with a bool: whether its value must be positive. Unlike the value of the atom,
-        the values are not clamped, so there are no plateaus on which hill climbing gets stuck.
+        their values are not clamped, so there are no plateaus on which hill climbing gets stuck.
         """
         if literal not in self._goals:
             atom, holds = literal
@@ -237,7 +249,7 @@ class AtomGroup:
 
 
 def _middle(low: float, high: float) -> float:
-    """Return the middle of two numbers; for large numbers, their geometric mean."""
+    """Return the middle of two numbers; for large numbers of different size, their geometric mean."""
     least, most = sorted((abs(low), abs(high)))
     if (low > 0) != (high > 0) or least < _LARGE or most / least < 4:
         return midpoint(low, high)
@@ -247,8 +259,9 @@ def _middle(low: float, high: float) -> float:
 def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:
     """Yield the subexpressions that decide the sign of an expression.
 
-    Each comes with a bool: whether its value must be positive. ``holds`` says whether the value of
-    the whole expression must be positive.
+    ``holds`` says whether the value of the whole expression must be positive. Each subexpression
+    comes with a bool that says the same about its own value. For ``min(x, -y)`` and True, these are
+    ``x`` and True, and ``y`` and False.
     """
     stack = [(expression, holds)]
     while stack:
@@ -268,7 +281,10 @@ def _is_positive(node: Expression) -> bool:
 
 
 def atom_groups(fspa: Fspa) -> tuple[AtomGroup, ...]:
-    """Return the atoms of an automaton in groups that share no signals, in order of the atoms."""
+    """Divide the atoms of an automaton into groups, so that no two groups share a signal.
+
+    The groups are in the order of their first atoms.
+    """
     signal_names = [_signals(atom.expression) for atom in fspa.atoms]
     merged: list[tuple[list[int], set[str]]] = []
     for index, names in enumerate(signal_names):

@@ -17,8 +17,7 @@ def as_test(fspa: Fspa, witness: Witness, title: str, blocks: BlockWriter | None
 
     The block expects what the monitor reports at the end. For a trace of a cover, it also expects
     what the monitor reports after each step that changes the state and takes an edge for the first
-    time.
-    Give ``blocks`` to share work between several blocks of one automaton.
+    time. Pass the same ``blocks`` for several traces of one automaton to save work.
 
     Raises:
         ValueError: the spec has no atoms.
@@ -34,9 +33,9 @@ def as_test(fspa: Fspa, witness: Witness, title: str, blocks: BlockWriter | None
 
 
 def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
-    """Return the samples of a witness as CSV, with one round of its cycle.
+    """Return the samples of a trace as CSV, with one round of its cycle if it is infinite.
 
-    Pass ``monitor`` to share one monitor between several traces of an automaton, because creating a
+    Pass the same ``monitor`` for several traces of one automaton to save work, because creating a
     monitor visits every edge.
     """
     text = csv_text(fspa, witness.samples)
@@ -48,7 +47,10 @@ def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
 
 
 def cycle_text(witness: Witness) -> str:
-    """Return a text about which steps of an infinite trace repeat; empty for a finite trace."""
+    """Say which steps of an infinite trace repeat: ``step 3 repeats for ever; here it is written once``.
+
+    The text is empty for a finite trace.
+    """
     if witness.cycle is None:
         return ""
     first, last = witness.cycle + 1, len(witness.moves)
@@ -58,7 +60,7 @@ def cycle_text(witness: Witness) -> str:
 
 
 def _check(fspa: Fspa, witness: Witness, states: list[int]) -> None:
-    """Raise AssertionError if the monitor does not visit the states of the witness."""
+    """Raise AssertionError if ``states``, which the monitor has visited, are not those of the trace."""
     expected = [fspa.edges[move.edge].target for move in witness.moves]
     if states != expected:
         raise AssertionError(f"a witness of `{fspa.name}` takes the states {states}, not {expected}")

@@ -43,11 +43,10 @@ class Witness:
 
 
 def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a shortest accepted trace for which samples are found; None if no trace is accepted.
+    """Return a shortest accepted trace for which samples are found.
 
-    It is also None if no samples are found for any accepted trace.
-
-    If the spec is over infinite traces, the trace need not be shortest.
+    If the spec is over infinite traces, the trace need not be a shortest one. Return None if no trace
+    is accepted, or if no samples are found for any accepted trace.
 
     Raises:
         OutOfWork: over infinite traces, the search takes more than ``work`` steps.
@@ -59,12 +58,11 @@ def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
-    """Return a rejected trace for which samples are found; None if no trace is rejected.
-
-    It is also None if no samples are found for the trace.
+    """Return a rejected trace for which samples are found.
 
     If possible, it is a shortest trace that violates the spec. Otherwise it is a shortest rejected
-    trace, or any rejected trace if the spec is over infinite traces.
+    trace, or any rejected trace if the spec is over infinite traces. Return None if no trace is
+    rejected, or if no samples are found.
 
     Raises:
         OutOfWork: over infinite traces, the search takes more than ``work`` steps.
@@ -77,9 +75,9 @@ def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
 
 
 def _shortest_to(moves: Moves, kind: WitnessKind, is_target: list[bool]) -> Witness | None:
-    """Return a shortest trace to a state for which ``is_target`` is true.
+    """Return a shortest trace to one of the target states; ``is_target`` says for each state whether it is one.
 
-    None if no path with samples leads to such a state.
+    Return None if no path with samples leads to a target state.
     """
     edges = moves.fspa.edges
     path = moves.shortest_path(0, lambda edge: is_target[edges[edge].target])
@@ -97,10 +95,10 @@ def _with_loop(moves: Moves, trace: Witness) -> Witness | None:
 
 
 def _lasso(moves: Moves, kind: Literal["accepting", "rejecting"], work: int) -> Witness | None:
-    """Return an infinite trace of a kind, as a prefix and a cycle, with a sample for each step.
+    """Return an accepted or rejected infinite trace: a prefix and a cycle, with a sample for each step.
 
-    If no sample is found for an edge of the trace, search again for a trace without this edge. None
-    if no such trace is left.
+    If no sample is found for an edge of the trace, the search is repeated without this edge. Return
+    None if no trace is left.
     """
     from tltlc.automaton.compare import separating
 
@@ -147,9 +145,9 @@ def _constant(fspa: Fspa, accepts: bool) -> Fspa:
 
 
 def _with_closed_edges(fspa: Fspa, closed: set[int], accepts: bool) -> Fspa:
-    """Return the automaton with the edges in ``closed`` redirected to a new state.
+    """Return an automaton in which the edges in ``closed`` lead to a new state, which is never left.
 
-    A trace that takes one of them is accepted if ``accepts``, and otherwise rejected.
+    So a trace that takes one of these edges is accepted if ``accepts`` is true, and else rejected.
     """
     if not closed:
         return fspa

@@ -1,4 +1,4 @@
-"""Find, for the edges of an automaton, samples at which the automaton takes them."""
+"""Find samples at which an automaton takes its edges."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ _MOST_PRIMES = 500
 
 @record
 class SampledEdge:
-    """A move: an edge (its index in the automaton), a sample that takes it, and its letter.
+    """A move: an edge, and a sample at which the automaton takes this edge.
 
-    ``prime`` is the prime implicant of the guard that the sample satisfies.
+    ``edge`` is the index of the edge in the automaton. ``prime`` is the prime implicant of its guard
+    that the sample satisfies, and ``letter`` has the atoms that hold at the sample.
     """
 
     edge: int
@@ -51,9 +52,9 @@ class Moves:
         return tuple(map(tuple, leaving))
 
     def move(self, edge: int) -> SampledEdge | None:
-        """Return an edge with a sample that takes it, or None if no sample is found.
+        """Return the edge with the index ``edge`` and a sample that takes it; None if no sample is found.
 
-        The sample satisfies the first prime implicant of the guard for which one is found.
+        The prime implicants of the guard are tried in order, until a sample is found for one.
         """
         if edge not in self._cache:
             self._cache[edge] = self._search(edge)
@@ -70,10 +71,10 @@ class Moves:
         return None
 
     def shortest_path(self, start: int, is_last: Callable[[int], bool]) -> tuple[SampledEdge, ...] | None:
-        """Return the moves of a shortest path from a state to an edge that ``is_last`` accepts.
+        """Return the moves of a shortest path that begins in the state ``start`` and ends with a certain edge.
 
-        ``is_last`` gets the index of an edge. The path ends with this edge, so it has at least one
-        move. None if no path with samples leads to such an edge.
+        ``is_last`` gets the index of an edge, and says whether the path may end with this edge. The
+        path has at least one move. Return None if there is no such path with samples.
         """
         predecessors: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])

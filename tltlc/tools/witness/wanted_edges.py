@@ -1,4 +1,4 @@
-"""Find the nearest edge that is still wanted, without a new search for each path."""
+"""Find paths to the nearest edge that no path has ended with yet, without a new search for each path."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from tltlc.automaton.infinite.graphs import components
 class WantedEdges:
     """Finds paths to the nearest wanted edge.
 
-    At first every edge is wanted. Once a path ends with an edge, the edge is no longer wanted.
-    ``leaving`` has the edges of each state as pairs of an edge index and a target state, in the
-    order in which they are tried. The paths are the same as in a breadth-first search.
-    ``visited_edges`` counts the edges that all searches together have visited.
+    At first every edge is wanted. Once :meth:`take` has returned a path that ends with an edge, this
+    edge is no longer wanted. ``leaving`` has, for each state, the edges that leave it, in the order
+    in which they are tried: pairs of an edge index and a target state. The paths are the same as in
+    a breadth-first search. ``visited_edges`` counts the edges that all searches together have
+    visited.
 
     ``_bound`` has, for each state, a lower bound on the number of edges on a path to the nearest
     state with a wanted edge. Fewer and fewer edges are wanted, so the bounds remain valid for later
@@ -76,7 +77,7 @@ class WantedEdges:
         return (*(self._leaving[state][self._next[state]][0] for state in states[:-1]), last)
 
     def _nearer(self, state: int) -> int | None:
-        """Return the target of the first edge that may lead nearer to a wanted edge, or None."""
+        """Return the target of the first edge from ``state`` that may lead nearer to a wanted edge, or None."""
         targets, bound = self._targets[state], self._bound[state]
         for place in range(self._next[state], len(targets)):
             self.visited_edges += 1
