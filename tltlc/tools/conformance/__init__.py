@@ -1,4 +1,5 @@
-"""The conformance corpus: specs, traces, and the expected output of a monitor in any language.
+"""The conformance corpus: specs, traces, and the output that a monitor in any language must give for them.
 
-Every run writes the same bytes if the C library's ``exp``, ``tanh`` and ``pow`` are the same.
+The corpus is generated. Every run writes the same bytes if the C library's ``exp``, ``tanh`` and
+``pow`` are the same.
 """

@@ -134,7 +134,7 @@ _EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]]
 
 
 def _two_atom_case(name: str, first: Expression, second: Expression) -> ConformanceCase:
-    """Return a case of two atoms with these expressions, without traces."""
+    """Return a case without traces, whose spec has two atoms with these expressions."""
     # The formula requires both atoms again and again, so that each row shows the value of one.
     formula = f.always(f.eventually(f.and_(f.atom("first"), f.atom("second"))))
     signals = (*_SIGNALS, _SEEN_SIGNAL) if name == "cases" else _SIGNALS
@@ -172,7 +172,7 @@ _REJECTED: Final[dict[str, tuple[Expression, Expression, tuple[tuple[float, floa
         ((10, 2), (1, 100), (1, -1e200)),
     ),
 }
-"""Cases by name: two predicates, and pairs of x and y at which a predicate has no value."""
+"""Cases by name: two predicates, and pairs of values of x and y at which one of the predicates has no value."""
 
 
 def _rejected_case(name: str) -> ConformanceCase:
@@ -203,9 +203,9 @@ def _nested_when(inside: Literal["value", "otherwise", "condition"]) -> Expressi
 
 
 def _long_when() -> Expression:
-    """Return a ``when`` of 160 cases.
+    """Return a ``when`` expression with 160 cases.
 
-    Some languages can compute its conditions only in statements of their own.
+    In some languages, each of its conditions needs a statement of its own.
     """
     near = ((_condition("<", _op("^", _op("-", _Y, at / 80 - 1.0), 2.0), 1e-4), Const(at / 160)) for at in range(160))
     return When(tuple(near), Const(-0.25))

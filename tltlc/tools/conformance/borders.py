@@ -20,9 +20,9 @@ from tltlc.tools.conformance.traces import table
 
 @record
 class Border:
-    """A comparison ``x OP threshold`` for an x in [low, high].
+    """A comparison ``x OP threshold``, where x is a signal with the range [low, high].
 
-    If ``threshold`` is None, the threshold is not a number but another signal with the same range.
+    If ``threshold`` is None, x is compared with another signal of the same range, not with a number.
     """
 
     op: str
@@ -31,7 +31,10 @@ class Border:
     high: float
 
     def declaration(self, number: int) -> str:
-        """Return the signal declarations: ``xN`` and, for a varying threshold, ``yN``."""
+        """Return the declaration of the signal ``xN``, where N is ``number``.
+
+        If the threshold is a signal, the text also declares this signal, ``yN``.
+        """
         names = [f"x{number}"] if self.threshold is not None else [f"x{number}", f"y{number}"]
         return "".join(f"signal {name} in [{self.low!r}, {self.high!r}]\n" for name in names)
 
@@ -40,9 +43,9 @@ class Border:
         return f"x{number} {self.op} {f'y{number}' if self.threshold is None else repr(self.threshold)}"
 
     def values(self) -> Iterator[tuple[float, ...]]:
-        """Yield values at and next to the threshold, and the ends of the range.
+        """Yield values of x at and next to the threshold, and at the ends of the range.
 
-        A value is a pair of x and the threshold, or x alone if the threshold is a number.
+        Each is a tuple of x alone, or of x and the threshold if the threshold is a signal.
         """
         for threshold in (self.low, self.high, 0.0) if self.threshold is None else (self.threshold,):
             for x in (threshold, *_neighbours(threshold), self.low, self.high, 1e-30, -1e-30):
@@ -52,14 +55,14 @@ class Border:
     def holds(self, x: float, threshold: float | None = None) -> bool:
         """Whether the comparison is true for ``x``.
 
-        ``threshold`` is the value of the threshold; it is needed only if the threshold is a signal.
+        If the threshold is a signal, pass its value as ``threshold``.
         """
         right = self.threshold if threshold is None else threshold
         assert right is not None, "a threshold that varies is given"
         return {"<": x < right, "<=": x <= right, ">": x > right, ">=": x >= right}[self.op]
 
     def true_values(self) -> tuple[float, ...]:
-        """Return a value, in the form of :meth:`values`, at which the comparison is true."""
+        """Return values at which the comparison is true, in the form of :meth:`values`."""
         x, threshold = (self.high, self.low) if self.op[0] == ">" else (self.low, self.high)
         return (x, threshold) if self.threshold is None else (x,)
 
@@ -81,7 +84,7 @@ EXTREMES: Final = (
 
 
 def random_borders(draw: Draw, count: int) -> tuple[Border, ...]:
-    """Return random comparisons, whose ranges and thresholds have any exponent of a normal float."""
+    """Return ``count`` random comparisons. Their ranges and thresholds are normal floats of any size."""
     borders: list[Border] = []
     while len(borders) < count:
         low, threshold, high = sorted(_random_number(draw) for _ in range(3))

@@ -18,8 +18,8 @@ from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
 class ConformanceCase:
     """One case; the name of its automaton is the name of the case.
 
-    ``about`` is a sentence on its purpose. ``source`` is the text of its spec, if there is one.
-    ``traces`` are whole CSV files.
+    ``about`` is a sentence that says what the case tests. ``source`` is the text of its spec; None if
+    the automaton was built without a text. ``traces`` are the contents of CSV files.
     """
 
     fspa: Fspa
@@ -29,7 +29,7 @@ class ConformanceCase:
 
 
 CaseBuilders = Mapping[str, Callable[[], ConformanceCase]]
-"""Cases by name, each as a function that builds it. So a caller can build only those it needs."""
+"""Functions that build the cases, by the name of the case. So a caller can build only the cases it needs."""
 
 
 def automaton(
@@ -44,10 +44,12 @@ def automaton(
     judge: JudgeMode | None = None,
     infinite: bool = False,
 ) -> Fspa:
-    """Return the automaton of a formula whose atoms have these expressions.
+    """Return the automaton of a formula.
 
-    Without expressions, each atom is a signal in [-1, 1]. Only the ``signals`` and ``params`` that
-    the expressions use are kept.
+    ``expressions`` maps the name of each atom to its expression. Without expressions, each atom is a
+    signal of the same name in [-1, 1]. Of ``signals`` and ``params``, only those that the expressions
+    use are kept. ``exclusive`` has groups of names of atoms. With ``infinite``, the automaton is over
+    infinite traces.
     """
     spec = replace(spec_from_formula(formula, name, exclusive), limit_steps=limit, judge=judge)
     if expressions:

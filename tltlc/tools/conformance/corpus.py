@@ -1,4 +1,4 @@
-"""The corpus as files: a folder per case, an index, and a page on how to check a monitor."""
+"""The corpus as files: a folder for each case, an index, and a page and a script for checking a monitor."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ CASES: Final[CaseBuilders] = {
 
 VERSION: Final = 1
 TOLERANCE: Final = 1e-12
-"""The largest allowed difference from an expected number, in cases that are not exact."""
+"""The largest allowed difference from an expected number, in cases that are not exact (:func:`is_exact`)."""
 
 _ROUNDED_BY_LIBRARY: Final = ("exp", "tanh", "^")
 """Operators whose results depend on the mathematical library of the monitor's language."""
 
 
 def files() -> backends.Files:
-    """Return every file of the corpus, by its path with slashes."""
+    """Return the content of every file of the corpus, by its path with slashes."""
     folders: backends.Files = {}
     index: list[dict[str, Any]] = []
     for make in CASES.values():
@@ -55,7 +55,7 @@ def files() -> backends.Files:
 
 
 def is_corpus(folder: Path) -> bool:
-    """Whether a folder contains a corpus, of any version: whether it has the index of one."""
+    """Whether a folder contains a corpus of any version, that is, whether its ``index.json`` is that of a corpus."""
     try:
         document = json.loads(read_source(folder / "index.json", max_bytes=MAX_ARTEFACT_BYTES).text)
     except (TltlError, ValueError, RecursionError):
@@ -66,14 +66,14 @@ def is_corpus(folder: Path) -> bool:
 def is_exact(fspa: Fspa) -> bool:
     """Whether all monitors of an automaton must compute the same numbers, to the last digit.
 
-    This holds if IEEE 754 defines each operation.
+    This is so if IEEE 754 defines the result of each operation in the automaton's atoms.
     """
     operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
     return all(node.op not in _ROUNDED_BY_LIBRARY or _is_product(node) for node in operations)
 
 
 def _is_product(node: Op) -> bool:
-    """Whether the node is a power that is computed by multiplication."""
+    """Whether the node is a power with an exponent, such as 2, for which monitors multiply."""
     exponent = node.args[-1]
     return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
 

@@ -10,9 +10,9 @@ T = TypeVar("T")
 
 
 class Draw:
-    """A source of random choices, which depend only on its seed.
+    """A source of random choices that depend only on its seed.
 
-    They are all computed from ``Random.random``, whose numbers Python promises not to change.
+    All choices are computed from ``Random.random``, whose numbers Python promises not to change.
     """
 
     def __init__(self, seed: int) -> None:

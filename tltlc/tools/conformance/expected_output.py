@@ -1,4 +1,4 @@
-"""The expected output of a monitor on a trace: rows, and the reason if it rejects a sample."""
+"""The output that a monitor must give for a trace: a row for each sample, and an error if it must reject one."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ COLUMNS: Final = (
 
 @record
 class Rejection:
-    """The rejection of a trace: its reason (``kind``), its step, and the signals or atoms at fault.
+    """Why and where a monitor must reject a trace.
 
-    ``step`` counts from 1. ``line`` is the line of the file (from 1) that cannot be read. It is
-    None if the monitor rejects a sample.
+    ``kind`` is the reason, and ``names`` are the signals or atoms at fault. ``step`` is the number of
+    the sample, from 1. ``line`` is the number, from 1, of the line that cannot be read. It is None if
+    all lines can be read, but the monitor must reject a sample, or there is no sample.
     """
 
     kind: RejectionKind
@@ -53,7 +54,7 @@ class ExpectedOutput:
     warnings: int
 
     def table(self) -> str:
-        """Return the rows as CSV."""
+        """Return the rows as CSV, with a header."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -80,9 +81,11 @@ def _row_cells(number: int, step: Step) -> tuple[str, ...]:
 
 
 def _rejection(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: TraceSample) -> Rejection:
-    """Return the rejection that a diagnostic reports.
+    """Convert the diagnostic of a rejected trace to a :class:`Rejection`.
 
-    Its names are computed from the sample or the trace, not read from the text of the diagnostic.
+    ``step`` is the number of the rejected sample, and ``sample`` the last sample that was read. The
+    names at fault are computed from the sample or the trace, not read from the text of the
+    diagnostic.
     """
     if error.code == "TLT0620":
         return Rejection("no sample", step)
@@ -113,7 +116,7 @@ def _infinite_signals(fspa: Fspa, sample: TraceSample) -> list[str]:
 
 
 def _without_value(fspa: Fspa, sample: TraceSample) -> tuple[RejectionKind, str]:
-    """Return why an atom has no value, and the name of this atom: the one that monitors report."""
+    """Return why a sample gives some atom no value, and the name of the atom that monitors report."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     too_large: str | None = None
     for atom in fspa.atoms:
@@ -132,7 +135,7 @@ def _without_value(fspa: Fspa, sample: TraceSample) -> tuple[RejectionKind, str]
 
 
 def _conflicting_atoms(fspa: Fspa, sample: TraceSample) -> tuple[str, ...]:
-    """Return the atoms that hold together, from the first exclusive group of which several hold."""
+    """Return the atoms that hold in the first exclusive group of which more than one atom holds."""
     signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
     holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
     holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]

@@ -38,7 +38,10 @@ _EXPONENTS: Final = (2.0, 3.0, 0.5, -1.0, 1.5)
 
 
 def predicate(draw: Draw) -> Expression:
-    """Return a random expression whose values mostly lie in [-1, 1], with both signs."""
+    """Return a random expression over ``SIGNALS`` and ``PARAMS``.
+
+    Most of its values are in [-1, 1], some positive and some negative.
+    """
     inner = _expression(draw, 3)
     choice = draw.below(4)
     if choice == 0:

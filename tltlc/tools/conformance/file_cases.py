@@ -1,4 +1,4 @@
-"""Cases from files: specs of the paper, each with a recorded trace, and specs of our own."""
+"""Cases whose specs are files: those of the paper, each with a recorded trace, and some of our own."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ BINARY: Final[tuple[Callable[[Formula, Formula], Formula], ...]] = (
 
 
 def formula(draw: Draw, atoms: Sequence[str], leaves: int) -> Formula:
-    """Return a random formula with ``leaves`` leaves, most of them atoms."""
+    """Return a random formula over ``atoms``. It has ``leaves`` leaves: most are atoms, a few true or false."""
     if leaves == 1:
         leaf = draw.choice((TRUE, FALSE)) if draw.chance(0.05) else f.atom(draw.choice(atoms))
         return draw.choice(UNARY)(leaf) if draw.chance(0.5) else leaf

@@ -18,11 +18,12 @@ SIGNALS: Final = (spec.Signal("x", "number", None, 1.0), spec.Signal("seen", "bo
 
 @record
 class OddTrace:
-    """A trace, and how it must be read.
+    """A trace, and how a monitor must read it.
 
-    ``samples`` has the values of the signals ``x`` and ``seen`` in each sample that must be read.
-    ``line`` is the number of the line, from 1, that must be rejected. It is None if the whole trace
-    must be read, and 0 if the trace has no sample.
+    ``trace`` is the content of a CSV file. ``samples`` has the values of the signals ``x`` and
+    ``seen`` in each sample before an error. ``line`` is the number, from 1, of the line that must be
+    rejected. It is None if no line must be rejected, and 0 if the error is that the trace has no
+    sample.
     """
 
     trace: bytes
@@ -41,9 +42,9 @@ def _bad_row(row: bytes) -> OddTrace:
 
 
 def _x_cell(cell: bytes, value: float | None) -> OddTrace:
-    """Return a trace with this cell for ``x`` in its second row.
+    """Return a trace whose second row has ``cell`` in the column ``x``.
 
-    ``value`` is the value of the cell; None if the cell is rejected.
+    ``value`` is how the cell must be read; None if it must be rejected.
     """
     if value is None:
         return _bad_row(cell + b",1")
@@ -51,9 +52,9 @@ def _x_cell(cell: bytes, value: float | None) -> OddTrace:
 
 
 def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
-    """Return a trace with this cell for ``seen`` in its second row.
+    """Return a trace whose second row has ``cell`` in the column ``seen``.
 
-    ``value`` is the value of the cell; None if the cell is rejected.
+    ``value`` is how the cell must be read; None if it must be rejected.
     """
     if value is None:
         return _bad_row(b"0.5," + cell)
@@ -61,12 +62,12 @@ def _seen_cell(cell: bytes, value: float | None) -> OddTrace:
 
 
 def _note(cell: bytes) -> OddTrace:
-    """Return a trace with this cell in a column that is not a signal. Monitors ignore the cell."""
+    """Return a trace with ``cell`` in a column that is not a signal. Monitors must ignore this cell."""
     return OddTrace(b"note,x,seen\n" + cell + b",0.5,1\n-,-0.25,0\n", _TWO)
 
 
 def _bad_note(cell: bytes, line: int = 3) -> OddTrace:
-    """Return a trace that must be rejected at ``line``, for a cell in a column that is not a signal."""
+    """Return a trace that must be rejected at ``line`` because of ``cell``, though its column is not a signal."""
     return OddTrace(b"note,x,seen\n-,0.5,1\n" + cell + b",0.5,1\n-,0.5,1\n", _ONE, line)
 
 

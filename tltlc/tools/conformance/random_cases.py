@@ -23,7 +23,7 @@ _VALUES: Final = (-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0)
 _JUDGES: Final[tuple[JudgeMode, ...]] = ("goal", "limit")
 _OPEN: Final = ("pending", "holding")
 _STATES: Final = range(2, 10)
-"""The accepted numbers of states: smaller automata show little, larger ones compile slowly."""
+"""The accepted numbers of states. Smaller automata test little, and larger ones compile slowly."""
 
 
 def _formula_case(name: str, seed: int, infinite: bool) -> ConformanceCase:

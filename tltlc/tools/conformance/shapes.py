@@ -21,9 +21,9 @@ _VALUES: Final = (-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0)
 
 
 def _exclusive_case(name: str, count: int) -> ConformanceCase:
-    """Return a case with ``count`` places, some of which are to be visited in order.
+    """Return a case about ``count`` places, some of which must be visited in order.
 
-    At most one of their atoms holds at a time.
+    Each place has an atom, and the atoms are exclusive: the player is in at most one place at a time.
     """
     atoms = [f"at_{number}" for number in range(count)]
     order = f.atom(atoms[-1])
@@ -95,9 +95,9 @@ def _many_states_case() -> ConformanceCase:
 
 
 def _names_case(name: str, names: tuple[str, str, str]) -> ConformanceCase:
-    """Return a case with three names of atoms that are hard to quote.
+    """Return a case whose three atoms have names that are hard to quote.
 
-    A monitor has these names in its code, reads them from traces, and prints them.
+    A generated monitor has these names in its code, reads them in traces, and prints them.
     """
     first, second, third = names
     formula = f.and_(f.eventually(f.and_(f.atom(first), f.next_(f.atom(second)))), f.always(f.atom(third)))
@@ -121,7 +121,7 @@ _NAMES: Final = {
 
 
 def _ranges_case() -> ConformanceCase:
-    """Return a case with values out of range: they are clamped, and one warning is given per signal."""
+    """Return a case with values out of range: monitors clamp them, and warn once for each signal."""
     expressions: dict[str, Expression] = {
         "near": Op("-", (Const(1.0), Op("/", (SignalValue("distance"), Const(4.0))))),
         "loud": Op("*", (Const(3.0), SignalValue("noise"))),
@@ -152,7 +152,7 @@ _INFINITE: Final = ("nan", "inf", "-inf", "1e400", "-1e999", "NaN", "Infinity")
 
 
 def _cells_case() -> ConformanceCase:
-    """Return a case of traces written in several ways, some of which must be rejected."""
+    """Return a case with traces in several notations, some of which must be rejected."""
     expressions: dict[str, Expression] = {
         "a": SignalValue("x"),
         "b": Op("-", (Op("*", (Const(2.0), SignalValue("seen"))), Const(1.0))),

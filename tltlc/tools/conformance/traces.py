@@ -19,16 +19,19 @@ Pools = Mapping[str, Sequence[float]]
 """Values to draw from, per signal."""
 
 _OPEN: Final = 25.0
-"""How far values are drawn if a range has no lower or no upper end.
+"""The range from which values are drawn if the range of a signal has no lower or no upper end.
 
-Without a lower end, the range begins at -_OPEN. Without an upper end, it is 2 * _OPEN wide.
+Without a lower end, it begins at -_OPEN. Without an upper end, it is 2 * _OPEN wide.
 """
 _ATTEMPTS: Final = 200
 _TRIES: Final = 6
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "\n") -> bytes:
-    """Return a CSV file with this header and these rows; cells are quoted only if necessary."""
+    """Return the content of a CSV file with this header and these rows.
+
+    Cells are quoted only if necessary. Each line ends with ``end``.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator=end)
     writer.writerow(columns)
@@ -37,11 +40,11 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
 
 
 def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, rejected: bool = False) -> bytes:
-    """Return a random trace of ``length`` samples that a monitor reads without an error.
+    """Return a random trace, as a CSV file, of ``length`` samples that a monitor accepts.
 
-    ``pools`` gives, for some signals, the values to draw from. With ``rejected``, a sample that the
-    monitor rejects follows. The search for each sample is limited; if it finds none, the last
-    sample that was tried is taken anyway.
+    ``pools`` gives, for some signals, the values to draw from. With ``rejected``, one more sample
+    follows, which the monitor rejects. Each sample is drawn again until it fits, but at most
+    ``_ATTEMPTS`` times; after that, the last one is taken anyway.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
@@ -55,8 +58,7 @@ def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, r
 def lively_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY) -> bytes:
     """Draw several random traces, and return the one that visits the most states.
 
-    If several traces visit that many, return the one with the most steps before its verdict is
-    final.
+    Of those that visit equally many, return the one with the most steps before its verdict is final.
     """
     return max(
         [random_trace(fspa, draw, length, pools) for _ in range(_TRIES)], key=lambda trace: _liveliness(fspa, trace)
@@ -72,9 +74,9 @@ def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
 
 
 def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
-    """Draw samples until :func:`_is_accepted` gives ``accepted`` for one, and return that one.
+    """Return a random sample that a monitor accepts, or one that it rejects if ``accepted`` is false.
 
-    After ``_ATTEMPTS`` samples, return the last one anyway.
+    Samples are drawn until one fits. After ``_ATTEMPTS`` samples, the last one is returned anyway.
     """
     for _ in range(_ATTEMPTS):
         sample = {signal.name: _value(draw, signal, pools.get(signal.name, ())) for signal in fspa.signals}
@@ -84,7 +86,7 @@ def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool
 
 
 def _is_accepted(fspa: Fspa, atoms: Samples, sample: Mapping[str, float]) -> bool:
-    """Whether a monitor takes a sample: each atom has a value, and no two exclusive atoms hold."""
+    """Whether a monitor accepts a sample: each atom has a value, and no two exclusive atoms hold together."""
     try:
         check_exclusive(fspa, atoms.atom_values(sample, 1), 1)
     except MonitorError:
@@ -111,7 +113,7 @@ def _value(draw: Draw, signal: Signal, pool: Sequence[float]) -> float:
 
 
 def _text(draw: Draw, signal: Signal, value: float) -> str:
-    """Return the value of a signal as text, in a form that is drawn at random."""
+    """Return the value of a signal as text, in one of several notations, drawn at random."""
     if signal.type == "bool" and draw.chance(0.7):
         return "true" if value else "false"
     if value == int(value) and draw.chance(0.7):
