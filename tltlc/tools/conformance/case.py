@@ -16,10 +16,11 @@ from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
 
 @record
 class ConformanceCase:
-    """One case; the name of its automaton is the name of the case.
+    """A case of the corpus: an automaton, and traces to run it on.
 
-    ``about`` is a sentence that says what the case tests. ``source`` is the text of its spec; None if
-    the automaton was built without a text. ``traces`` are the contents of CSV files.
+    The name of the automaton is the name of the case. ``about`` is a sentence that says what the case
+    tests. ``source`` is the text of its spec; None if the automaton was built without a text.
+    ``traces`` are the contents of CSV files.
     """
 
     fspa: Fspa

@@ -29,9 +29,10 @@ class Export:
     ``value`` is set for a signal or param.
 
     ``meanings`` is set for a predicate that the library itself declares. It maps each number of
-    arguments that a use may have to the meaning of an example. For ``near(target: entity, close:
-    length = 1 m)``, the examples are ``near(target)`` for 1 and ``near(target, close)`` for 2. Their
-    arguments are an entity called ``target`` and a signal called ``close``.
+    arguments that a use may have to the meaning of an example. For a predicate
+    ``near(target: entity, close: length = 1 m)``, the examples are ``near(target)`` for 1 and
+    ``near(target, close)`` for 2. Their arguments are an entity called ``target`` and a signal called
+    ``close``.
     """
 
     name: str

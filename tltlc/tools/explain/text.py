@@ -45,8 +45,8 @@ def _list(block: SectionList) -> Iterator[str]:
 def _table(table: SectionTable) -> Iterator[str]:
     """Yield the lines of a table.
 
-    The other columns are as wide as their widest cell. The last two share the rest of the line, so
-    their cells may be wrapped.
+    All columns but the last two are as wide as their widest cell. The last two share the rest of the
+    line, and their cells are wrapped if necessary.
     """
     rows = (table.header, *table.rows)
     widths = [max(len(row[column]) for row in rows) for column in range(len(table.header))]

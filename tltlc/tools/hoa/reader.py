@@ -112,8 +112,8 @@ def _without_comments(source: SourceFile) -> str:
 def _syntax_error(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
     """Return the error for a text that cannot be parsed: the whole file, or a label in it.
 
-    ``whole`` is the span of this text in the file. ``at_end`` is what messages call its end: ``the
-    end of the file``, or the bracket after a label.
+    ``whole`` is the span of this text in the file. ``at_end`` is what messages call its end, for
+    example ``the end of the file``.
     """
     if not isinstance(error, UnexpectedToken):
         start = whole.start + (error.pos_in_stream or 0)

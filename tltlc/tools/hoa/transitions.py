@@ -93,9 +93,9 @@ class HoaTransitions:
     def _unlabelled_edges(self, state: HoaState) -> int:
         """Return a function from letters to the position of their edge, for a state without labels.
 
-        The position is in a tuple of its own. The first edge is for the letter without atoms, the
-        next edge for the letter with atom 0 only, and so on: bit i of the position says whether atom
-        i holds.
+        The first edge is for the letter without atoms, the next edge for the letter with atom 0 only,
+        and so on: bit i of the position says whether atom i holds. The position is a tuple of one
+        number, in the form of :meth:`_labelled_edges`.
 
         Raises TltlError, TLT0651, if the state does not have one edge for each letter.
         """

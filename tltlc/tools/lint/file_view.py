@@ -50,8 +50,8 @@ class ScopedExpression:
     def with_tree(self, tree: Expr) -> ScopedExpression:
         """Return ``tree``, a subexpression of this expression, with the same environment.
 
-        ``tree`` must not be inside a quantifier, whose body needs another environment. Use
-        :meth:`parts` to get there.
+        ``tree`` must not be inside a quantifier, whose body needs another environment. For such
+        subexpressions, use :meth:`parts`.
         """
         return ScopedExpression(tree, self.env)
 
@@ -109,8 +109,8 @@ class SpecView:
     def decision(self) -> Decision:
         """A function of clauses and a spec that says whether the clauses contradict each other.
 
-        They do if no trace satisfies all of them. These are finite or infinite traces, as the
-        ``semantics`` of this spec says. False means only that no contradiction could be proved.
+        They do if no trace satisfies all of them. Traces are finite or infinite, as the ``semantics``
+        of this spec says. False means only that no contradiction could be proved.
         """
         if self.spec.semantics == "finite":
             return unsatisfiable

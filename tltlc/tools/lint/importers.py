@@ -1,7 +1,4 @@
-"""Find the names of a file that other files may use.
-
-These are the files that import this file, directly or through other files.
-"""
+"""Find the names of a file that other files may use, because they import it directly or indirectly."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ class MinedClause:
     """A clause: its ``text``, its number of ``atoms``, and the traces that it ``accepts``.
 
     In ``atoms``, a bound counts as one atom, and so does each `and` or `or` in a step of `reach`.
-    ``not_vacuous`` has the traces that put the clause to the test: for `always (a implies eventually
-    b)`, those in which a occurs. ``kind`` is the name of the clause's template, and ``rank`` is the
-    index of the template in :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
+    ``not_vacuous`` has the traces that put the clause to the test: for `keep a implies b`, those in
+    which a occurs. ``kind`` is the name of the clause's template, and ``rank`` is the index of the
+    template in :data:`~tltlc.tools.mine.templates.KINDS`, which breaks ties.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""Find the columns of traces, which decide the atoms. So this comes before the samples are read."""
+"""Find the columns of traces. They decide which atoms exist, so they are read before the samples."""
 
 from __future__ import annotations
 

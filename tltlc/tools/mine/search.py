@@ -95,7 +95,7 @@ class SpecSearch:
         return [conjunction for _, _, conjunction in ranked]
 
     def omissions(self) -> list[str]:
-        """Return a sentence for each limit on work because of which the search left something out."""
+        """Return a sentence for each limit on work that made the search leave something out."""
         sentences = []
         if self._unrelated:
             others = "1 other is" if self._unrelated == 1 else f"{self._unrelated:,} others are"

@@ -73,7 +73,7 @@ def _letters(
 ) -> Iterator[Letter]:
     """Yield, for each sample of a trace, its letter: the set of the atoms that hold.
 
-    ``cache`` maps samples to letters, because samples often repeat. It is filled.
+    ``cache`` maps samples to letters, because samples often repeat. New samples are added to it.
     """
     reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]

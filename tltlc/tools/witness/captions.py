@@ -1,4 +1,4 @@
-"""The titles of the traces that were found, and the diagnostics about those that were not."""
+"""The titles of the traces that were found, and the diagnostics about traces that were not found."""
 
 from __future__ import annotations
 

@@ -29,10 +29,10 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
-    """Yield the implications in an expression that must hold for the expression to hold.
+    """Yield the implications in an expression, outer before inner.
 
     Implications inside `eventually`, `then`, `not` or `iff`, and in the conditions of other
-    implications, are left out.
+    implications, are left out: they need not hold for the expression to hold.
     """
     pending = [value]
     while pending:

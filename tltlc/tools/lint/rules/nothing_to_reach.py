@@ -10,7 +10,7 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each spec that is judged at its limit only because it has no goal."""
+    """Yield a finding for each spec whose episodes are judged at the limit only because it has no goal."""
     for spec in view.specs:
         # A block without a limit gets TLT0419, and a settled spec gets a warning of the compiler.
         has_other_finding = spec.is_settled or spec.spec.limit_steps is None

@@ -19,8 +19,8 @@ Specs that need more count as different, because a note must not take longer tha
 def check(view: FileView) -> Iterator[RuleFinding]:
     """Yield a finding for each spec that accepts the same traces as an earlier spec.
 
-    Both must be judged the same way. Specs that every trace or no trace satisfies are left out,
-    because the compiler already warns of them.
+    Both must also have the same judge, limit and level. Specs that every trace or no trace satisfies
+    are left out, because the compiler already warns of them.
     """
     earlier_specs: dict[object, list[SpecView]] = {}
     for spec in view.specs:

@@ -70,8 +70,7 @@ def _atom(part: ScopedExpression) -> str:
 def _goal_atoms(groups: list[set[int]], spec: SpecView) -> list[set[int]]:
     """Remove from each group the atoms that no goal asks for; leave out groups with fewer than two atoms left.
 
-    Groups are sets of indices of atoms. A goal asks for its atoms that are not below an operator
-    other than `and` and `or`.
+    Groups are sets of indices of atoms. A goal asks for an atom if only `and` and `or` are around it.
     """
     names = {part.name for goal in goals(spec) for part in _operands(goal.formula()) if part.op == "atom"}
     reached = [{index for index in group if spec.fspa.atoms[index].name in names} for group in groups]
@@ -120,10 +119,10 @@ def _same_predicate(fspa: Fspa, entities: Iterable[str]) -> list[set[int]]:
 
 
 def _atoms_together(edge: Edge, group: set[int]) -> set[int]:
-    """Return the atoms of a group that occur in the guard of an edge that needs several of them at once.
+    """If an edge can be taken only with several atoms of a group at once, return these atoms.
 
     ``group`` and the result have indices of atoms. The result is empty if the edge can be taken with
-    at most one atom of the group, that is, if a prime implicant of the guard has at most one.
+    one atom of the group or none, that is, if a prime implicant of its guard has at most one.
     """
     together = [group.intersection(atom for atom, holds in prime if holds) for prime in edge.guard.primes]
     return set().union(*together) if all(len(atoms) > 1 for atoms in together) else set()
