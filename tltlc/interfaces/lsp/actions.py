@@ -24,15 +24,15 @@ def actions(
     uri_of: Callable[[SourceFile], str],
     edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
 ) -> list[types.CodeAction]:
-    """Return quick-fix actions for the diagnostics and lint findings that touch a span of a document.
+    """Return the quick fixes for the compiler's diagnostics and the linter's findings at a span of a document.
 
-    The diagnostics are those of the compiler. A fix of one is offered only if the document then has
-    fewer errors. A fix of a finding must not change what comments such as ``// tltlc: allow TLT0420`` apply
-    to. Safe fixes are marked as preferred.
+    A fix of a compiler's error is offered only if the document has fewer errors after it. A fix of a
+    finding is offered only if comments such as ``// tltlc: allow TLT0420`` still apply to the same
+    places. Safe fixes are marked as preferred.
 
-    ``findings`` are the linter's findings in ``document``. ``encoding`` says in which units columns
-    count, such as ``utf-16``. ``uri_of`` returns the URI of a source. ``edit_of`` makes a workspace
-    edit from the text edits of each URI.
+    ``findings`` are the linter's findings in ``document``. Columns are counted in units of
+    ``encoding``, such as ``utf-16``. ``uri_of`` returns the URI of a source. ``edit_of`` makes a
+    workspace edit from the text edits of each URI.
     """
     uri = uri_of(document.source)
 

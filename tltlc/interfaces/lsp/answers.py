@@ -173,7 +173,10 @@ async def _find_symbols(server: EditorSession, params: types.WorkspaceSymbolPara
 
 
 async def run_tests(server: EditorSession, uri: str, spec: str) -> None:
-    """Show the user the test results of a spec."""
+    """Show the user how many tests of a spec pass, or why they did not run.
+
+    ``uri`` is the URI of the document that declares the spec, and ``spec`` the spec's name.
+    """
     analysis = await server.analysis_of(uri)
     figures = next((entry for entry in analysis.figures if entry.spec == spec), None) if analysis else None
     document = server.texts.document(uri)
@@ -202,7 +205,10 @@ def _workspace_edit(server: EditorSession, changes: list[tuple[Document, list[Ed
 
 
 def _place(server: EditorSession, params: Any) -> tuple[Document | None, int]:
-    """Return the document and the offset that a request is about."""
+    """Return the document of a request, and the character offset in it.
+
+    If there is no such document, return None and 0.
+    """
     document = server.texts.document(params.text_document.uri)
     return document, offset(document.source, params.position, server.encoding) if document else 0
 
@@ -220,10 +226,10 @@ def _name(server: EditorSession, params: Any) -> Occurrence | None:
 async def _name_everywhere(
     server: EditorSession, params: Any, is_needed: Callable[[Symbol, str], bool]
 ) -> Occurrence | None:
-    """Return the name that a request is about, after parsing all texts that may use it.
+    """Parse all texts that may use the name at the position of a request, then return this name.
 
-    ``is_needed(symbol, text)`` says whether a text must be parsed for a symbol. Return None if
-    there is no name at the place of the request.
+    ``is_needed(symbol, text)`` says whether ``text`` must be parsed because it may use ``symbol``.
+    Return None if there is no name at the position.
     """
     name = _name(server, params)
     if name is not None:

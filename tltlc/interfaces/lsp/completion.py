@@ -41,7 +41,8 @@ _NAMES: Final = {"NAME"}
 def completions(document: Document, offset: int, encoding: str) -> list[types.CompletionItem]:
     """Return the words that may be written at a character offset, the likeliest first.
 
-    ``encoding`` is the unit of columns in the edits that insert the words.
+    Each word comes with the edit that inserts it. The columns of edits are counted in units of
+    ``encoding``, such as ``utf-16``.
     """
     quotation = quoted_text(document.source, offset)
     if quotation is not None:
@@ -59,7 +60,7 @@ def _edits(
 ) -> list[types.CompletionItem]:
     """Add to each completion an edit that replaces ``span``, the part of the word already written.
 
-    Number the completions, so that the editor keeps their order.
+    Also number the completions, so that the editor keeps their order. Return them as a list.
     """
     at = range_of(document.source, span, encoding)
     ordered = list(items)
@@ -112,7 +113,7 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
 
 
 def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
-    """Yield the names that may follow the tokens before the cursor."""
+    """Yield completions for the names that may stand at the cursor."""
     first, before = place.first, place.piece[-1].text if place.piece else ""
     if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
         yield from _settings(document, first)
@@ -190,9 +191,9 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
 
 
 def _visible_names(document: Document, kinds: tuple[str, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the visible names of these kinds, in the order of ``kinds``.
+    """Yield completions for the visible names of some kinds, such as ``("predicate", "let")``.
 
-    Within a kind, imported names come last.
+    They come in the order of ``kinds``; within a kind, imported names come last.
     """
     scope = document.scope
     bindings = [(name, binding) for name, binding in scope.names.items() if binding.kind in kinds]
@@ -214,9 +215,9 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the atoms of the spec that the ``test`` block around the cursor tests.
+    """Yield completions for the atoms of the spec that the ``test`` block around the cursor is for.
 
-    ``block`` contains the tokens of the block before the cursor.
+    ``block`` contains the tokens from the start of the block up to the cursor.
     """
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
@@ -228,9 +229,9 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
 
 
 def _local_names(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield the parameters of the declaration at the cursor, and the variables of its quantifiers.
+    """Yield completions for the parameters of the declaration at the cursor, and for its quantifiers' variables.
 
-    ``piece`` contains the tokens of the declaration before the cursor.
+    ``piece`` contains the tokens from the start of the declaration up to the cursor.
     """
     names: dict[str, None] = {}
     if piece and piece[0].text in ("predicate", "let"):
@@ -246,9 +247,10 @@ def _local_names(piece: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
 
 
 def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
-    """Return the word before the innermost open bracket, and how many commas follow the bracket.
+    """Return the word before the innermost open bracket, and how many commas follow directly inside this bracket.
 
-    Return None if no bracket is open, or if no name precedes it.
+    The word is a name, or ``in``. After the text ``near(s1,`` the result is ``("near", 1)``. Return
+    None if no bracket is open, or if no such word precedes the bracket.
     """
     open_: list[tuple[str, int]] = []
     for index, token in enumerate(piece):
@@ -263,7 +265,7 @@ def _open_call(piece: tuple[Token, ...]) -> tuple[str, int] | None:
 
 
 def _is_in_body(piece: tuple[Token, ...]) -> bool:
-    """Whether these tokens of a declaration contain its ``=``, so the cursor is in its body."""
+    """Whether the tokens of a declaration up to the cursor include its ``=``, so that the cursor is in the body."""
     depth = 0
     for token in piece:
         depth += (token.type in ("LPAR", "LSQB")) - (token.type in ("RPAR", "RSQB"))
@@ -290,7 +292,11 @@ def _imports(document: Document, place: Cursor) -> Iterator[types.CompletionItem
 
 
 def _libraries(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the libraries that an import finds by name, first those in the folder of the document."""
+    """Yield completions for the libraries that can be imported by name.
+
+    The libraries in the folder of the document come first, then those of the project, then the
+    standard library.
+    """
     folders: dict[str, Path] = {}
     for folder in (_folder(document), *document.project.libraries, standard_library()):
         for path in _sources(folder, document):
@@ -302,7 +308,10 @@ def _libraries(document: Document) -> Iterator[types.CompletionItem]:
 
 
 def _paths(document: Document) -> Iterator[types.CompletionItem]:
-    """Yield the paths of the other source files in the folder of the document and in its parent folder."""
+    """Yield completions for the paths of the other source files in the document's folder and its parent folder.
+
+    The paths are relative, such as ``doors.tltl`` and ``../doors.tltl``.
+    """
     here = _folder(document)
     for folder, prefix in ((here, ""), (here.parent, "../")):
         for path in _sources(folder, document):

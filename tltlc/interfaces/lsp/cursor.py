@@ -24,10 +24,10 @@ class Cursor:
     """The cursor in a text, and what may be written there.
 
     ``word`` is the span of the unfinished word that ends at the cursor. ``piece`` contains the
-    tokens before that word, from the start of the declaration, clause or test line; ``start`` is
-    the grammar symbol to parse them as. ``around`` contains the tokens of the enclosing block up to
-    the cursor; it is empty outside blocks. ``allowed`` are the terminals that may follow ``piece``;
-    None if ``piece`` contains a syntax error.
+    tokens before that word, from the start of the declaration, clause or test line. ``start`` is
+    the grammar symbol of that part: ``declaration``, ``clause`` or ``test_item``. ``around`` contains
+    the tokens of the enclosing block up to the word; it is empty outside blocks. ``allowed`` are
+    the terminal symbols that may follow ``piece``; None if ``piece`` contains a syntax error.
     """
 
     word: Span
@@ -74,11 +74,11 @@ def _word_start(text: str) -> int:
 
 
 def quoted_text(source: SourceFile, offset: int) -> tuple[str, Span] | None:
-    """Return the word before a quoted text, such as ``import``, and the span of the text up to ``offset``.
+    """Return the word before the quoted text at ``offset``, and the span of this text up to ``offset``.
 
-    The quoted text is the one that contains ``offset``; the span starts after its quotation mark.
-    The word is empty if nothing precedes the quotation mark. Return None if ``offset`` is not in a
-    quoted text.
+    For ``import "lib`` with ``offset`` at its end, the word is ``import``, and the span covers
+    ``lib``. The word is empty if nothing precedes the quotation mark. Return None if ``offset`` is
+    not in a quoted text.
     """
     tokens = tokenize(source.text[:offset]).tokens[:-1]
     if not tokens or tokens[-1].type != BAD or not tokens[-1].text.startswith('"'):
@@ -110,7 +110,7 @@ def _frozen(allowed: set[str] | None) -> frozenset[str] | None:
 
 
 def _accepted_terminals(start: str, tokens: Sequence[Token]) -> set[str] | None:
-    """Return the terminal symbols that may follow ``tokens``, parsed as the grammar symbol ``start``.
+    """Parse ``tokens`` as the grammar symbol ``start``, and return the terminal symbols that may follow.
 
     Return None if the tokens contain a syntax error.
     """

@@ -28,10 +28,7 @@ from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
 _LONGEST: Final = 600
-"""The most characters of a declaration that is shown whole.
-
-If a declaration is longer, only the part before its body is shown.
-"""
+"""The most characters of a declaration that is shown as written. A longer one is shown by its head."""
 
 _SUPPLIED_AS: Final = {
     "length": "metres",
@@ -45,7 +42,12 @@ _SUPPLIED_AS: Final = {
 def declaration_text(
     declaration: Union[Declaration, NameExpr, Parameter, Quantified], source: SourceFile, *, head: bool = False
 ) -> str:
-    """Return a declaration as written; if ``head``, only the part before its ``=`` or ``{``."""
+    """Return a declaration as written, or its head if ``head`` is set or the declaration is longer than 600 characters.
+
+    The head of a spec is ``spec NAME``; the head of a predicate or ``let`` is the part before
+    ``=``. For other declarations, it is the whole declaration on one line. An entity and a
+    quantifier are always one line, such as ``entity key`` and ``all x in (key, door)``.
+    """
     if isinstance(declaration, NameExpr):
         return f"entity {declaration.name}"
     if isinstance(declaration, Quantified):
@@ -63,10 +65,10 @@ def declaration_text(
 
 
 def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
-    """Describe the declaration of a name that is not a spec, in Markdown.
+    """Describe in Markdown the declaration of a name that is not a spec: its text, documentation and meaning.
 
     ``env`` contains the resolved meanings of visible names. ``via`` is the name of the imported file
-    that declares the name; None if the file itself declares it.
+    that declares the name; None if the document itself declares it.
     """
     declaration = symbol.declaration
     lines = [_code(declaration_text(declaration, symbol.source))]
@@ -78,10 +80,11 @@ def symbol_markdown(symbol: Symbol, env: Env, via: str | None) -> str:
 
 
 def spec_markdown(declaration: SpecDecl, spec: Spec | None, source: SourceFile, figures: str | None) -> str:
-    """Describe a spec in Markdown: its meaning in English, its settings, and ``figures``.
+    """Describe a spec in Markdown: its meaning in English, its settings, and the size of its automaton.
 
-    ``figures`` is a text about the size of the spec's automaton; None if the size is not known.
-    ``spec`` is the resolved spec; None if the spec has errors.
+    ``figures`` is a text about the size, such as ``7 states, distance 3.``; None if the size is not
+    known. ``spec`` is the resolved spec. If it is None because the spec has errors, meaning and
+    settings are left out.
     """
     lines = [_code(declaration_text(declaration, source, head=True))]
     lines += [declaration.doc] if declaration.doc else []

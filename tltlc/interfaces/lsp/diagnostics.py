@@ -29,7 +29,8 @@ def protocol_diagnostic(
     """Convert a diagnostic for display in a document.
 
     A diagnostic of an imported file appears at the import through which the document reads that
-    file. ``encoding`` is the unit of columns, and ``uri_of`` returns the URI of a source.
+    file. Columns are counted in units of ``encoding``, such as ``utf-16``. ``uri_of`` returns the
+    URI of a source.
     """
     diagnostic = shorten(diagnostic)
     main = label_in(diagnostic, document)
@@ -64,7 +65,10 @@ def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
 
 
 def project_file_diagnostic(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
-    """Convert a diagnostic of a project file, for display in that file."""
+    """Convert a diagnostic of a project file (``tltl.toml``), for display in that file.
+
+    Columns are counted in units of ``encoding``, such as ``utf-16``.
+    """
     diagnostic = shorten(diagnostic)
     label = diagnostic.labels[0]
     return types.Diagnostic(
@@ -79,7 +83,9 @@ def project_file_diagnostic(diagnostic: Diagnostic, encoding: str) -> types.Diag
 def _import_of(diagnostic: Diagnostic, document: Document) -> Span:
     """Return the span of the import through which the document reads the file of a diagnostic.
 
-    Without such an import, return the span of the first import, or the start of the text.
+    The span covers the name or path after ``import``. Without such an import, return the span of
+    the first import. If there is no import, or the diagnostic names no file, return an empty span
+    at the start of the text.
     """
     names = {label.source.name for label in diagnostic.labels}
     for declaration, loaded in document.resolution.modules[-1].imports:

@@ -1,4 +1,4 @@
-"""One version of a text, with those results of the compiler that are quick: its syntax and names."""
+"""One version of a text, with what the compiler finds out quickly: its syntax and names."""
 
 from __future__ import annotations
 
@@ -31,10 +31,11 @@ if TYPE_CHECKING:
 class Document:
     """One version of a text, with its syntax and names.
 
-    ``texts`` contains the texts of all open documents, by location; they replace the files on disk.
-    ``notes`` contains the stamps, by path, of the files that were read to find the project;
-    :meth:`is_current` compares them with new stamps (:func:`tltlc.io.access_log.stamp`). Each property
-    is computed on first use and then cached, because the text does not change.
+    ``project`` has the settings of the nearest ``tltl.toml``. ``texts`` contains the texts of all open
+    documents, by path (for an unsaved text, by URI); they replace the files on disk. ``notes``
+    contains, by path, the stamps (time of change, size) of the files that were read to find the
+    project; :meth:`is_current` compares them with the present stamps. Each property is computed on
+    first use and then cached, because the text does not change.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class Document:
 
     @property
     def module(self) -> Module:
-        """The syntax tree of the text; after syntax errors, without the parts that were not parsed."""
+        """The syntax tree of the text. If there are syntax errors, the parts that cannot be parsed are missing."""
         return self._session.module
 
     @property
@@ -59,7 +60,7 @@ class Document:
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The declarations that the names in the text refer to, also in imported files."""
+        """The result of resolving the names in the text and in the files that it imports, with its diagnostics."""
         with unsaved_texts(self.texts), access_log() as notes:
             result = self._session.resolution
         self._notes.update(notes)
@@ -87,7 +88,11 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics about syntax and names, without those that a comment or the project silences."""
+        """The diagnostics about syntax and names, except those that a comment or the project silences.
+
+        If there is a syntax error, these are errors only; errors in names that may be consequences
+        of the syntax error are left out.
+        """
         if self.is_broken:
             # Apart from syntax errors, report only errors in names that the unparsed parts cannot explain.
             errors = [diagnostic for diagnostic in self.resolution.diagnostics if diagnostic.severity == "error"]
@@ -121,7 +126,7 @@ class Document:
         return occurrences(self.scope, self.tokens)
 
     def name_at(self, offset: int) -> Occurrence | None:
-        """Return the name at an offset, or the name that ends at it; None if there is neither."""
+        """Return the name that contains an offset or ends at it; None if there is no such name."""
         return next((name for name in self.names if name.span.start <= offset <= name.span.end), None)
 
     def token_at(self, offset: int) -> Token | None:
@@ -130,7 +135,10 @@ class Document:
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """The locations of this file and of all files that it imports, also indirectly."""
+        """The locations of this document and of all files that it imports, also indirectly.
+
+        A location is an absolute path, or the URI of a text that is not a file.
+        """
         return frozenset(location_of(loaded.module.source) for loaded in self.resolution.modules)
 
     def depends_on(self, location: str) -> bool:

@@ -1,6 +1,7 @@
-"""Show, after each limit or bound that is written as a time, its number of steps.
+"""Show the number of steps after each limit or bound that is written as a time: ``limit 4 s = 40 steps``.
 
-The steps depend on the clock, which may be declared in another file.
+The number depends on the length of a step, which a ``clock`` declaration sets, perhaps in another
+file.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tltlc.resolve.problem import ResolutionError
 def hints(document: Document, span: Span, encoding: str) -> list[types.InlayHint]:
     """Return hints such as ``= 40 steps`` for the times that end within a span of a document.
 
-    ``encoding`` is the unit of columns.
+    Columns are counted in units of ``encoding``, such as ``utf-16``.
     """
     visible = [duration for duration in durations(document) if span.start <= duration[0].span.end <= span.end]
     return [
@@ -38,7 +39,10 @@ def steps_text(steps: int) -> str:
 
 
 def durations(document: Document) -> Iterator[tuple[NumberExpr, int]]:
-    """Yield each limit of a spec and each temporal bound that is written as a time, with its steps."""
+    """Yield each limit of a spec and each temporal bound that is written as a time, with its number of steps.
+
+    Times that cannot be converted, for example without a ``clock`` declaration, are left out.
+    """
     for declaration in document.module.declarations:
         for number in _counts(declaration):
             if number.unit not in (None, "step", "steps"):

@@ -12,7 +12,7 @@ from tltlc.interfaces.lsp.positions import range_of
 def text_edit(source: SourceFile, edit: Edit, encoding: str) -> types.TextEdit:
     """Convert an edit of a source text to an edit of the Language Server Protocol.
 
-    ``encoding`` is the unit of columns.
+    Columns are counted in units of ``encoding``, such as ``utf-16``.
     """
     return types.TextEdit(range_of(source, edit.span, encoding), edit.text)
 
@@ -27,10 +27,10 @@ def apply_edits(text: str, edits: list[Edit]) -> str:
 
 
 def difference(source: SourceFile, after: str) -> list[Edit]:
-    """Return the shortest edit that turns the text into ``after``, as a list of one edit.
+    """Return the shortest single edit that turns the text of ``source`` into ``after``, in a list.
 
     The list is empty if both texts are equal. If the text of ``source`` contains CRLF line ends,
-    those of ``after`` are first converted to CRLF.
+    the line ends of ``after`` are first converted to CRLF.
     """
     before = source.text
     if "\r\n" in before:

@@ -19,9 +19,10 @@ FileMoves = Sequence[tuple[str, str]]
 
 
 def edits_of_moves(moves: FileMoves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
-    """Return the edits, by document, that correct the imports which renamed files would break.
+    """Return the edits of imports that are needed after files are renamed, by document.
 
-    ``moves`` contains the old and new paths of the renamed files and folders.
+    ``moves`` contains the old and new paths of the renamed files and folders. Documents without
+    edits are left out.
     """
     changes = [
         (document, list(_edits(document, moves))) for document in workspace.all() if may_import(document.source.text)
@@ -65,10 +66,12 @@ def _leads_to(declaration: Import, folder: str, there: str) -> bool:
 
 
 def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
-    """Return the text after ``import`` with which a file in ``folder`` imports the file ``there``.
+    """Return the text after ``import`` with which a file in ``folder`` imports the file at path ``there``.
 
-    Return a name if ``declaration`` imports by name and the path ``there`` allows a name; otherwise
-    a path in quotation marks. Return None if the path cannot be quoted in a source text.
+    If ``declaration`` imports by name, and the file is in or below ``folder`` or one of
+    ``libraries``, this is a name, such as ``game.doors`` for ``game/doors.tltl``. Otherwise, and if a
+    part of the path is not a valid name, it is a relative path in quotation marks. Return None if
+    the path cannot be quoted in a source text.
     """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):

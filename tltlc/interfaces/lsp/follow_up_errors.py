@@ -1,4 +1,4 @@
-"""Find errors that may only follow from syntax errors, because a part of a text was not parsed."""
+"""Find errors that may be mere consequences of syntax errors, because a part of the text was not parsed."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class UnparsedParts:
     """Lists what the parser may have missed in a text with syntax errors.
 
     ``declared`` has the names that the unparsed parts may declare. ``imports`` says whether these
-    parts may contain an import, and ``clock`` whether they may contain a clock. ``tests`` has, for
-    each parsed test, the span of the spec's name, because a diagnostic about the whole test has its
-    label there. ``source`` is the text.
+    parts may contain an import, and ``clock`` whether they may contain a ``clock`` declaration.
+    ``tests`` has, for each parsed test, the span of the spec's name, because a diagnostic about the
+    whole test has its label there. ``source`` is the text.
     """
 
     declared: frozenset[str]
@@ -35,9 +35,10 @@ class UnparsedParts:
     source: SourceFile
 
     def may_explain(self, diagnostic: Diagnostic) -> bool:
-        """Whether an unparsed part may contain the thing that a diagnostic reports as missing.
+        """Whether a diagnostic reports something as missing that an unparsed part may contain.
 
-        Such things are declarations of names, the clock, and the ``expect`` of a test.
+        This may be the declaration of a name, an atom of a spec, the clock, or the ``expect`` of a
+        test.
         """
         if diagnostic.code == _NO_SUCH_ATOM:
             # The atom may belong to a clause that is being written.
@@ -56,7 +57,10 @@ class UnparsedParts:
 
 
 def unparsed_parts(module: Module, tokens: Sequence[Token]) -> UnparsedParts:
-    """Return what the unparsed parts of a text may contain, from its parsed declarations and its tokens."""
+    """Find out what the unparsed parts of a text may contain.
+
+    ``module`` has the declarations that were parsed, and ``tokens`` are those of the whole text.
+    """
     words = [token.text for token in tokens]
     imports_read = sum(isinstance(declaration, Import) for declaration in module.declarations)
     return UnparsedParts(

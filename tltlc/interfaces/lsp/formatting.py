@@ -14,7 +14,7 @@ def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None
     """Return the edit that formats a document in the style of its project.
 
     The list is empty if the document is formatted already. Return None if it has a syntax error.
-    ``encoding`` is the unit of columns.
+    Columns are counted in units of ``encoding``, such as ``utf-16``.
 
     Raises:
         TltlError: TLT0004, the text is too large, or would become too large.

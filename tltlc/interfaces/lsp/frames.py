@@ -1,9 +1,9 @@
 """Split the bytes from an editor into messages: headers, an empty line, and a body.
 
-Some editors send wrong lengths. So a body ends at the bracket that closes its first bracket, even
-if the header announces more bytes: an editor that waits for an answer sends nothing more. A body
-also ends at the next header. A JSON string contains no raw line break, so a line
-``Content-Length: N`` cannot be part of a JSON text and always starts a message.
+Some editors announce wrong lengths. So a body, which is JSON, ends at the bracket that closes its
+first bracket, even if the header announces more bytes: an editor that waits for an answer sends
+nothing more. A body also ends at the next header. A JSON string contains no raw line break, so a
+line ``Content-Length: N`` cannot be part of a JSON text and always starts a message.
 """
 
 from __future__ import annotations
@@ -135,16 +135,17 @@ class Frames:
             self._json_end = JsonEnd()
 
     def _pass_over(self, skipped: bytes, *, is_long: bool) -> None:
-        """Record a fault: bytes other than a header are skipped. Do so once for adjacent bytes.
+        """Record a fault for skipped bytes; adjacent skipped bytes get only one fault.
 
-        ``is_long`` says whether the bytes belong to a line that is too long.
+        White space gets no fault, and neither does a header ``Content-Type``, unless its line is too
+        long (``is_long``).
         """
         if skipped.strip() and not self._is_skipping and (is_long or not _OTHER_HEADER.match(skipped)):
             self._is_skipping = True
             self._frames.append(Fault(f"a message without a header `Content-Length` is skipped: {skipped[:60]!r}"))
 
     def _drop_long_line(self) -> None:
-        """Drop the start of an unfinished line that is too long, and record a fault.
+        """If the unfinished line in the buffer is too long, drop its start and record a fault.
 
         The last ``_OVERLAP`` bytes remain, because the next header may start there.
         """
@@ -157,7 +158,7 @@ class Frames:
     # --- bodies -------------------------------------------------------------------------------
 
     def _read_body(self) -> bool:
-        """Read a body up to its last bracket, its announced length or the next header.
+        """Read a body up to its last bracket, its announced length or the next header, whichever comes first.
 
         Return False if the end of the body has not arrived.
         """
@@ -187,8 +188,9 @@ class Frames:
     def _read_padding(self) -> bool:
         """Skip white space after the last bracket of a body, up to the length that its header announced.
 
-        Return whether there is nothing more to skip. If one of these bytes is not white space, the
-        header was wrong: record a fault, and search for the next header.
+        Return True once all these bytes are skipped, and False if some have not arrived. If one of
+        them is not white space, the header was wrong: record a fault, and search for the next
+        header.
         """
         padding = self._buffer[: self._padding]
         blank = len(padding) - len(padding.lstrip(_WHITE))
@@ -215,7 +217,10 @@ def _short_body(size: int, length: int) -> Fault:
 
 
 def _prefix_pattern(word: bytes, ending: bytes) -> bytes:
-    """Return a pattern that matches each prefix of a word, and the word followed by ``ending``."""
+    """Return a pattern that matches each shorter prefix of a word, and the word followed by ``ending``.
+
+    For ``b"ab"``, the pattern is ``(?:a(?:bENDING)?)?``.
+    """
     pattern = ending
     for letter in reversed(word):
         pattern = b"(?:%c%s)?" % (letter, pattern)

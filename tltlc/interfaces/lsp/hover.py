@@ -29,9 +29,10 @@ _LARGEST: Final = 2000
 
 
 def hover(document: Document, offset: int, analysis: DocumentAnalysis | None, encoding: str) -> types.Hover | None:
-    """Describe the name, operator, duration or keyword at an offset; None if there is none of them.
+    """Describe the name, operator, duration or keyword at a character offset; return None at any other place.
 
-    ``analysis`` has the size of each spec's automaton. ``encoding`` is the unit of columns.
+    ``analysis`` has the size of each spec's automaton; None if it is not known. Columns are counted
+    in units of ``encoding``, such as ``utf-16``.
     """
     description = (
         _name(document, offset, analysis)
@@ -63,7 +64,10 @@ def _name(document: Document, offset: int, analysis: DocumentAnalysis | None) ->
 
 
 def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Describe the keyword at an offset: its syntax and, for a clause, the meaning of the clause."""
+    """Describe the keyword at an offset: its syntax and, for a clause, the meaning of the clause.
+
+    Return the description and the span of the keyword; None if there is no keyword.
+    """
     token = document.token_at(offset)
     if token is None or token.text not in _FORMS:
         return None
@@ -82,7 +86,11 @@ def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
 
 
 def _operator(document: Document, offset: int) -> tuple[str, Span] | None:
-    """Describe the meaning of the subformula whose operator is at an offset."""
+    """Describe the meaning of the subformula whose operator is at an offset.
+
+    Return the description and the span of the operator. Return None if there is no operator, or if
+    the subformula has errors or is too large.
+    """
     for declaration in document.module.declarations:
         if not isinstance(declaration, SpecDecl) or not declaration.span.start <= offset < declaration.span.end:
             continue

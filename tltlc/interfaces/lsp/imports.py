@@ -12,7 +12,7 @@ from tltlc.interfaces.lsp.positions import range_of
 
 
 def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
-    """Yield the span and the file of each ``import`` that leads to a file."""
+    """Yield each ``import`` that leads to a file: the span of the name or path in it, and the file."""
     for declaration, loaded in document.resolution.modules[-1].imports:
         yield declaration.target_span, loaded.module.source
 
@@ -20,7 +20,8 @@ def targets(document: Document) -> Iterator[tuple[Span, SourceFile]]:
 def links(document: Document, encoding: str, uri_of: Callable[[SourceFile], str]) -> list[types.DocumentLink]:
     """Return the imports of a document as links to their files.
 
-    ``encoding`` is the unit of columns, and ``uri_of`` returns the URI of a source.
+    Columns are counted in units of ``encoding``, such as ``utf-16``. ``uri_of`` returns the URI of a
+    source.
     """
     return [
         types.DocumentLink(range_of(document.source, span, encoding), target=uri_of(source))

@@ -23,10 +23,10 @@ class JsonEnd:
         self._in_string = False
 
     def find(self, data: bytearray, limit: int) -> int | None:
-        """Return the offset after the bracket that closes the first bracket.
+        """Return the offset just after the bracket that closes the first bracket.
 
-        Return None if ``data[:limit]`` lacks the closing bracket. Call again when more bytes have
-        arrived; ``data`` must then start with the bytes of the previous call.
+        Return None if ``data[:limit]`` does not contain the closing bracket. Call again when more
+        bytes have arrived; ``data`` must then start with the bytes of the previous call.
         """
         limit = min(limit, len(data))
         while self._at < limit:
@@ -41,10 +41,9 @@ class JsonEnd:
         return None
 
     def _leave_string(self, data: bytearray, limit: int) -> bool:
-        """Move behind the current JSON string; return False if its end is not in ``data[:limit]``.
+        """Move to the end of the current JSON string; return False if its end is not in ``data[:limit]``.
 
-        In this case, the next call resumes at ``limit``, or at an incomplete escape before
-        ``limit``.
+        After False, the next call resumes at ``limit``, or at an incomplete escape just before it.
         """
         match = _INSIDE.match(data, self._at, limit)
         self._at = match.end() if match else limit

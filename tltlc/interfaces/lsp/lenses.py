@@ -1,4 +1,4 @@
-"""Show numbers above each spec: its states, the distance to its goal, and the results of its tests."""
+"""Show numbers above each spec: the states of its automaton, the distance to the goal, and its test results."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from tltlc.interfaces.lsp.positions import range_of
 from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis, SpecFigures
 
 RUN_TESTS: Final = "tltlc.runTests"
-"""The command of the lens with the test results; its arguments are the URI and the spec's name."""
+"""The command of the lens with the test results; its arguments are the document's URI and the spec's name."""
 
 
 def lenses(document: Document, uri: str, analysis: DocumentAnalysis, encoding: str) -> list[types.CodeLens]:
-    """Return one or two lenses for each spec: its size and, if it has tests, their results.
+    """Return one or two lenses for each analysed spec: the size of its automaton and, if it has tests, their results.
 
-    ``encoding`` is the unit of columns.
+    ``uri`` is the URI of the document. Columns are counted in units of ``encoding``, such as
+    ``utf-16``.
     """
     figures = {entry.spec: entry for entry in analysis.figures}
     result = []
@@ -35,13 +36,13 @@ def lenses(document: Document, uri: str, analysis: DocumentAnalysis, encoding: s
 
 
 def figures_text(figures: SpecFigures) -> str:
-    """Return a text such as ``7 states, distance 3``."""
+    """Return the size of a spec's automaton as a text: ``7 states, distance 3`` or ``2 states, cannot be met``."""
     states = f"{figures.states} state{'' if figures.states == 1 else 's'}"
     return f"{states}, " + ("cannot be met" if figures.distance is None else f"distance {figures.distance}")
 
 
 def tests_text(figures: SpecFigures) -> str:
-    """Return a text such as ``3 tests pass`` or ``1 of 3 tests fails``."""
+    """Return the test results of a spec as a text: ``3 tests pass`` or ``1 of 3 tests fails``."""
     count = figures.passed + figures.failed
     tests = f"{count} test{'' if count == 1 else 's'}"
     if figures.failed:

@@ -15,7 +15,7 @@ from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
 SymbolKind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
 MERGED: tuple[SymbolKind, ...] = ("signal", "param", "entity")
-"""Kinds whose declarations count as one if several files of a program declare the same name.
+"""The kinds of symbols that several files of a program may declare: equal names are then one symbol.
 
 A program is a file with all files that it imports.
 """
@@ -25,7 +25,7 @@ _FORMULA_CLAUSES = ("reach", "keep", "avoid", "require")
 
 @record
 class Symbol:
-    """The declaration that a name refers to; ``span`` is the place of the declared name in ``source``."""
+    """A declared name, such as a signal, with its declaration; ``span`` is the place of the name in ``source``."""
 
     kind: SymbolKind
     name: str
@@ -62,7 +62,10 @@ class Occurrence:
 
 
 def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]:
-    """Return every name of a module that refers to a declaration, in the order of the text."""
+    """Return every place in a module where a declared name stands, in the order of the text.
+
+    ``scope`` has the module and its visible names, and ``tokens`` are the tokens of its text.
+    """
     walk = _Walk(scope, tokens)
     for declaration in scope.module.declarations:
         walk.declaration(declaration)
@@ -70,7 +73,7 @@ def occurrences(scope: Scope, tokens: Sequence[Token]) -> tuple[Occurrence, ...]
 
 
 def symbol_of(binding: Binding) -> Symbol:
-    """Return the declaration that a visible name refers to."""
+    """Return the symbol that a visible name refers to."""
     return Symbol(binding.kind, binding.name, binding.declaration, binding.scope.source, binding.span)
 
 
@@ -174,9 +177,11 @@ class _Walk:
             waiting += [(child, visible) for child in children(part)]
 
     def _with_variable(self, part: tree.Quantified, local: _Locals) -> _Locals:
-        """Return the local names that are visible in the body of a quantifier: ``local`` and its variable.
+        """Return the local names that are visible in the body of the quantifier ``part``.
 
-        Also collect the variable, which is the second token of the quantifier.
+        These are the names in ``local`` and the variable of the quantifier. Also collect the
+        variable, which is the second token of the quantifier. In a state label, whose tokens are
+        not known, return ``local`` unchanged.
         """
         index = self._starts.get(part.span.start) if self._label_start is None else None
         if index is None or index + 1 >= len(self._tokens):

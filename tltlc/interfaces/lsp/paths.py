@@ -20,7 +20,7 @@ def location_at(uri: str) -> str:
 
 
 def source_at(uri: str, text: str) -> SourceFile:
-    """Return the source text of a document."""
+    """Return ``text`` as the source of the document at ``uri``; its name is the path, or ``<URI>`` if it is no file."""
     path = _file_path(uri)
     return SourceFile(path, text) if path else SourceFile(f"<{uri}>", text, "text", uri)
 

@@ -1,8 +1,9 @@
 """Convert between character offsets in a text and positions of the Language Server Protocol.
 
-A position has a line, counted from 0, and a column, counted in units of the agreed encoding. A
-conversion takes logarithmic time, because the characters that count more than one unit are
-located only once for each text.
+A position has a line, counted from 0, and a column, counted in units of an encoding that the editor
+chooses: bytes in UTF-8, 16-bit units in UTF-16, characters in UTF-32. A conversion takes
+logarithmic time, because the characters that count more than one unit are located only once for
+each text.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 
 UTF_16: Final = "utf-16"
-"""The default encoding; characters beyond the BMP (𝒰) count two units."""
+"""The default encoding; characters above U+FFFF, such as 𝒰, count two units."""
 
 _WIDE: Final = {"utf-8": re.compile("[^\x00-\x7f]"), UTF_16: re.compile("[^\x00-\uffff]")}
 """The characters that count more than one unit; in UTF-32 there are none."""
@@ -54,7 +55,11 @@ def _wide(text: str, encoding: str) -> _Wide:
 
 
 def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.Position:
-    """Return the position of the character at an offset; within a line end, the end of the line."""
+    """Return the position of the character at an offset.
+
+    Between the two characters of a CRLF, return the end of the line; beyond the text, the nearest
+    position in it.
+    """
     at = min(max(0, offset), len(source.text))
     if at and source.text[at - 1 : at + 1] == "\r\n":
         at -= 1
@@ -73,7 +78,10 @@ def whole(source: SourceFile, encoding: str = UTF_16) -> types.Range:
 
 
 def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> int:
-    """Return the offset of the character at a position, or of the nearest one in the text."""
+    """Return the offset of the character at a position.
+
+    Beyond the end of a line, return the end of the line; below the last line, the end of the text.
+    """
     last, _ = source.position(len(source.text))
     if at.line >= last:
         return len(source.text)
@@ -83,7 +91,7 @@ def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> in
 
 
 def _start(source: SourceFile, line: int) -> int:
-    """Return the offset of the first character of line ``line``; the first line is 0, and the line exists."""
+    """Return the offset of the first character of an existing line; line 0 is the first line."""
     low, high = 0, len(source.text)
     while low < high:
         middle = (low + high) // 2

@@ -11,10 +11,10 @@ from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 
 
 def previous_diagnostics(before: Document, analysis: DocumentAnalysis, now: Document) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of an earlier analysis, moved to their places in the text ``now``.
+    """Return the diagnostics of the slow analysis of an earlier text, moved to their places in the text ``now``.
 
-    ``analysis`` is the slow analysis of the text ``before``. Diagnostics whose places were edited
-    are left out, and so are the diagnostics that ``now`` already has.
+    ``analysis`` is the slow analysis of ``before``. Left out are the diagnostics whose places were
+    edited, those that ``now`` already has, and those that ``before`` had without the slow analysis.
     """
     edits = difference(before.source, now.source.text)
     reported = {_without_fixes(diagnostic) for diagnostic in now.diagnostics}
@@ -27,14 +27,14 @@ def previous_diagnostics(before: Document, analysis: DocumentAnalysis, now: Docu
 
 
 def _without_fixes(diagnostic: Diagnostic) -> Diagnostic:
-    """Return the diagnostic without its fixes: their edits are for another text."""
+    """Return a diagnostic without its fixes, whose edits are for another text."""
     return replace(diagnostic, fixes=())
 
 
 def _at_new_place(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
-    """Return the diagnostic at its place in ``source``, the text after ``edits``.
+    """Move the labels of a diagnostic to their places in ``source``, the text after ``edits``.
 
-    Return None if that place was edited.
+    Return the moved diagnostic without fixes; None if one of the places was edited.
     """
     labels: list[Label] = []
     for label in diagnostic.labels:

@@ -49,7 +49,7 @@ class Protocol(LanguageServerProtocol):
             self.handle_message(message)
 
     def handle_message(self, message: Any) -> None:
-        """Check a message and handle it."""
+        """Check a message, then handle it; refuse it if it is malformed."""
         try:
             structured = self._parse(message)
         except JsonRpcException as error:
@@ -92,7 +92,10 @@ class Protocol(LanguageServerProtocol):
         return structured
 
     def _check_request(self, message: dict[str, Any]) -> None:
-        """Raise JsonRpcException if a request or notification is malformed or comes at a wrong time."""
+        """Raise JsonRpcException if a request or notification is malformed or comes at a wrong time.
+
+        If the method is unknown and the message has no params, set its params to None.
+        """
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method must be a text, and an id must be a whole number or a text")

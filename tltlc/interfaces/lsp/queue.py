@@ -19,10 +19,10 @@ The analysis of a small file takes much less time. To start the process again al
 
 
 class Queue:
-    """Analyses documents one after another, first the one that the user looked at last.
+    """Analyses documents one after another; the document that the user looked at last comes first.
 
     The caller passes two functions. ``analyse(uri, again)`` analyses a document; if ``again`` is
-    false, it may return an earlier analysis of the same text. ``give_up`` stops the current
+    false, it may return an earlier analysis of the same text. ``give_up()`` stops the current
     analysis: ``analyse`` then returns None soon.
     """
 
@@ -47,16 +47,17 @@ class Queue:
         self._give_way()
 
     def put(self, uri: str, *, again: bool = False) -> None:
-        """Schedule the analysis of a document; with ``again``, even if there is an analysis of its text."""
+        """Schedule the analysis of a document; with ``again``, even if its text was analysed before."""
         self._waiting[uri] = again or self._waiting.get(uri, False)
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._work())
         self._give_way()
 
     async def answer(self, uri: str) -> DocumentAnalysis | None:
-        """Analyse a document before all others, and return the result.
+        """Analyse a document before all others, and return the analysis.
 
-        Return None if the analysis is dropped or takes too long, or if the document has errors.
+        Return None if :meth:`drop` cancels the analysis, if it takes too long, or if the document
+        has errors.
         """
         future: asyncio.Future[DocumentAnalysis | None] = asyncio.get_running_loop().create_future()
         self._answers.setdefault(uri, []).append(future)
@@ -65,7 +66,7 @@ class Queue:
         return await future
 
     def drop(self, uri: str) -> None:
-        """Cancel the analysis of a document, because its text has changed."""
+        """Cancel the analysis of a document that has changed or was closed; :meth:`answer` then returns None for it."""
         self._waiting.pop(uri, None)
         if self._current == uri:
             self._give_up()

@@ -30,7 +30,10 @@ Matches = list[tuple[Document, list[Occurrence]]]
 
 
 def references(symbol: Symbol, workspace: Workspace) -> Matches:
-    """Return every use and declaration of a symbol in the workspace, by document."""
+    """Return every use and declaration of a symbol in the workspace, by document.
+
+    Documents without any are left out.
+    """
     documents = _documents(symbol, workspace)
     programs = _programs(symbol, documents)
     result = []
@@ -43,10 +46,10 @@ def references(symbol: Symbol, workspace: Workspace) -> Matches:
 
 
 def may_have_references(symbol: Symbol, text: str) -> bool:
-    """Whether a text must be parsed to find the uses of a symbol.
+    """Whether another file with this text must be parsed to find the uses of a symbol.
 
     It must be parsed if it contains the name, or if it may import two files that declare the same
-    signal, param or entity.
+    signal, param or entity. Specs and variables of quantifiers are used in one file only.
     """
     if symbol.kind in _FILE_LOCAL:
         return False
@@ -55,15 +58,18 @@ def may_have_references(symbol: Symbol, text: str) -> bool:
 
 
 def may_refuse_rename(symbol: Symbol, text: str) -> bool:
-    """Whether a text must be parsed to rename a symbol, because the new name may clash there."""
+    """Whether another file with this text must be parsed to rename a symbol.
+
+    It must be parsed if it may use the symbol, or if the new name may clash with another name there.
+    """
     return may_have_references(symbol, text) or (symbol.kind not in _LOCAL and may_import(text))
 
 
 def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
-    """Return the edits that rename a symbol everywhere.
+    """Return the edits that rename a symbol everywhere, by document; an empty list if the name stays the same.
 
-    Raises TltlError: TLT0770 if the symbol is declared outside the workspace, TLT0771 if the new
-    name cannot be used.
+    Raises TltlError: TLT0770 if a file outside the workspace declares or uses the symbol, TLT0771 if
+    the new name cannot be used.
     """
     check_renamable(symbol, workspace)
     if name == symbol.name:
@@ -92,9 +98,10 @@ def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
 
 
 def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
-    """Whether ``source`` declares a name of the same kind and spelling as ``symbol``.
+    """Whether ``source``, which ``document`` reads, declares a name of the same kind and spelling as ``symbol``.
 
-    False if the document does not read the file of ``symbol``, itself or through imports.
+    False if the document is not the file that declares ``symbol`` and does not import this file,
+    even indirectly.
     """
     if location_of(symbol.source) not in document.reads:
         return False
@@ -121,9 +128,9 @@ def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
 def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
     """Return the locations of the files in which the name of ``symbol`` may mean this symbol.
 
-    These are the file that declares the symbol and the documents that import this file. Several
-    files may declare the same signal, param or entity. For these, the files that one document reads
-    belong together, and so do two such groups that share a file.
+    These are the file that declares the symbol and the documents that import this file. Signals,
+    params and entities may be declared in several files. For these, add all files that these
+    documents import, then the documents that import any of the added files, and so on.
     """
     known = {location_of(symbol.source)}
     if symbol.kind not in MERGED:
@@ -181,11 +188,12 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
 
 
 def _name_targets(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
-    """Return, for each name in a document, its offset, and the kind, file and offset of its declaration.
+    """Return for each name in a document a triple that a correct rename does not change.
 
-    The offset of a declaration in another file is given as 0. A correct rename changes none of
-    these values. With ``shift``, the document is the text after ``edits``, and its offsets are
-    converted to those before ``edits``, so that the caller can compare the two lists.
+    It has the offset of the name, the kind and file of the declaration (``"let lib.tltl"``), and the
+    offset of the declaration, given as 0 in other files. With ``shift``, the document is the text
+    after ``edits``, and its offsets are converted to those before ``edits``, so that the caller can
+    compare the lists of both texts.
     """
     own = document.source.name
     before = _offset_before(edits if shift else [])

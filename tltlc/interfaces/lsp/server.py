@@ -125,7 +125,7 @@ class _EditorOutput:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether to log a record: it is about something other than a refused message."""
+    """Whether to log a record of pygls: not if it is about a message that this server refuses and logs itself."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
@@ -140,10 +140,10 @@ def create() -> EditorSession:
 
 
 def _with_error_answers(server: EditorSession, handler: Callable[[EditorSession, Any], Any]) -> Callable[[Any], Any]:
-    """Return a handler that calls ``handler`` and answers a TltlError with an error response.
+    """Return a handler that calls ``handler``, and turns a TltlError into an error response to the editor.
 
-    The returned handler also records that the user looks at the document of the message, which is
-    then analysed before others.
+    The returned handler also records that the user looks at the document of the message. This
+    document is then analysed before others.
     """
     if iscoroutinefunction(handler):
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pygls.server import ServerErrors
 
 SOON_S: Final = 0.01
-"""Seconds from a change to the quick diagnostics. Changes in between need no diagnostics of their own."""
+"""Seconds from a change until its quick diagnostics are sent. They also cover the changes in between."""
 LATER_S: Final = 0.4
 """Seconds without a change until the slow analysis, which builds the automata, is scheduled."""
 
@@ -53,7 +53,7 @@ class EditorSession(LanguageServer):
 
     @property
     def encoding(self) -> str:
-        """The encoding in which columns are counted, as agreed with the editor."""
+        """The encoding in whose units columns are counted, as agreed with the editor, such as ``utf-16``."""
         agreed = self.server_capabilities.position_encoding
         return str(getattr(agreed, "value", agreed) or UTF_16)
 
@@ -68,9 +68,9 @@ class EditorSession(LanguageServer):
         return analysis
 
     def workspace_edit(self, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
-        """Convert edits, by URI, to a workspace edit.
+        """Convert the edits of each document, by URI, to a workspace edit.
 
-        If the editor supports it, the edits name the versions of the documents that they apply to.
+        If the editor supports versions, each edit names the version of the document that it is for.
         """
         workspace = self.client_capabilities.workspace
         if not (workspace and workspace.workspace_edit and workspace.workspace_edit.document_changes):
@@ -84,24 +84,27 @@ class EditorSession(LanguageServer):
         return types.WorkspaceEdit(document_changes=[*changes])
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Log the error of a message, except for requests, whose errors pygls sends as answers."""
+        """Log an error in the handling of a message.
+
+        Errors in requests are not logged, because pygls sends them to the editor as answers.
+        """
         if source is not FeatureRequestError:
             LOG.error("a message was not understood: %s", error)
 
     # --- changes ------------------------------------------------------------------------------
 
     def on_change(self, uris: Iterable[str]) -> None:
-        """Handle changes of documents or of files that they import: schedule new diagnostics."""
+        """Schedule new diagnostics for documents that have changed, or whose imported files have changed."""
         for uri in uris:
             self.queue.drop(uri)
             self._schedule("now", uri, SOON_S, self._publish, restart=False)
             self._schedule("later", uri, LATER_S, self._schedule_analysis, restart=True)
 
     def on_use_change(self, uris: Iterable[str]) -> None:
-        """Schedule new analyses of the open documents among ``uris``.
+        """Schedule new analyses of the open documents among ``uris``, after a change in a file that imports them.
 
-        A file that imports these documents has changed. It may have begun or ceased to use one of
-        their declarations, which changes the warnings about unused declarations.
+        That file may have begun or ceased to use one of their declarations, which changes the
+        warnings about unused declarations.
         """
         for uri in uris:
             if self.texts.is_open(uri):
@@ -211,9 +214,9 @@ class EditorSession(LanguageServer):
         return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
     async def _analyse_now(self, uri: str, again: bool) -> DocumentAnalysis | None:
-        """Return the analysis of a document; if it is new, also send its diagnostics to the editor.
+        """Return the analysis of a document; if the result is new, also send its diagnostics to the editor.
 
-        If there is an analysis of the current text, return that one, except with ``again``. Return
+        If the current text was analysed before, return that analysis, except with ``again``. Return
         None if the document is missing, has errors or changes meanwhile, or if the analysis is
         stopped.
         """

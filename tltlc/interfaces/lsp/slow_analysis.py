@@ -21,15 +21,16 @@ from tltlc.tools.lint.rules import rules
 from tltlc.tools.lint.run import apply_levels, findings, view_of
 
 _USE_RULES: Final = ("TLT0421", "TLT0422")
-"""Codes of the rules that depend on which names other files use."""
+"""The codes of the lint rules about unused declarations and imports, which depend on other files."""
 
 
 @record
 class Request:
     """A text to analyse with the settings of its project.
 
-    ``levels`` are the lint levels of the project by code. ``texts`` has the texts of open documents
-    by path; they replace the files on disk.
+    ``libraries`` are the folders that are searched for imports. ``levels`` maps codes of lint rules
+    to their levels in the project, such as ``{"TLT0421": "error"}``. ``texts`` has the texts of open
+    documents by path; they replace the files on disk.
     """
 
     source: SourceFile
@@ -42,8 +43,9 @@ class Request:
 class SpecFigures:
     """The size of a spec's automaton, and how many tests of the spec pass and fail.
 
-    ``states`` is the number of states. ``distance`` is the distance from the initial state to the
-    goal; None if no trace satisfies the spec.
+    ``spec`` is the name of the spec, and ``states`` the number of states. ``distance`` is the least
+    number of transitions from the initial state to an accepting state; None if no trace satisfies
+    the spec.
     """
 
     spec: str
@@ -55,7 +57,11 @@ class SpecFigures:
 
 @record
 class DocumentAnalysis:
-    """The result of an analysis: findings of compiler and linter, failed tests, and numbers for each spec."""
+    """The result of a slow analysis.
+
+    ``findings`` are those of the compiler and the linter. ``failures`` has a diagnostic for each
+    failed test. ``figures`` has the numbers of each spec.
+    """
 
     findings: tuple[LintFinding, ...]
     failures: tuple[Diagnostic, ...] = ()
@@ -90,7 +96,7 @@ def _seems_unused(view: FileView) -> bool:
 
 
 def _elsewhere(request: Request) -> Container[str]:
-    """Return the names that occur in the files which import the analysed file.
+    """Return the names of the analysed file that the files which import it may use; none for a text without a file.
 
     For files that are open in the editor, the text in the editor counts.
     """

@@ -23,9 +23,9 @@ _KINDS: Final = {
 
 
 def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
-    """Return the declarations in order, with the clauses of a spec as its children.
+    """Return the declarations of a document in order, with the clauses of a spec as its children.
 
-    ``encoding`` is the unit of columns.
+    Columns are counted in units of ``encoding``, such as ``utf-16``.
     """
     source = document.source
     outline = []
@@ -47,10 +47,11 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
 
 
 def matching_symbols(document: Document, query: str, encoding: str, uri: str) -> list[types.WorkspaceSymbol]:
-    """Return the declarations whose names contain the letters of the query, in the query's order.
+    """Return the declarations, except imports, whose names contain the letters of the query in order.
 
-    Case does not matter. An empty query matches all declarations. ``uri`` is the URI of the
-    document, and ``encoding`` is the unit of columns.
+    Other letters may stand between them, and case does not matter: ``nr`` matches ``Near``. An empty
+    query matches every name. ``uri`` is the URI of the document. Columns are counted in units of
+    ``encoding``, such as ``utf-16``.
     """
     source = document.source
     return [
@@ -68,7 +69,7 @@ def _has_letters(name: str, query: str) -> bool:
 
 
 def _outline_entries(declaration: tree.Declaration) -> Iterator[tuple[str, types.SymbolKind, Span, Span]]:
-    """Yield each name of a declaration, its kind, the span of the declaration, and the span of the name."""
+    """Yield for each name in a declaration: the name, its kind, the span of the declaration, and the name's span."""
     match declaration:
         case tree.Import():
             yield declaration.target, types.SymbolKind.Module, declaration.span, declaration.target_span

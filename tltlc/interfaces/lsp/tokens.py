@@ -37,8 +37,9 @@ def tokens(document: Document, encoding: str) -> list[int]:
     """Return five numbers for each name: line, column, length, type and modifiers.
 
     The line counts from the line of the previous name. The column counts from the previous name if
-    both are on one line, and otherwise from the start of the line. Columns are in units of
-    ``encoding``. Type and modifiers are numbers of :data:`LEGEND`.
+    both are on one line, and otherwise from the start of the line. Columns are counted in units of
+    ``encoding``, such as ``utf-16``. The type is an index into the types of :data:`LEGEND`; the
+    modifiers are a number with a bit for each modifier there.
     """
     numbers: list[int] = []
     line = column = 0

@@ -27,10 +27,10 @@ class AnalysisWorker:
         self._pipe: Connection | None = None
 
     async def analyse(self, request: Request) -> DocumentAnalysis | None:
-        """Analyse a text.
+        """Analyse a text in the worker process, and return the analysis.
 
-        Return None if the analysis is abandoned, takes longer than :data:`LONGEST_S`, or no process
-        can be started.
+        Return None if the analysis is abandoned, takes longer than :data:`LONGEST_S` or needs too
+        much memory, or if no process can be started.
         """
         pipe = None
         try:
@@ -77,7 +77,8 @@ def _exchange(pipe: Connection, request: Request) -> DocumentAnalysis | None:
 def answer_all(pipe: Connection) -> None:
     """Analyse the texts that arrive through ``pipe``, and send back the results, until the pipe closes.
 
-    This is the main function of the worker process.
+    The result is None if an analysis needs too much memory or nests too deep. This is the main
+    function of the worker process.
     """
     threading.Thread(target=_end_with_server, daemon=True).start()
     limit("RLIMIT_DATA", COMMAND.memory)

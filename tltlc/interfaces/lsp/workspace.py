@@ -61,14 +61,14 @@ class Workspace:
     # --- documents ----------------------------------------------------------------------------
 
     def document(self, uri: str) -> Document | None:
-        """Return the document with this URI: the open text, else the file; None without either."""
+        """Return the document with this URI: the open text, or else the file; None if there is neither."""
         return self.document_at(location_at(uri))
 
     def document_at(self, location: str) -> Document | None:
-        """Return the document of the text that is open in the editor, else of the file on disk.
+        """Return the document at a location: the text that is open in the editor, or else the file on disk.
 
-        Return None if there is neither. The location is an absolute path, or the URI of a text that
-        is not a file.
+        Return None if there is neither, or if the file cannot be read. The location is an absolute
+        path, or the URI of a text that is not a file.
         """
         opened = self._open.get(location)
         document = self._documents.get(location)
@@ -116,9 +116,9 @@ class Workspace:
         return {location: source.text for location, (_, _, source) in self._open.items()}
 
     def project(self, source: SourceFile) -> tuple[Project, tuple[Diagnostic, ...]]:
-        """Return the project of a file, and the errors of its project file.
+        """Return the settings of a file's project, and the errors of the project file, the nearest ``tltl.toml``.
 
-        The project file is the nearest ``tltl.toml``.
+        If the project file has errors, return the default settings.
         """
         try:
             with unsaved_texts(self.texts()):
@@ -141,7 +141,7 @@ class Workspace:
         return path in self._open or self._is_in_folders(path)
 
     def all(self) -> Iterator[Document]:
-        """Yield the documents of the workspace: open ones, and the files of its folders.
+        """Yield the documents of the workspace: the open ones, and the source files in its folders.
 
         Raises:
             TltlError: TLT0004, the folders are too large to search.
@@ -156,7 +156,7 @@ class Workspace:
                 yield document
 
     async def parse(self, is_needed: Callable[[str], bool]) -> None:
-        """Parse the documents whose texts ``is_needed`` selects, and cache their names for later requests.
+        """Parse the documents for whose texts ``is_needed`` is true, and cache their names for later requests.
 
         Between two documents, other tasks of the event loop may run, such as requests.
 
