@@ -1,8 +1,8 @@
 """The command line: finds and runs a command, and turns failures into messages and exit statuses.
 
-Each built-in command is a module of :mod:`tltlc.interfaces.cli.commands`. Other distributions add
-commands through the entry-point group ``tltlc.commands``; each entry is a click command. A command
-is loaded only when it is named.
+Each built-in command is a module of :mod:`tltlc.interfaces.cli.commands`. Other installed packages
+add commands through the entry-point group ``tltlc.commands``; each entry is a click command. A
+command is loaded only when the user names it.
 """
 
 from __future__ import annotations
@@ -62,17 +62,17 @@ RUNTIME_COMMANDS: Final = {
     "baseline": "Record how the policies of a suite play now.",
     "table1": "Reproduce the paper's Table I.",
 }
-"""The commands of the runtime, with their summaries for the help text.
+"""The commands of the runtime (``tltl_runtime``), with their summaries for the help text.
 
 They come with tltlc, but each needs an extra of tltlc, that is, optional dependencies. Like the
-commands of other distributions, they are entry points.
+commands of other packages, they are entry points.
 """
 
 ENTRY_POINTS: Final = "tltlc.commands"
-"""The entry-point group for commands of other distributions."""
+"""The entry-point group for commands of the runtime and of other packages."""
 
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
-"""A shell sets this environment variable to get completions instead of a run of the command."""
+"""The environment variable that a shell sets to get completions instead of running the command."""
 
 
 class CommandLine(click.Group):
@@ -100,7 +100,7 @@ class CommandLine(click.Group):
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse like click, but accept ``-:NAME``, the spec NAME of standard input, as an argument.
+        """Parse like click, but accept the argument ``-:NAME``, which means the spec NAME in standard input.
 
         Without arguments, print the help and exit with the status for wrong usage.
         """
@@ -117,8 +117,8 @@ class CommandLine(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, and record the files that it reads, so that it cannot overwrite them.
 
-        After a closed pipe or Ctrl-C, the exit status is that of :mod:`tltlc.interfaces.cli.exits`,
-        not that of click.
+        If the reader of the output closes the pipe, or the user presses Ctrl-C, raise
+        StopQuietlyError with the exit status that :mod:`tltlc.interfaces.cli.exits` defines for it.
         """
         from tltlc.io.access_log import access_log
 
@@ -138,7 +138,7 @@ class CommandLine(click.Group):
             raise exits.StopQuietlyError(exits.interrupted_status()) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of all commands; commands from other installed packages come last."""
+        """Return the names of all commands: the built-in ones, then those from entry points, sorted."""
         return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -159,7 +159,7 @@ class CommandLine(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Resolve like click, and suggest a similar name if there is no such command."""
+        """Resolve like click; if there is no such command, raise a usage error that suggests a similar name."""
         if args[0].startswith("-") or self.get_command(ctx, args[0]):
             return super().resolve_command(ctx, args)
         from difflib import get_close_matches
@@ -186,7 +186,10 @@ class CommandLine(click.Group):
             formatter.write_dl(rows)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
-        """Complete the name of a command, without loading any command."""
+        """Return the commands whose names begin with ``incomplete``, and click's other completions.
+
+        No command is loaded.
+        """
         from click.shell_completion import CompletionItem
 
         names = [CompletionItem(name, help=BUILT_IN.get(name)) for name in self.list_commands(ctx)]
@@ -196,10 +199,10 @@ class CommandLine(click.Group):
 
 
 def _completion_error(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
-    """Return ``error``, or a usage error if the user has set the environment variable of completion.
+    """Return a usage error if ``error`` comes from a wrong use of shell completion; otherwise ``error`` itself.
 
     Only the scripts of ``tltlc completion`` should set :data:`COMPLETE_VARIABLE`. They also set the
-    other variables that click needs; without them, click raises a KeyError or ValueError.
+    other variables that click needs. If a user sets it alone, click raises a KeyError or ValueError.
     """
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")

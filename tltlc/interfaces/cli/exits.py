@@ -52,13 +52,13 @@ received_signals: Final[list[int]] = []
 """Numbers of the signals that ended the work of this process, in order of arrival."""
 
 _OUTPUT_ERRORS: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
-"""Errors of the system that a write to standard output may raise.
+"""Errors of the system that writing to standard output may raise.
 
-Errors of writes to files are reported where they occur.
+Errors in writing files are reported where they occur.
 """
 
 _PATH_ERRORS: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
-"""Errors that the system may raise at a mere check whether a path exists."""
+"""Errors that the system may raise when a program only checks whether a path exists."""
 
 _RESOURCE_MESSAGES: Final = {
     errno.EMFILE: "this process cannot open more files",
@@ -88,7 +88,7 @@ def status_of(diagnostics: Iterable[Diagnostic]) -> int:
 def interrupted_status() -> int:
     """Return the exit status after a signal: 128 plus the number of the first received signal.
 
-    Without a received signal, return the status of Ctrl-C.
+    If no signal was recorded, return 130, the status after Ctrl-C.
     """
     return 128 + received_signals[0] if received_signals else INTERRUPTED
 
@@ -96,9 +96,9 @@ def interrupted_status() -> int:
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
     """Return error TLT0730 for a Python module that is not installed.
 
-    ``wanted_by`` names the command or feature that needs the module. ``requirement`` is the
-    argument for ``pip install``. If it is an extra of tltlc, the help says how to install it from a
-    clone.
+    ``wanted_by`` names the command or feature that needs the module. ``requirement`` is the argument
+    for ``pip install`` in the help. For an extra of tltlc, such as ``tltlc[game]``, the help says how
+    to install it from a clone.
     """
     title = f"{wanted_by} needs `{module}`, which is not installed"
     is_extra = requirement.startswith("tltlc[")
@@ -107,7 +107,7 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
 
 
 def report(error: Exception | OutOfTimeError) -> int:
-    """Print an error message for the exception that ended a command, and return the exit status."""
+    """Print the message, if any, for the exception that ended a command, and return the exit status."""
     if limit_error := exhaustion_error(error):
         # The traceback would keep the memory of the interrupted work alive.
         error.__traceback__ = error.__context__ = error.__cause__ = None
@@ -154,7 +154,7 @@ def is_interrupted(error: BaseException | None) -> bool:
 
 
 def _missing_resource(error: BaseException | None) -> str | None:
-    """Return a message if an exception or one of its causes says that a resource is used up.
+    """Return a message if an exception or one of its causes says that the system lacks a resource.
 
     The resources are memory, open files and processes. Return None for all other exceptions.
     """
@@ -189,7 +189,7 @@ def _number_message(text: str, kind: str) -> str:
 def flush() -> None:
     """Flush standard output, and drop the text that cannot be written.
 
-    Without this call, Python flushes at exit, and an error there changes the exit status.
+    Without this call, Python would flush at exit, where an error changes the exit status.
     """
     try:
         sys.stdout.flush()
@@ -227,8 +227,8 @@ def _discard_output() -> None:
 def _bug(error: BaseException) -> int:
     """Report an unforeseen exception as a bug of tltlc, and return the exit status.
 
-    The message contains a short reference, a hash of the exception's type and its place in the
-    code. The traceback appears only if TLTLC_DEBUG is 1.
+    The message contains a short reference: a hash of the exception's type and of its place in the
+    code. The traceback appears only if the environment variable TLTLC_DEBUG is 1.
     """
     import traceback
     import zlib

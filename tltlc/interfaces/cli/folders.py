@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def every_source(arguments: Iterable[str], report: Report) -> list[str]:
     """Return the source files for all arguments, each once, in order (see :func:`sources`).
 
-    Folders without source files are reported and skipped.
+    Folders that contain no source file or cannot be read are reported and skipped.
     """
     paths: dict[str, None] = {}
     for argument in arguments:
@@ -36,8 +36,8 @@ def files_in_folders(arguments: Iterable[str]) -> list[str]:
 def sources(argument: str) -> list[str]:
     """Return the source files of one argument.
 
-    For a folder, these are the visible ``.tltl`` files in and below it, sorted; otherwise, it is the
-    argument itself.
+    For a folder, these are the ``.tltl`` files in and below it, sorted, without hidden ones. Any other
+    argument is returned unchanged, even if there is no such file.
 
     Raises TltlError: TLT0722 if the folder contains no such file, TLT0001 if a folder cannot be
     read.
@@ -59,14 +59,18 @@ def is_free(folder: Path) -> bool:
 
 
 def occupied_folder_error(folder: Path, advice: str) -> TltlError:
-    """Return TLT0722 for a folder that a command must create, but whose path is not free (:func:`is_free`)."""
+    """Return error TLT0722 for a folder that a command must create, but whose path is not free (:func:`is_free`).
+
+    ``advice`` is the help of the error.
+    """
     return TltlError([Diagnostic("TLT0722", f"`{folder}` already exists and is not an empty folder", help=advice)])
 
 
 def links_outside(path: str, arguments: Iterable[str]) -> bool:
-    """Whether ``path``, which was found in a folder, is a link to a file outside all named folders.
+    """Whether ``path``, found in a folder that the user named, is a link to a file outside all these folders.
 
-    ``arguments`` are the files and folders that the user named. False if ``path`` is one of them.
+    ``arguments`` are the files and folders that the user named. False if ``path`` is itself one of
+    them.
     """
     arguments = tuple(arguments)
     folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]

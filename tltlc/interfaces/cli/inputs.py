@@ -1,6 +1,7 @@
 """Read and compile the argument of a command.
 
-An argument is ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input.
+An argument is ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact (an automaton that was compiled before,
+``NAME.fspa.json``), or ``-`` for standard input.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Input:
         return self.session.program if self.session else None
 
     def only_automaton(self) -> Fspa:
-        """Return the only automaton; raise TLT0721 if there are several or none."""
+        """Return the only automaton; raise TltlError, TLT0721, if there are several or none."""
         if len(self.automata) == 1:
             return self.automata[0]
         names = [fspa.name for fspa in self.automata]
@@ -61,8 +62,8 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
     """Read and compile an argument, such as ``SPEC.tltl`` or ``SPEC.tltl:NAME``.
 
     ``specs`` are names of specs to compile; NAME is added to them. Without any name, all specs are
-    compiled. If there are errors, raises TltlError with all diagnostics, with the severities that
-    the project file sets. Raises click.UsageError if the argument is a TOML file.
+    compiled. If there are errors, raises TltlError with all diagnostics; their severities are those
+    that the project file sets. Raises click.UsageError if the argument is a TOML file.
     """
     path, name = split(argument)
     if path.endswith(".toml"):
@@ -92,9 +93,9 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
 
 
 def check_text(source: SourceFile) -> None:
-    """Check that a file is a source text, not an automaton.
+    """Check that a file contains a source text and not an automaton.
 
-    Raise TLT0722 for an artefact, TLT0652 for an automaton in the Hanoi format (HOA).
+    Raise TltlError: TLT0722 for an artefact, TLT0652 for an automaton in the Hanoi format (HOA).
     """
     if source.text.startswith("HOA:"):
         raise TltlError([_hoa_diagnostic(source)])
@@ -103,7 +104,7 @@ def check_text(source: SourceFile) -> None:
 
 
 def artefact_error(artefact: str) -> Diagnostic:
-    """Return the diagnostic for an artefact where a source text is required."""
+    """Return error TLT0722 for a command that needs a source text, but got ``artefact``, the name of an artefact."""
     title = f"`{artefact}` is an artefact: it contains an automaton and no source text"
     return Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")
 

@@ -23,10 +23,10 @@ _TEMPORARY: Final = "tltlc.io.temporary"
 """The module whose functions must not be interrupted, because files would be left behind."""
 
 _RETRY_S: Final = 0.05
-"""Seconds until the next attempt, if an interrupt comes while uninterruptible code runs."""
+"""Seconds until the next attempt, if an interrupt comes while code runs that must not be interrupted."""
 
 _PATIENCE_S: Final = 1.0
-"""Seconds that an import may take after an interrupt. Then the process ends without cleaning up."""
+"""Seconds that an import may still take after an interrupt. After them, the process ends without cleaning up."""
 
 _arrival_times: Final[dict[int, float]] = {}
 """Arrival times of interrupts that wait for an import to end, by signal number."""
@@ -34,7 +34,7 @@ _arrival_times: Final[dict[int, float]] = {}
 
 @contextmanager
 def end_on_signals() -> Iterator[None]:
-    """Let SIGINT, SIGTERM and SIGHUP end the process with the exit status 128 plus the signal's number.
+    """Within the context, let SIGINT, SIGTERM and SIGHUP end the process with status 128 plus the signal's number.
 
     These signals raise KeyboardInterrupt, so finished work is kept and temporary files are removed.
     There are four special cases:
@@ -75,11 +75,11 @@ def _stop_listening() -> None:
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """Handle a signal: raise KeyboardInterrupt as soon as no uninterruptible code runs.
+    """Handle a signal: raise KeyboardInterrupt, now or as soon as the running code may be interrupted.
 
-    Two kinds of code are uninterruptible. Imports would turn the exception into another error or
-    lose it; if an import takes too long, the process ends at once. Code that creates or removes
-    temporary files would leave some behind if it were interrupted, for example by a second signal.
+    Two kinds of code must not be interrupted. An import would turn the exception into another error
+    or lose it; if the import takes too long, the process ends at once. Code that creates or removes
+    temporary files would leave some behind.
     """
     if not _is_at_temporary_files(frame):
         if not _is_importing(frame):
@@ -107,7 +107,7 @@ def _is_importing(frame: FrameType | None) -> bool:
 
 
 def _is_at_temporary_files(frame: FrameType | None) -> bool:
-    """Whether the interrupted code creates or removes temporary files, or starts or ends a ``with``."""
+    """Whether the interrupted code creates or removes temporary files, or enters or leaves a context manager."""
     is_at_with = frame is not None and frame.f_globals.get("__name__") == "contextlib"
     return is_at_with or any(caller.f_globals.get("__name__") == _TEMPORARY for caller in _stack(frame))
 

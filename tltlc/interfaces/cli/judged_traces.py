@@ -1,4 +1,4 @@
-"""Judge many traces, print a line for each, and a summary: ``tltlc monitor SPEC TRACES…``."""
+"""Judge many traces, and print a line for each of them and a summary: ``tltlc monitor SPEC TRACES…``."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ _MOST_NAMED: Final = 3
 class JudgeOptions:
     """The options of ``tltlc monitor`` for many traces.
 
-    ``workers`` is the number of processes; None for the default. ``episodes`` and ``as_json`` say
-    whether the options ``--episodes`` and ``--json`` are set.
+    ``workers`` is the number of processes; None for the default. ``episodes`` says whether a trace
+    is judged only up to the goal, a violation or the limit (``--episodes``). ``as_json`` says whether
+    to print a JSON document (``--json``).
     """
 
     workers: int | None
@@ -49,7 +50,11 @@ def judge_traces(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Judge the traces that the arguments name, and return the exit status."""
+    """Judge traces by a spec, print the results, and return the exit status.
+
+    ``spec`` is the first argument of ``tltlc monitor``, and ``arguments`` are files and folders with
+    traces. ``format`` is the format of errors and warnings.
+    """
     traces: list[JudgedTrace] = []
     with Report(format, results=True) as report:
         spec_input = open_input(spec, settings)
@@ -106,7 +111,7 @@ def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:
 
 
 def _with_progress(judged: Iterable[JudgedTrace], total: int) -> Iterator[JudgedTrace]:
-    """Yield the traces unchanged, and show a progress bar meanwhile.
+    """Yield the traces unchanged, and show a progress bar meanwhile; ``total`` is their number.
 
     The bar appears only if standard error is a terminal and standard output is not.
     """

@@ -1,4 +1,4 @@
-"""The entry point. This module imports nothing at the top, so it can handle Ctrl-C from the start.
+"""The entry point of ``tltlc``. The module imports nothing at the top, so it can handle Ctrl-C from the start.
 
 Python's own handler would raise an exception, even in the middle of an import, and Python would
 print its traceback.

@@ -16,7 +16,7 @@ class WholeRange(click.IntRange):
     """The type of options that take a whole number in a range, at most :data:`LARGEST`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the number; fail with a usage error if it is no whole number in the range."""
+        """Return the value as an int; raise a usage error if it is not a whole number in the range."""
         text = str(value).strip()
         digits = text.lstrip("+-").lstrip("0")
         # Python refuses to parse thousands of digits.
@@ -39,7 +39,7 @@ class FiniteRange(click.FloatRange):
     """The type of options that take a finite number in a range; click's own type accepts `nan`."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the number; fail with a usage error if it is no finite number in the range."""
+        """Return the value as a float; raise a usage error if it is not a finite number in the range."""
         number = super().convert(value, param, ctx)
         if not isfinite(number):
             self.fail("write a finite number", param, ctx)

@@ -32,7 +32,7 @@ target_option = click.option(
 
 
 def targets_of(lists: Iterable[str]) -> list[str]:
-    """Return the targets (output formats) named in comma-separated lists.
+    """Return the targets (output formats) named in comma-separated lists: ``["json,dot"] -> ["json", "dot"]``.
 
     Raise TltlError, TLT0710, for an unknown name.
     """
@@ -45,10 +45,11 @@ def targets_of(lists: Iterable[str]) -> list[str]:
 
 
 def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Project, report: Report) -> Files:
-    """Return the files of each automaton, in the output formats (targets) ``requested``.
+    """Return the generated files of all automata, by name, for the targets (output formats) ``requested``.
 
-    If no targets are requested, use those of the project file, or else the default targets. Raises
-    click.UsageError if two targets write the same file.
+    If no targets are requested, use those of the project file, or else the default targets. Notes
+    about what a target leaves out are added to ``report``. Raises click.UsageError if two targets
+    write the same file.
     """
     from tltlc import backends
 
@@ -70,9 +71,10 @@ def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Projec
 
 
 def write_and_report(folder: Path, files: Files, report: Report, advice: str = "name another folder with -o") -> None:
-    """Write all of the files or none, and report each file that changed.
+    """Write all of the files or none into ``folder``, and report each file that changed.
 
-    Raises TltlError: TLT0005 or TLT0700 with ``advice``, like :func:`tltlc.io.writing.write_files`.
+    Raises TltlError: TLT0005 or TLT0700, like :func:`tltlc.io.writing.write_files`. ``advice`` is the
+    help of the error.
     """
     from tltlc.io.writing import write_files
 

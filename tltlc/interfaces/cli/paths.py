@@ -35,9 +35,9 @@ class OutputPath(click.Path):
         self.stdout = stdout
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path.
+        """Return the value as a path; fail with a usage error if it is refused.
 
-        For a file named ``-``, written ``./-``, return the absolute path, because ``-`` means
+        For ``./-``, a file that is named ``-``, return the absolute path, because the path ``-`` means
         standard output.
         """
         if value == STDOUT and not self.stdout:

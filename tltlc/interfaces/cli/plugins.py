@@ -1,6 +1,6 @@
-"""Find and load plugins: the entry points that extend the command line.
+"""Find and load plugins: the entry points of installed packages that extend the command line.
 
-They belong to other installed packages, or to parts of tltlc that need optional dependencies.
+Some belong to other packages, others to parts of tltlc that need optional dependencies.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ _ENTRY: Final = re.compile(r"([^=\s]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[(.*)
 
 @record
 class Plugin:
-    """An entry point: ``attribute`` of ``module``, which an installed ``distribution`` provides.
+    """An entry point called ``name``: the object ``attribute`` of ``module``, from an installed ``distribution``.
 
-    ``extras`` are the extras (optional dependencies) that it needs.
+    ``extras`` are the extras (optional dependencies) of the distribution that the object needs.
     """
 
     name: str
@@ -32,7 +32,7 @@ class Plugin:
 
 
 def find(group: str) -> tuple[Plugin, ...]:
-    """Return the entry points of a group, without loading them.
+    """Return the entry points of a group such as ``tltlc.commands``, without loading them.
 
     If a distribution is installed several times, only the first copy on ``sys.path`` counts.
     """
@@ -48,8 +48,8 @@ def find(group: str) -> tuple[Plugin, ...]:
 def load(plugin: Plugin, wanted_by: str) -> Any:
     """Import the object that an entry point names.
 
-    If a Python module is not installed, raise TLT0730 with help for its installation. ``wanted_by``
-    is the name, in the message, of the command or feature that needs the object.
+    If a Python module is not installed, raise TLT0730, whose help says how to install it. The error
+    names ``wanted_by``, the command or feature that needs the object.
     """
     from functools import reduce
     from importlib import import_module
@@ -65,7 +65,8 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
 def load_from(group: str, name: str, wanted_by: str) -> Any:
     """Load the object of the entry point ``name`` in a group of the runtime, such as ``tltlc.levels``.
 
-    Raise TLT0730 if no installed package provides it. ``wanted_by`` is as in :func:`load`.
+    Raise TLT0730 if no installed package provides the entry point. ``wanted_by`` is as in
+    :func:`load`.
     """
     for plugin in find(group):
         if plugin.name == name:
@@ -74,9 +75,10 @@ def load_from(group: str, name: str, wanted_by: str) -> Any:
 
 
 def _plugins_in_folder(group: str, folder: str) -> Iterator[Plugin]:
-    """Yield the entry points of a group, from the packages that are installed in a folder.
+    """Yield the entry points of a group, from the packages that are installed in a folder of ``sys.path``.
 
-    Does not use importlib.metadata, whose import takes 16 ms.
+    ``folder`` may also be the path of an archive. The function reads the files ``entry_points.txt``
+    in a folder itself, because importing importlib.metadata takes 16 ms.
     """
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
@@ -106,7 +108,7 @@ def _plugins_in_text(group: str, text: str, distribution: str) -> Iterator[Plugi
 
 
 def _plugins_in_archive(group: str, path: str) -> Iterator[Plugin]:
-    """Yield the entry points of a group, from an archive, which only importlib.metadata can read."""
+    """Yield the entry points of a group, from the packages in an archive on ``sys.path``, such as a zip file."""
     from importlib.metadata import distributions
 
     for distribution in distributions(path=[path]):

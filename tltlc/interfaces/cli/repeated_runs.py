@@ -19,15 +19,15 @@ After a change, work starts only when a check finds no further change, so that f
 """
 
 _MOST_LOOKS: Final = 10
-"""After more checks with changes than this, work starts anyway. Some programs never stop writing."""
+"""The most checks that wait for an end of changes. Then work starts anyway: some programs never stop writing."""
 
 
 def repeat(work: Callable[[tuple[str, ...]], None], list_files: Callable[[], Iterable[str]] = tuple) -> NoReturn:
-    """Run ``work`` at once, and again after each change, until an exception such as Ctrl-C.
+    """Run ``work`` at once, and again after each change of a file, until an exception such as Ctrl-C.
 
-    ``work`` receives the paths that changed; the first time, none. Two kinds of files are watched:
-    those that the last run read, or tried to find, with :mod:`tltlc.io.files`, and new files that
-    ``list_files`` returns.
+    ``work`` receives the paths that changed, and an empty tuple the first time. Two kinds of files
+    are watched: those that the last run read or tried to find with :mod:`tltlc.io.files`, and new
+    files that ``list_files`` returns.
     """
     changed: tuple[str, ...] = ()
     while True:
@@ -54,9 +54,10 @@ def _changes(
 ) -> tuple[str, ...]:
     """Wait until files change, and then until they stop changing; return their paths.
 
-    Some programs never stop writing, so the wait also ends after ``_MOST_LOOKS`` checks that find
-    changes. ``before`` maps the paths that the last run read or looked up to their stamps, such as
-    time and size. ``known`` contains the files that ``list_files`` returned before the last run.
+    Some programs never stop writing, so the wait also ends after more than ``_MOST_LOOKS`` checks
+    that find changes. ``before`` maps the paths that the last run read or looked up to their stamps
+    (time of change, size). ``known`` contains the files that ``list_files`` returned before the last
+    run.
     """
     changed: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()

@@ -23,9 +23,10 @@ class Report:
     As a context manager, it also reports a TltlError that ends the block, and suppresses it. Each
     diagnostic is reported once, even if two files import the file with the error. In the format
     ``text``, diagnostics appear at once, on standard error. In the machine formats, such as JSON,
-    they form one document, which appears at the end: on standard output, or on standard error for
-    commands that print results. ``diagnostics`` has the diagnostics in order, and ``status`` is the
-    exit status. ``facts`` are further entries of the document in JSON, by their keys.
+    they form one document, which appears at the end: on standard output, or on standard error if
+    the command prints ``results`` there. The keys of ``diagnostics`` are the diagnostics in order.
+    ``status`` is the exit status so far. ``facts`` are further entries of the document in JSON, by
+    their keys.
     """
 
     def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
@@ -36,7 +37,7 @@ class Report:
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show new diagnostics: in the text format at once, in machine formats at the end."""
+        """Add diagnostics; show the new ones at once in the format ``text``, otherwise at the end."""
         new = tuple(diagnostic for diagnostic in dict.fromkeys(diagnostics) if diagnostic not in self.diagnostics)
         if self.format == "text":
             # A full standard error must not change the exit status.

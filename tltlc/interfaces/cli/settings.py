@@ -1,4 +1,4 @@
-"""The options that commands on source files share, combined with the project file."""
+"""The options that all commands on source files have, and their combination with the project file."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class CompileSettings:
     """The options of the command line for compiling.
 
     ``libraries`` are folders that are searched before the libraries of the project file. ``params``
-    maps names of params to new values, as texts. ``state_budget`` is the most states that an
-    automaton may have; None for the default.
+    maps names of params to new values, as texts: ``{"level_size": "30 m"}``. ``state_budget`` is the
+    most states that an automaton may have; None for the default.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -36,15 +36,18 @@ class CompileSettings:
 
 
 def source_options(command: CommandFunction) -> CommandFunction:
-    """Add ``--library --param --state-budget --format`` to a command.
+    """Add the options ``--library --param --state-budget --format`` to a command.
 
-    The command receives their values as ``settings`` and ``format``.
+    The command receives the first three as ``settings`` (:class:`CompileSettings`), and ``format``.
     """
     return compile_options(format_option(command))
 
 
 def compile_options(command: CommandFunction) -> CommandFunction:
-    """Add ``--library --param --state-budget`` to a command, which receives them as ``settings``."""
+    """Add the options ``--library --param --state-budget`` to a command.
+
+    The command receives them as ``settings`` (:class:`CompileSettings`).
+    """
     from functools import wraps
 
     @wraps(command)
@@ -93,7 +96,10 @@ format_option = click.option(
 
 
 def compile_settings(settings: CompileSettings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
-    """Return the options to compile the specs named ``specs``, or all specs if it is empty."""
+    """Return the compiler's options, which combine the command line (``settings``) and the project file.
+
+    ``specs`` has the names of the specs to compile; if it is empty, all are compiled.
+    """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.pipeline import CompileOptions
 
@@ -106,9 +112,10 @@ def compile_settings(settings: CompileSettings, project: Project, specs: tuple[s
 
 
 def search_steps(settings: CompileSettings) -> int:
-    """Return the most steps that a search in automata may take, such as that for a shortest trace.
+    """Return how many steps of work a search in automata may take, for example for a shortest trace.
 
-    Building an automaton over infinite traces may take as many steps.
+    The number grows with the state budget. Building an automaton over infinite traces may take as
+    many steps.
     """
     from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
     from tltlc.automaton.work import STEPS_PER_STATE
@@ -125,11 +132,11 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
 
 
 def parse_assignments(texts: tuple[str, ...], form: str, option: str) -> dict[str, str]:
-    """Parse ``NAME=VALUE`` texts, and return the values by name.
+    """Parse texts of the form ``NAME=VALUE``, and return the values by name.
 
-    Raise click.BadParameter for a text of another form, or for a name that is set twice. The
-    message shows ``form``, the form that the texts must have, and ``option``, the name of the
-    option.
+    Raise click.BadParameter for a text of another form, or for a name that is set twice. ``form``
+    and ``option`` are how the message names the form and the option, such as ``AP=PREDICATE`` and
+    ``--atom``.
     """
     values: dict[str, str] = {}
     for text in texts:

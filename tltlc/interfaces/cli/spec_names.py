@@ -1,4 +1,4 @@
-"""If a command gets the name of a spec instead of a file, suggest the file of this spec."""
+"""If the argument of a command is the name of a spec instead of a file, suggest the file of this spec."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _MOST_SUGGESTIONS: Final = 3
 
 
 def with_suggestion(error: TltlError, argument: str) -> TltlError:
-    """Return the error about ``argument``, with the suggestion of a file that the user may mean.
+    """Add to an error about ``argument`` the suggestion of a file that the user may mean.
 
-    The suggestion, ``NAME.tltl`` or ``FILE:NAME``, becomes the help of the error. Return the error
+    Return the error with the suggestion, ``NAME.tltl`` or ``FILE:NAME``, as its help. Return it
     unchanged if the path ``argument`` exists, or if no file fits.
     """
     if exists(argument):
@@ -59,9 +59,10 @@ def _files_declaring(name: str) -> Iterator[Path]:
 
 
 def _visible_sources() -> Iterator[Path]:
-    """Yield the source files in and below the current folder, the files in the folder itself first.
+    """Yield the source files in and below the current folder; those in the folder itself come first.
 
-    Skips hidden files and folders, pipes and devices.
+    Hidden files and folders, pipes and devices are skipped, and so are all folders after the first
+    200.
     """
     for place, folders, files in islice(walk("."), _MOST_FOLDERS):
         folders[:] = sorted(name for name in folders if not name.startswith("."))

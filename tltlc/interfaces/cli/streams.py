@@ -1,7 +1,7 @@
-"""Make sure that all three standard streams are open, even if the caller closed some.
+"""Make sure that all three standard streams are open, even if the caller closed some of them.
 
-Without this, the next file that is opened gets the number of the closed stream, and printed text
-ends up in that file.
+Otherwise, the next file that is opened gets the number of the closed stream, and printed text ends
+up in that file.
 """
 
 from __future__ import annotations

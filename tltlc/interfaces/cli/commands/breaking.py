@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tltlc.tools.diff.revisions import EarlierTree
 
 _SERVICE_FORMATS: Final = ("github", "sarif")
-"""Formats for services that know only the current files. Labels must point into current files."""
+"""Formats for services that know only the current files, so that labels must point into these."""
 
 
 @click.command(
@@ -92,10 +92,10 @@ def command(paths: tuple[str, ...], against: str, settings: CompileSettings, for
 
 
 def _files(argument: str, old: EarlierTree) -> list[str]:
-    """Return the paths of the files to compare: the argument itself, or the spec files in a folder.
+    """Return the paths of the files to compare: the argument itself, or all spec files in it if it is a folder.
 
-    A file counts if it is in the new or in the old version of the folder. Raise TLT0722 if neither
-    version contains a spec file.
+    These are the specs, libraries and artefacts in the new or the old version of the folder. Raise
+    TLT0722 if neither version contains any.
     """
     from tltlc.io.files import files_below
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
@@ -113,7 +113,10 @@ def _files(argument: str, old: EarlierTree) -> list[str]:
 
 
 def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChange:
-    """Compile the old and the new version of a file; raise TltlError if either has errors."""
+    """Compile the old and the new version of a file; raise TltlError if either has errors.
+
+    A version that does not exist counts as empty.
+    """
     from tltlc.tools.diff.breaking import FileChange, Version
 
     before = old.old_path(path)
@@ -125,7 +128,7 @@ def _change(path: str, old: EarlierTree, settings: CompileSettings) -> FileChang
 
 
 def _version(path: str, settings: CompileSettings) -> Version:
-    """Compile a file, and return the record of it that ``tltlc breaking`` compares."""
+    """Compile a spec, library or artefact, and return what ``tltlc breaking`` compares of it."""
     from tltlc.interfaces.cli.inputs import open_input
     from tltlc.tools.diff.versions import version_of_artefact, version_of_library, version_of_specs
 

@@ -1,4 +1,4 @@
-"""``tltlc check``: report every error and warning of compiling, and write nothing.
+"""``tltlc check``: report every error and warning of the compiler, and write nothing.
 
 With a level or a game, also report whether the specs fit it.
 """
@@ -13,26 +13,27 @@ from tltlc.interfaces.cli import plugins
 from tltlc.interfaces.cli.settings import CompileSettings, source_options
 
 CHECKS: Final = {"--level": "tltlc.levels", "--game": "tltlc.games"}
-"""The groups of entry points with a click command ``check``, by the option that asks for it.
+"""Maps an option of ``tltlc check`` to the entry-point group whose entry ``check`` does the work for it.
 
-The command is stored in ``Context.meta``, under the name of the group. Its options join those of
-``check`` with this option. Its callback receives ``levels`` or ``games`` (as on the command line),
-``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of its options.
+The entry is a click command. It is stored in ``Context.meta`` under the name of the group, and its
+options join those of ``tltlc check``. Its callback receives ``levels`` or ``games`` (as on the
+command line), ``inputs`` (the compiled arguments), ``settings``, the ``report``, and the values of
+the entry's own options.
 """
 
 
 class CheckCommand(click.Command):
-    """The command ``check``; it has the options for levels and games only if ``--level`` or ``--game`` is given."""
+    """The command ``check``; it has further options if ``--level`` or ``--game`` is given."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse like click; if a level or a game is given, also parse the options for it."""
+        """Parse like click; if a level or a game is given, first load the further options for it."""
         for option, group in CHECKS.items():
             if not ctx.resilient_parsing and any(text.partition("=")[0] == option for text in args):
                 ctx.meta[group] = plugins.load_from(group, "check", f"`tltlc check {option}`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
-        """Return the options of the command; the options for levels and games come before ``--help``."""
+        """Return the parameters of the command; the further options for levels and games come before ``--help``."""
         *own, help_ = super().get_params(ctx)
         more = [ctx.meta[group].params for group in CHECKS.values() if group in ctx.meta]
         return [*own, *(param for params in more for param in params), help_]

@@ -116,11 +116,12 @@ def _valid_inputs(
 
 
 def _check_distinct(files: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
-    """Raise TLT0700 if another source file makes an output file of the same name.
+    """Raise TLT0700 if one of ``files`` has the name of an output file of another source file.
 
     ``files`` are the output files made from ``source``. ``sources`` maps the name of each output
     file so far to its source; this function adds the names of ``files``. ``is_waiting`` says
-    whether the command watches the source files; then the help of the error only suggests an edit.
+    whether the command runs again after a change of a file. Then the help of the error suggests only
+    an edit, and not another command line.
     """
     from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 

@@ -74,8 +74,9 @@ def command(a: str, b: str, by_name: bool, settings: CompileSettings, format: st
 def _open_sides(a: str, b: str, settings: CompileSettings) -> tuple[Input, Input, bool]:
     """Compile the two arguments of ``tltlc diff``, and select the specs to compare.
 
-    Return both inputs, and whether an argument names a spec. If it does, each input has a single
-    spec, and the two are compared even if their names differ.
+    Return both inputs, and whether at least one argument names a spec. If so, each input has a
+    single spec, and these two are compared even if their names differ. Raises click.UsageError if
+    both are standard input, and TltlError if a file has errors or no single spec can be selected.
     """
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
@@ -117,7 +118,10 @@ def _open_side(argument: str, settings: CompileSettings) -> Input:
 
 
 def _split_revision(path: str) -> tuple[str, str]:
-    """Split ``REV:FILE`` into revision and file; the revision is empty if ``path`` has none."""
+    """Split ``REV:FILE`` into revision and file: ``main:vault.tltl -> ("main", "vault.tltl")``.
+
+    If ``path`` names no revision, return an empty text and ``path``.
+    """
     from tltlc.tools.diff.revisions import SOURCE_ENDINGS
 
     revision, _, file = path.partition(":")
@@ -128,14 +132,15 @@ def _split_revision(path: str) -> tuple[str, str]:
 
 
 def _exclusive_declarations(a: Input, b: Input) -> DeclaredGroups:
-    """Return the ``exclusive`` declarations of both inputs; None for an artefact, which stores none."""
+    """Return the ``exclusive`` declarations of both inputs; for an artefact, which does not store them, None."""
     return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
 def _matching_spec(name: str | None, side: Input) -> Input:
-    """Return the input with only its spec called ``name``, the spec that the other argument names.
+    """Return an input of ``tltlc diff`` with only its spec called ``name``.
 
-    Return ``side`` unchanged if ``name`` is None or if it has no spec of that name.
+    ``name`` is the spec that the other argument names. Return ``side`` unchanged if ``name`` is None,
+    or if ``side`` has no spec of that name.
     """
     matches = tuple(fspa for fspa in side.automata if fspa.name == name)
     return replace(side, automata=matches or side.automata)

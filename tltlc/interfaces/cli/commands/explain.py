@@ -91,9 +91,10 @@ def _print_explanations(explanations: list[Explanation], format: str) -> None:  
 
 
 def _print_code_page(code: str) -> int:
-    """Print the documentation page of an error code.
+    """Print the documentation page of an error code such as ``TLT0201``, and return the exit status.
 
-    If ``code`` is only the beginning of error codes, list these codes with their titles.
+    If ``code`` is only the beginning of error codes, such as ``TLT02``, list these codes with their
+    titles. Raise click.UsageError if no code begins with it.
     """
     from tltlc.diagnostics import code_pages
 

@@ -70,7 +70,8 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
 def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -> bool:
     """Format one file in place, and return whether it was formatted already.
 
-    With ``check`` or ``diff``, only print the name of a file that would change, or the change.
+    The formatted text of standard input is printed. With ``check``, change nothing, and print the
+    name of a file that would change. With ``diff``, change nothing, and print the changes instead.
     """
     from pathlib import Path
 

@@ -66,10 +66,10 @@ def command(paths: tuple[str, ...], fixing: bool, settings: CompileSettings, for
 def _lint_file(
     path: str, elsewhere: Container[str], fixing: bool, settings: CompileSettings, report: Report
 ) -> tuple[Diagnostic, ...]:
-    """Lint a file, and fix it first if ``fixing``; return the remaining diagnostics.
+    """Lint a file, after fixing it if ``fixing``; return the remaining diagnostics.
 
-    ``elsewhere`` contains the names that other files may use. The linter does not report the
-    declarations of these names as unused.
+    ``elsewhere`` contains the names that other files may use, so their declarations are not
+    reported as unused. Each fix is reported to ``report``. Raises TltlError if the file has errors.
     """
     from pathlib import Path
 

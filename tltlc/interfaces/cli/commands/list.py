@@ -16,7 +16,8 @@ ListRow = dict[str, str]
 LISTS = "tltlc.lists"
 """The entry-point group for lists that the compiler cannot make itself, such as the levels.
 
-Each entry is a function that gets a function for diagnostics, and returns the rows of its list.
+Each entry is a function ``rows(add)``. It returns the rows of its list, and calls ``add`` with the
+diagnostics that it finds.
 """
 
 
@@ -64,9 +65,10 @@ def show(rows: list[ListRow]) -> None:
 
 
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[ListRow]:
-    """Yield a row for each predicate of each library, with its signature as declared.
+    """Yield a row for each predicate in ``libraries``, the project's libraries and the standard library.
 
-    Files that cannot be read or parsed give errors, which are passed to ``add``.
+    A row has the predicate's ``name``, ``library``, ``signature`` as declared, and ``doc``. For files
+    that cannot be read or parsed, call ``add`` with the errors.
     """
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl
@@ -118,7 +120,11 @@ _OWN_LISTS: dict[str, Callable[[], Iterator[ListRow]]] = {"targets": _targets, "
 
 
 def _rows(what: str, add: Callable[..., None]) -> Iterator[ListRow]:
-    """Return the rows of a list; raise TLT0730 if the runtime makes this list and is not installed."""
+    """Return the rows of the list called ``what``, such as ``targets`` or ``levels``.
+
+    Raise TLT0730 if the runtime makes this list and is not installed. ``add`` is called with the
+    diagnostics of the list.
+    """
     from tltlc.interfaces.cli import plugins
     from tltlc.interfaces.cli.exits import missing_component
 

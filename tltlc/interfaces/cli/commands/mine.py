@@ -161,7 +161,7 @@ def command(
 
 
 def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterator[str]:
-    """Yield messages about columns of the traces that the search ignores, because they are no atoms."""
+    """Yield messages about the columns of the traces that the search ignores, because they are not atoms."""
     misnamed = [name for name in words.left_out if name in words.misnamed]
     not_atoms = [name for name in words.left_out if name not in words.misnamed]
     if not_atoms:
@@ -177,7 +177,11 @@ def _column_messages(words: MiningVocabulary, predicates: str | None) -> Iterato
 
 
 def _read_traces(arguments: Sequence[str]) -> list[TraceFile]:
-    """Return the trace files that the arguments name; for a folder, the trace files in and below it."""
+    """Return the trace files that the arguments name; for a folder, the trace files in and below it.
+
+    Files in Parquet are converted to text. Raises TltlError for a file that cannot be read or is too
+    large, and for a folder without traces.
+    """
     from tltlc.io.files import read_bytes
     from tltlc.monitor.parquet import as_text
     from tltlc.tools.judge.trace_files import find_traces
@@ -220,7 +224,7 @@ def _is_name(predicates: str) -> bool:
 
 
 def _compile_options(predicates: str | None, settings: CompileSettings) -> CompileOptions:
-    """Return the compiler's options for the proposed specs, from the project of ``predicates``."""
+    """Return the options to compile the proposed specs: ``settings``, and the project of the file ``predicates``."""
     from tltlc.io.project import Project, project_for
 
     check_libraries(settings.libraries)
@@ -231,7 +235,7 @@ def _compile_options(predicates: str | None, settings: CompileSettings) -> Compi
 
 
 def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tuple[bool, bool]:
-    """Search for specs until the search is complete, ``seconds`` have passed, or Ctrl-C.
+    """Search for specs until the search is complete, ``seconds`` have passed, or the user presses Ctrl-C.
 
     Return whether the search completed, and whether Ctrl-C interrupted it.
     """
@@ -251,7 +255,7 @@ def _run_search(search: SpecSearch, seconds: float | None, report: Report) -> tu
 
 
 def _every_second(report: Report) -> Callable[[str], None]:
-    """Return a function that reports progress at most once a second."""
+    """Return a function that reports the text it is called with, but at most once a second."""
     last_report = monotonic()
 
     def tell(text: str) -> None:
@@ -264,7 +268,7 @@ def _every_second(report: Report) -> Callable[[str], None]:
 
 
 def _unread_messages(words: MiningVocabulary) -> Iterator[str]:
-    """Yield a message if some atoms of the traces were not read, because there are too many."""
+    """Yield a message if there are too many atoms in the traces, so that some were not read."""
     from tltlc.io.limits import WORK
 
     if words.unread_count:
@@ -302,10 +306,10 @@ def _write_proposals(
     imported: str | None,
     report: Report,
 ) -> None:
-    """Write the proposed specs as a source file, or print the file if ``path`` is standard output.
+    """Write the proposed specs as a source file, or print them if ``path`` is standard output.
 
-    ``imported`` is the source line that imports the library with the predicates; None if no library
-    is imported.
+    ``imported`` is the ``import`` line for the library with the predicates; None if no library is
+    imported.
     """
     from tltlc.io.writing import write_file
     from tltlc.tools.fmt import format_text
@@ -321,9 +325,10 @@ def _write_proposals(
 
 
 def _import_line(library: SourceFile, predicates: str, path: Path) -> str:
-    """Return the ``import`` line that a file at ``path`` needs to use a library.
+    """Return the line with which a file at ``path`` imports a library: ``import stealth`` or ``import "../game.tltl"``.
 
-    Raises click.UsageError if no such line can be written.
+    ``predicates`` is the name or path of the library on the command line. Raises click.UsageError if
+    no line can import that path.
     """
     import os
 

@@ -119,7 +119,7 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
 
 @contextmanager
 def _open_trace(trace: str) -> Iterator[_OpenTrace]:
-    """Yield a trace, open for reading line by line; raise TLT0001 if opening or reading fails."""
+    """Open a trace for reading within the context; raise TLT0001 if opening or reading fails."""
     if trace == STDIN:
         yield _OpenTrace(standard_input(), STDIN_NAME)
         return
@@ -132,7 +132,7 @@ def _open_trace(trace: str) -> Iterator[_OpenTrace]:
 
 
 def _as_text(lines: _OpenTrace, trace: str, signals: Sequence[Signal]) -> Stream:
-    """Return a trace as a stream of text lines; a trace in Parquet is converted to JSON lines."""
+    """Return a trace as a stream of text lines; a trace in Parquet is read at once and converted to JSON lines."""
     from tltlc.monitor.parquet import is_parquet, json_lines
 
     return io.BytesIO(json_lines(lines.read(), trace, signals)) if is_parquet(lines.start(), trace) else lines
@@ -145,7 +145,7 @@ class _OpenTrace:
         self._file, self._name = file, name
 
     def start(self) -> bytes:
-        """Return the first bytes without consuming them; empty for a stream that cannot look ahead."""
+        """Return the first bytes without consuming them; ``b""`` for a stream that cannot look ahead."""
         try:
             return self._file.peek(5) if isinstance(self._file, io.BufferedReader) else b""
         except OSError as error:
@@ -159,7 +159,7 @@ class _OpenTrace:
             raise input_error(self._name, error) from None
 
     def readline(self, size: int = -1, /) -> bytes:
-        """Return the next line, or its first ``size`` bytes; empty at the end."""
+        """Return the next line, or at most ``size`` bytes of it; ``b""`` at the end of the file."""
         try:
             return self._file.readline(size)
         except OSError as error:
@@ -171,7 +171,7 @@ def _trace_name(trace: str) -> str:
 
 
 def _with_notices(rows: Iterator[RunStep], notices: list[Diagnostic], report: Report) -> Iterator[RunStep]:
-    """Yield the rows unchanged. Before each row, report the monitor's notices about it."""
+    """Yield the rows unchanged. Before each row, report the monitor's notices about it, and clear ``notices``."""
     for row in rows:
         report.add(notices)
         notices.clear()

@@ -87,7 +87,7 @@ def _serve(port: int, open_browser: bool) -> None:
 
 
 def _report_ignored_project() -> None:
-    """If a project file lies above the current folder, report that the playground ignores it.
+    """If a project file (``tltl.toml``) is in a folder above the current one, say that the playground ignores it.
 
     The specs in the playground may read nothing outside the current folder.
     """

@@ -69,9 +69,9 @@ def _run(path: str, settings: CompileSettings, add: Callable[[Iterable[Diagnosti
 
 
 def _unread_text(files: int) -> str:
-    """Return the part of the summary that counts files with errors; empty if there are no such files.
+    """Return the end of the summary, such as ``, 2 files with errors``; empty if there are no such files.
 
-    Their tests did not run.
+    The tests of these files did not run.
     """
     return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tltlc.tools.lint.rule import LintFinding
 
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
-"""Clears the screen of a terminal, and its scrollback."""
+"""The text that clears the screen of a terminal and its scrollback."""
 
 
 @click.command(
@@ -93,7 +93,11 @@ def _check_files(arguments: tuple[str, ...], settings: CompileSettings) -> None:
 def _check_file(
     path: str, elsewhere: Container[str], settings: CompileSettings
 ) -> tuple[tuple[LintFinding, ...], tuple[TestResult, ...]]:
-    """Compile a file once, lint it, and run its tests; return the findings and the test results."""
+    """Compile a file once, lint it, and run its tests; return the findings and the test results.
+
+    ``elsewhere`` contains the names that other files may use, so their declarations are not
+    reported as unused. Raises TltlError if the file has errors.
+    """
     from tltlc.core.record import replace
     from tltlc.interfaces.cli.inputs import check_text
     from tltlc.io.files import read_source

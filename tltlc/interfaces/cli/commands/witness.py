@@ -93,7 +93,10 @@ def command(
 def _traces(
     moves: Moves, accepting: bool, rejecting: bool, cover: bool, settings: CompileSettings, report: Report
 ) -> list[Witness]:
-    """Return the traces that the options request; report if such a trace does not exist."""
+    """Return the traces that the options request; warn in ``report`` about those that do not exist.
+
+    ``moves`` are the transitions of the automaton.
+    """
     from tltlc.tools.witness import captions, traces
     from tltlc.tools.witness import cover as edge_cover
 
@@ -118,9 +121,9 @@ def _traces(
 
 
 def _trace_texts(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
-    """Return the text of each trace, as a ``test`` block or as CSV, by file name.
+    """Return the text of each trace by file name, as a ``test`` block or as CSV: ``heist_cover_1.csv``.
 
-    If the spec has no atoms, or for CSV no signals, report an error and return no texts.
+    If the spec has no atoms, or no signals for CSV, report an error and return an empty dict.
     """
     from tltlc.monitor import Monitor
     from tltlc.tools.witness import captions
