@@ -1,7 +1,7 @@
-"""A child process of the server, which reads one JSON request from its input and prints the answer.
+"""The program of a child process of the server: it reads one JSON request from its input, and prints the answer.
 
-Nothing inside a process can interrupt a compilation, so it runs in a process that the server can
-end.
+A compilation cannot be interrupted from inside its process, so it runs in a process that the server
+can end.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ NO_MEMORY: Final = 3
 
 
 def main() -> None:
-    """Load what a compilation needs, then wait for the request and answer it.
+    """Load the compiler, wait for a request on standard input, and print the answer.
 
-    The exit status is :data:`NO_REQUEST` if the input is not a request, :data:`NO_MEMORY` if memory
-    runs out.
+    The exit status is 0, or :data:`NO_REQUEST` if the input is not a valid request, or
+    :data:`NO_MEMORY` if memory runs out. If the input is empty, print nothing.
     """
     try:
         _answer_request()
@@ -49,7 +49,7 @@ def _answer_request() -> None:
 
 
 def limit_resources() -> None:
-    """Limit memory and processor time if possible, because this process may outlive the server."""
+    """Limit memory and processor time if the system can, because this process may outlive the server."""
     limit("RLIMIT_AS", PLAYGROUND_CHILD.memory)
     limit("RLIMIT_CPU", PLAYGROUND_CHILD.work_s)
 

@@ -1,6 +1,6 @@
-"""Child processes that run the compiler and answer one request of the playground each.
+"""Child processes that run the compiler; each answers one request of the playground.
 
-The server ends a child if it takes too long or the client has gone.
+The server ends a child that takes too long, or whose client has gone.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _KILLED_HELP: Final = "try again; the system does this if memory is short, and t
 
 
 class AbandonedError(Exception):
-    """Raised if the client no longer waits for the answer."""
+    """Raised if nobody waits for the answer to a request: the client has gone, or the server is closing."""
 
 
 class Children:
@@ -49,9 +49,10 @@ class Children:
         self._closed = False
 
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
-        """Return a child's answer to a request, or None if the bytes are not a request.
+        """Return a child's answer to a request, as JSON; None if the bytes are not a valid request.
 
-        The child calls :func:`tltlc.interfaces.playground.protocol.answer`. ``is_abandoned()`` says
+        The child calls :func:`tltlc.interfaces.playground.protocol.answer`. If it takes too long,
+        fails or answers too much, return an answer with an error instead. ``is_abandoned()`` says
         whether the client no longer waits.
 
         Raises AbandonedError as soon as the client no longer waits, or if :meth:`close` is called,
@@ -82,7 +83,7 @@ class Children:
         return response.decode("utf-8")
 
     def close(self) -> None:
-        """End all children, and abandon the requests that are being answered."""
+        """End all children; :meth:`answer` then raises AbandonedError for the requests that are being answered."""
         with self._lock:
             self._closed = True
             for child in self._running:
@@ -119,8 +120,8 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
     """Send a request to a child, and return the child's answer.
 
     If the answer is larger than :data:`tltlc.io.limits.ANSWER` allows, return only its start, one
-    byte more than is allowed. Raises AbandonedError if the client no longer waits, TimeoutExpired
-    after ``limit_s`` seconds.
+    byte more than is allowed. Raises AbandonedError if the client no longer waits, and
+    subprocess.TimeoutExpired after ``limit_s`` seconds.
     """
     end = monotonic() + limit_s
     responses: list[bytes] = []
@@ -140,9 +141,10 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
 
 
 def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
-    """Send the whole request to a child, then read and return the answer.
+    """Send the whole request to a child, then read and return the answer, and wait for the child to end.
 
-    A child reads everything before it writes.
+    A child reads everything before it writes, so neither waits for the other. At most one byte more
+    than :data:`tltlc.io.limits.ANSWER` allows is read; after that, the child is killed.
     """
     assert child.stdin is not None
     assert child.stdout is not None
@@ -158,7 +160,10 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
 
 
 def _failure_answer(status: int) -> str:
-    """Return an error to send instead of an answer, after a child ended with exit status ``status``."""
+    """Return the answer with an error, as JSON, for a child that failed with exit status ``status``.
+
+    A negative status is the number of the signal that ended the child.
+    """
     if status == NO_MEMORY:
         return error_answer(TOO_LARGE)
     if status >= 0:

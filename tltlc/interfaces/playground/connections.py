@@ -3,9 +3,9 @@
 One thread serves all connections and sleeps until something happens. A :class:`Site` makes the
 answers.
 
-If a client stops sending, it may still wait for its answer, or it may have hung up; the system
-reports both in the same way. The server tells them apart with interim answers (RFC 9110, 15.2): a
-waiting client ignores them, and a closed connection rejects them.
+A client that has stopped sending may still wait for its answer, or it may have hung up: the system
+reports both in the same way. The server tells them apart by sending interim answers (RFC 9110,
+15.2). A waiting client ignores them, and a closed connection rejects them.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from tltlc.interfaces.playground.request_head import Head, RefusedError, read_he
 from tltlc.io.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE, Connections
 
 _MOST_BYTES: Final = REQUEST_HEAD.size + MESSAGE.size
-"""Bytes that may arrive while a request is being answered: the size of the largest next request."""
+"""The most bytes that may arrive while a request is being answered: the size of the largest next request."""
 _MOST_HEAD: Final = 2 * REQUEST_HEAD.size + REQUEST_LINE.size + 2
-"""Bytes that are searched for a head: empty lines, first line, headers, and a little more."""
+"""The most bytes that are searched for a head: empty lines, first line, headers, and a little more."""
 
 
 _INTERIM: Final = b"HTTP/1.1 100 Continue\r\n\r\n"
@@ -46,23 +46,24 @@ class Site(Protocol):
     """The interface of the object that makes the answers of a server."""
 
     def check(self, head: Head) -> None:
-        """Raise RefusedError if a request must be refused, whatever its body is."""
+        """Raise RefusedError if a request must be refused because of its head, before its body is read."""
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
         """Return the answer to a request that passed :meth:`check`.
 
-        Return None if the client no longer waits.
+        ``hung_up`` is set when the client no longer waits; the answer may then be None. Raises
+        RefusedError if the request cannot be answered, for example because of its body.
         """
 
     def error_response(self, status: HTTPStatus) -> Response:
-        """Return the response for a rejected request."""
+        """Return the response for a refused request, with this status."""
 
 
 class ConnectionState(Enum):
     """The state of a connection.
 
-    If there is no room for a new connection, a connection in the state with the least value is
-    closed.
+    The values are an order: if there is no room for a new connection, a connection in the state with
+    the least value is closed first.
     """
 
     LEAVING = 0
@@ -86,7 +87,7 @@ class OpenConnections:
     def add(self, connection: Connection) -> bool:
         """Add a connection; return False if there is no room for it.
 
-        If there is no room, :meth:`make_room` first tries to close another connection.
+        If there are too many connections, first try to close another one (:meth:`make_room`).
         """
         if len(self._all) >= self.limits.most and not self.make_room():
             return False
@@ -94,12 +95,12 @@ class OpenConnections:
         return True
 
     def make_room(self) -> bool:
-        """Close the least important connection: of those in the lowest state, the oldest.
+        """Close the least important connection, and return whether there was one that may be closed.
 
-        The states are ordered by the values of :class:`ConnectionState`. Return whether a
-        connection could be closed. A connection stays open if the client waits for an answer, or
-        sends a body after a valid head. A client that has stopped sending does not count as
-        waiting, because it may have hung up.
+        It is the one in the lowest state (by the values of :class:`ConnectionState`), and of several
+        the one that has been in this state longest. A connection stays open if the client waits for
+        an answer, or sends a body after a valid head. A client that has stopped sending does not
+        count as waiting, because it may have hung up.
         """
         candidates = [connection for connection in self._all if connection.gives_way]
         if not candidates:
@@ -118,9 +119,9 @@ class OpenConnections:
 
 
 def report_failure(task: asyncio.Task[Any]) -> None:
-    """Report the exception of a task, unless it is a KeyboardInterrupt.
+    """Report the exception of a finished task to its event loop, unless it is a KeyboardInterrupt.
 
-    A KeyboardInterrupt ends the server and has a report of its own.
+    A KeyboardInterrupt ends the server, which reports it itself.
     """
     error = None if task.cancelled() else task.exception()
     if error is not None and not isinstance(error, KeyboardInterrupt):
@@ -165,7 +166,7 @@ class Connection(asyncio.Protocol):
             self._close()
 
     def data_received(self, data: bytes) -> None:
-        """Take received data; ignore it after the last answer."""
+        """Take received data; after the last answer, ignore it. If too much arrives, close the connection."""
         if self.state is ConnectionState.LEAVING:
             return
         self._buffer += data
@@ -189,7 +190,7 @@ class Connection(asyncio.Protocol):
         return False
 
     def resume_writing(self) -> None:
-        """Continue with the next request or close, now that everything is sent."""
+        """Read the next request, or close the connection, now that the answer is sent."""
         if self.state is ConnectionState.WRITING:
             self._on_sent()
 
@@ -223,9 +224,10 @@ class Connection(asyncio.Protocol):
         self._close()
 
     def _probe_client(self) -> None:
-        """Send interim responses (100 Continue) until the answer to the current request is ready.
+        """Send interim answers (100 Continue) until the answer to the current request is ready.
 
-        If the client has hung up, sending one fails, and asyncio closes the connection.
+        If the client has hung up, sending an interim answer fails, and asyncio closes the
+        connection. HTTP/1.0 has no interim answers, so none is sent to such a client.
         """
         if self.state is not ConnectionState.ANSWERING or self._is_http_1_0:
             return
@@ -305,9 +307,9 @@ class Connection(asyncio.Protocol):
         self._send(response, with_body=head.method != "HEAD")
 
     def _refuse(self, status: HTTPStatus, head: Head | None = None) -> None:
-        """Refuse a request, and close the connection afterwards.
+        """Answer a request with an error ``status``, and close the connection afterwards.
 
-        In the data after a refused request, the start of the next request is unknown.
+        It cannot stay open, because nobody knows where the next request starts in the data.
         """
         self._closes = True
         self._buffer.clear()

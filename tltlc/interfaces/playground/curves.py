@@ -10,7 +10,7 @@ Curve = tuple[PicturePoint, ...]
 """A start, then three points for each cubic piece: its two control points and its end."""
 
 _SHORT: Final = 0.05
-"""In pixels. A line of at most this length is invisible, and its direction is unreliable."""
+"""A length in pixels. Lines that are not longer are invisible, and their direction is unreliable."""
 
 
 def add_line(curve: Curve, end: PicturePoint) -> Curve:

@@ -13,14 +13,14 @@ from tltlc.tools.lint import fixes
 from tltlc.tools.lint.fixes import OfferedFix
 
 _LONGEST: Final = 20_000
-"""The most characters of a text that gets fixes; trying them in longer texts would take too long."""
+"""The most characters of a text that gets fixes; in longer texts, trying them would take too long."""
 
 
 def of_errors(source: SourceFile, diagnostics: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[OfferedFix]:
-    """Return the fixes for the errors of a text.
+    """Return the fixes of ``diagnostics`` that leave fewer errors in the text ``source``.
 
-    :func:`tltlc.tools.lint.fixes.fixes_of_errors` tries each fix. ``libraries`` are the folders
-    that are searched for imports. Texts over 20,000 characters get no fixes.
+    ``libraries`` are the folders that are searched for imports. Texts over 20,000 characters get no
+    fixes.
     """
     if len(source.text) > _LONGEST:
         return []

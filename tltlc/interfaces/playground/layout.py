@@ -1,10 +1,11 @@
 """Place the states of a small automaton and the texts of its edges without overlaps.
 
-Columns of states alternate with columns of edge texts. A *node* is a state, or an edge in a column
-that it passes; the height of a node is called its *level*. Nodes of a column do not overlap, so
-edges cross no state and no text. The text of an edge is above its level. Traps are in a row below
-the columns. An edge to a trap goes straight down from its state or, if other states are below that
-state, down a lane beside them. All lengths are in pixels of the SVG; y points down.
+Columns of states alternate with columns of edge texts. A *node* is a state, or the part of an edge
+that passes a column. The *level* of a node is the y coordinate of the state's centre or of the
+edge's line. Nodes of a column do not overlap, so edges cross no state and no text. The text of an
+edge is above its line. Traps are in a row below the columns. An edge to a trap goes straight down
+from its state. If other states are below that state, the edge goes down a lane beside them. All
+lengths are in pixels of the SVG; y points down.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from tltlc.interfaces.playground.ordering import (
 
 _SWEEPS: Final = 12
 _GAP, _NARROW_GAP = 30.0, 12.0
-"""Vertical gaps between two nodes of a column: if one of them is a state, and if neither is."""
+"""Vertical gaps between two nodes of a column: the first if one of them is a state, the second if neither is."""
 _LEAST_BEND, _MOST_BEND = 36.0, 110.0
 """Least and greatest distance between two columns, where edges change their levels."""
 _LANE: Final = 20.0
@@ -57,10 +58,11 @@ class StateBox:
 
 @record
 class Layout:
-    """The centres of states, the centres of edges' texts, the curves of edges, and the total size.
+    """The places of all parts of a picture, in pixels.
 
-    The keys of ``middles`` are the numbers of the states. The keys of ``texts`` and ``curves`` are
-    edges, as pairs of source and target.
+    ``middles`` maps the number of each state to its centre. ``texts`` and ``curves`` map edges, as
+    pairs of source and target, to the centres of their texts and to their curves. ``width`` and
+    ``height`` are the right and lower ends of the picture.
     """
 
     middles: Mapping[int, PicturePoint]
@@ -75,15 +77,16 @@ def layout(
 ) -> Layout:
     """Lay out boxes and edges; ``corner`` is the left upper corner of the picture.
 
-    Box 0 is the initial state, and ``texts`` has the size of each edge's text. Loops, and the texts
-    of edges to traps, are not placed here, because they are drawn over and under the boxes. No edge
-    may lead from a trap to another box.
+    ``boxes`` maps the number of each state to its box; box 0 is the initial state. ``texts`` maps
+    each edge, as a pair of source and target, to the size of its text. Loops, and the texts of edges
+    to traps, are not placed here, because they are drawn over and under the boxes. No edge may lead
+    from a trap to another box.
     """
     return _LayoutPass(boxes, texts, corner).layout()
 
 
 class _LayoutPass:
-    """Computes one layout: first the columns, then the heights of their nodes, then the curves of edges."""
+    """Computes one layout: first the columns, then the levels (y coordinates) of their nodes, then the curves."""
 
     def __init__(self, boxes: Mapping[int, StateBox], texts: Mapping[EdgeEnds, BoxSize], corner: PicturePoint) -> None:
         self.boxes, self.texts = boxes, texts
@@ -115,7 +118,7 @@ class _LayoutPass:
         return [node for node in self.columns[self.column[state]] if len(node) == 1][-1] == (state,)
 
     def _reach(self, node: LayoutNode) -> tuple[float, float]:
-        """Return how far a node extends above and below its level (height), in pixels."""
+        """Return how far a node extends above and below its level (y coordinate), in pixels."""
         if len(node) == 1:
             box = self.boxes[node[0]]
             return box.height / 2 + box.over, box.height / 2 + box.under
@@ -123,7 +126,7 @@ class _LayoutPass:
         return (self.texts[node[0], node[1]][1] + 5, 3.0) if is_text else (0.0, 0.0)
 
     def _levels(self, top: float) -> dict[LayoutNode, float]:
-        """Return the level (height) of each node; ``top`` is the upper end of the highest node.
+        """Return the level (y coordinate) of each node; ``top`` is where the highest node shall begin.
 
         Nodes that an edge links have similar levels. Nodes of a column do not overlap.
         """
@@ -146,9 +149,10 @@ class _LayoutPass:
     def _spread(
         self, nodes: Sequence[LayoutNode], ideal_levels: Mapping[LayoutNode, float], levels: dict[LayoutNode, float]
     ) -> None:
-        """Set the levels of ``nodes``, a whole column, near their ideal levels, in order and with gaps.
+        """Set the levels of a column's nodes: near their ideal levels, in the same order, and without overlaps.
 
-        The mean of the levels is the mean of the ideal levels.
+        ``nodes`` are all nodes of the column from top to bottom. The new levels are stored in
+        ``levels``; their mean is the mean of the ideal levels.
         """
         last: LayoutNode = ()
         for node in nodes:
@@ -161,14 +165,14 @@ class _LayoutPass:
             levels[node] += shift
 
     def _apart(self, upper: LayoutNode, lower: LayoutNode) -> float:
-        """Return the least distance between the levels of two nodes that are neighbours in a column."""
+        """Return the least distance between the levels of two nodes, one just below the other in a column."""
         gap = _GAP if len(upper) == 1 or len(lower) == 1 else _NARROW_GAP
         return self._reach(upper)[1] + gap + self._reach(lower)[0]
 
     def _straighten(self, nodes: Sequence[LayoutNode], levels: dict[LayoutNode, float]) -> None:
-        """Change ``levels``, so that an edge through these nodes has few bends.
+        """Change ``levels`` so that the edge through these nodes has few bends.
 
-        Set as many of the nodes as possible to one level, then repeat with the rest.
+        Give the same level to as many of the first nodes as possible, then do so with the rest.
         """
         while nodes:
             low, high = self._room(nodes[0], levels)
@@ -227,7 +231,7 @@ class _LayoutPass:
         return (left + right) / 2, self.levels[node] - 5 - self.texts[ends][1] / 2
 
     def _ports(self) -> dict[tuple[EdgeEnds, int], PicturePoint]:
-        """Return the point at which each edge touches its source and its target, by edge and state.
+        """Return the points at which edges touch their source and target; the keys are pairs of edge and state.
 
         The edges at one side of a state are sorted by the levels of the nodes that they lead to.
         """
@@ -245,7 +249,7 @@ class _LayoutPass:
         return ports
 
     def _curve(self, ends: EdgeEnds) -> Curve:
-        """Return the curve of an edge: straight through columns, and bent between them."""
+        """Return the curve of an edge, which is straight inside columns and bent between them."""
         nodes = self.chains[ends]
         goes_right = self.column[ends[0]] < self.column[ends[1]]
         start, end = self.ports[ends, ends[0]], self.ports[ends, ends[1]]

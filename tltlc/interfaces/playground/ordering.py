@@ -1,8 +1,8 @@
 """Arrange a graph in columns from left to right, and order each column so that few edges cross.
 
-The method is that of Sugiyama, Tagawa and Toda (1981): edges that close a cycle are reversed, each
-state stands one column after the last state that leads to it, and the nodes of a column are sorted
-by the mean place of their neighbours.
+The method is that of Sugiyama, Tagawa and Toda (1981). Edges that close a cycle are set aside. Each
+state stands one column after the last state that leads to it. The nodes of a column are sorted by
+the mean place of their neighbours.
 """
 
 from __future__ import annotations
@@ -34,7 +34,10 @@ def columns_of(states: Sequence[int], edges: Iterable[EdgeEnds]) -> dict[int, in
 
 
 def chain(ends: EdgeEnds, column: Mapping[int, int]) -> list[LayoutNode]:
-    """Return an edge as a list of nodes, one for each column that it passes, from source to target."""
+    """Return an edge as a list of nodes, from its source through each column that it passes to its target.
+
+    ``column`` maps states to their columns: ``chain((0, 1), {0: 0, 1: 2}) == [(0,), (0, 1, 1), (1,)]``.
+    """
     source, target = ends
     a, b = column[source], column[target]
     between = range(a + 1, b) if a < b else range(a - 1, b, -1)
@@ -42,7 +45,10 @@ def chain(ends: EdgeEnds, column: Mapping[int, int]) -> list[LayoutNode]:
 
 
 def order_columns(column: Mapping[int, int], chains: Iterable[Sequence[LayoutNode]]) -> list[list[LayoutNode]]:
-    """Return the nodes of each column from top to bottom, ordered so that few edges cross."""
+    """Return the nodes of each column from top to bottom, ordered so that few edges cross.
+
+    ``column`` maps states to their columns, and ``chains`` has the nodes of each edge (:func:`chain`).
+    """
     columns: list[list[LayoutNode]] = [[] for _ in range(max(column.values()) + 1)]
     for state, number in column.items():
         columns[number].append((state,))
@@ -81,7 +87,7 @@ def mean(values: Sequence[float], default: float) -> float:
 
 
 def _postorder_and_forward_edges(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict[int, list[int]]]:
-    """Return the states in depth-first postorder, and the edges that close no cycle."""
+    """Return the states in depth-first postorder, and for each state the targets of its edges that close no cycle."""
     finished: list[int] = []
     entered: set[int] = set()
     open_: set[int] = set()

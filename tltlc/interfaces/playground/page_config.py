@@ -11,7 +11,7 @@ EXAMPLES: Final = Path(__file__).with_name("examples")
 
 
 def start() -> dict[str, Any]:
-    """Return the answer to the first request of the page, which is ``{}``.
+    """Return the answer to ``{}``, the first request of the page.
 
     The answer contains the ``examples``, and the keywords (``words``) and ``units`` that the page
     colours.

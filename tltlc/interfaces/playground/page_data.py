@@ -131,8 +131,8 @@ def diagnostic(
 ) -> dict[str, Any]:
     """Return a diagnostic as the JSON values that the playground page shows.
 
-    ``source`` is the text on the page; labels in other files get no offsets. ``offered_fixes`` may
-    contain fixes of other diagnostics, which are left out.
+    ``source`` is the text on the page; labels in other files get no offsets. Of ``offered_fixes``,
+    only the fixes of this diagnostic are used.
     """
     short = shorten(message)
     return {

@@ -38,9 +38,9 @@ _START: Final = 26.0
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
-    """Return a picture of an automaton as SVG, and notes, for example about what the picture leaves out.
+    """Return a picture of an automaton as SVG, and notes, for example about states that are folded into one.
 
-    If the automaton has too many states or edges, return None and a note.
+    If the picture would have too many states or edges, return None and a note that says so.
 
     States are groups with the class ``state`` and the class of their verdict; ``data-states`` has
     the number of the state, or the numbers of all states that are folded into it. Edges are groups
@@ -54,7 +54,7 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
 
 
 class _PictureText:
-    """Computes the SVG text of one picture, with the wrapped texts and the layout that it needs."""
+    """Computes the SVG text of one picture: first the wrapped texts of states and edges, then the layout."""
 
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
@@ -84,9 +84,10 @@ class _PictureText:
         )
 
     def _lines(self, ends: EdgeEnds) -> list[str]:
-        """Return the text of an edge as lines, which are longer for loops and edges to a trap.
+        """Return the text of an edge, broken into lines.
 
-        These texts are placed over or under a state, where there is more room.
+        The lines are longer for loops and edges to a trap, whose texts are over or under a state,
+        where there is more room.
         """
         is_wide = ends[0] == ends[1] or ends[1] == self.trap
         return _shorten(self.guards[ends], _WIDE_GUARD if is_wide else _GUARD)
@@ -158,7 +159,7 @@ class _PictureText:
 
 
 def _trap(drawing: Drawing) -> int | None:
-    """Return the state with the verdict ``violated`` that no edge leaves; None if there is none.
+    """Return the number of the state with the verdict ``violated`` that no edge leaves; None if there is none.
 
     The initial state does not count.
     """

@@ -41,9 +41,10 @@ class Question:
 
 
 def answer(request: str) -> str:
-    """Answer a request with the result of :func:`start` or :func:`view`.
+    """Answer a request with the result of :func:`start` or :func:`view`, as JSON.
 
-    Raises RequestError if the text is not a request.
+    If this fails, for example for lack of memory, answer with an error. Raises RequestError if the
+    text is not a valid request.
     """
     parsed = question(request)
     if parsed is None:
@@ -58,10 +59,10 @@ def answer(request: str) -> str:
 
 
 def question(request: str) -> Question | None:
-    """Parse a request with the keys ``text``, ``spec``, ``letters`` and ``notation``.
+    """Parse a request: a JSON object with the keys ``text``, ``spec``, ``letters`` and ``notation``.
 
-    Return None for the request ``{}``, which asks for what :func:`start` returns. Raises
-    RequestError if the text is not a request.
+    All keys but ``text`` are optional. Return None for ``{}``, which asks for the result of
+    :func:`start`. Raises RequestError if the text is not a valid request.
     """
     try:
         parsed = loads(request, MESSAGE)
@@ -83,13 +84,13 @@ def question(request: str) -> Question | None:
 
 
 def error_answer(title: str, help_: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
-    """Return the answer for a text that cannot be analysed: error TLT0775, with this title and help."""
+    """Return the answer for a text that cannot be analysed, as JSON: error TLT0775, with this title and help."""
     message = Diagnostic("TLT0775", title, help=help_)
     return _json({"diagnostics": [diagnostic(message)], "more": 0, "specs": [], "tests": [], "spec": None})
 
 
 def size_error_answer() -> str:
-    """Return the error that replaces an answer larger than :data:`tltlc.io.limits.ANSWER`."""
+    """Return the error, as JSON, to send instead of an answer larger than :data:`tltlc.io.limits.ANSWER` allows."""
     return error_answer(f"the answer is larger than {ANSWER.size >> 20} MiB, so it was not sent")
 
 

@@ -37,12 +37,12 @@ class RefusedError(Exception):
 
 @record
 class Head:
-    """A request without its body.
+    """An HTTP request without its body.
 
-    ``path`` is the path of the target, unescaped and without query. ``headers`` have names in lower
-    case. ``length`` is the length of the body in bytes; None if the request does not give it.
-    ``keeps_alive`` says whether another request may follow, and ``is_http_1_0`` whether the client
-    speaks HTTP/1.0, which has no interim answers.
+    ``path`` is the path of the target, unescaped and without query. The names in ``headers`` are in
+    lower case. ``length`` is the length of the body in bytes; None if the request does not give it.
+    ``keeps_alive`` says whether another request may follow on the connection, and ``is_http_1_0``
+    whether the client speaks HTTP/1.0, which has no interim answers.
     """
 
     method: str
@@ -54,7 +54,7 @@ class Head:
 
     @property
     def expects_continue(self) -> bool:
-        """Whether the client sends the body only after the server has agreed."""
+        """Whether the client sends the body only after an answer ``100 Continue``."""
         return "expect" in self.headers
 
 

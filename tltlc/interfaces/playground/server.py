@@ -31,7 +31,7 @@ TOKEN_HEADER: Final = "Tltlc-Token"
 _NAMES: Final = {HOST, "localhost"}
 """The host names that requests may use.
 
-All other host names are refused, because a foreign page could use a domain name of its own that
+All other host names are refused, because another page could use a domain name of its own that
 resolves to this address.
 """
 
@@ -39,7 +39,7 @@ _API: Final = "/api"
 _METHODS: Final = {"GET", "HEAD", "POST"}
 _KNOWN_METHODS: Final = _METHODS | {"OPTIONS", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}
 _AGAIN_S: Final = 1.0
-"""Seconds after which a server that lacked file descriptors accepts connections again."""
+"""Seconds after which the server accepts connections again, if it lacked file descriptors for them."""
 
 _OTHER_DESCRIPTORS: Final = 16 + 6 * MOST_AT_ONCE
 """The most file descriptors that the process itself and the pipes to its children need."""
@@ -55,9 +55,9 @@ _HEADERS: Final = {
 
 
 class PageHandler:
-    """Answers ``GET`` for the files of the page, and ``POST`` to :data:`_API`.
+    """Answers requests ``GET`` for the files of the page, and requests ``POST`` to ``/api`` about a spec text.
 
-    The headers of a ``POST`` must contain ``token``, a secret that only the page knows.
+    The header ``Tltlc-Token`` of a ``POST`` must be ``token``, a secret that only the page knows.
     """
 
     def __init__(self, children: Children, token: str) -> None:
@@ -69,7 +69,7 @@ class PageHandler:
         self._threads = ThreadPoolExecutor(PLAYGROUND.most)
 
     def check(self, head: Head) -> None:
-        """Raise RefusedError if a request is not from the page, or asks for something unknown."""
+        """Raise RefusedError if a request is not from the page, is not valid, or asks for something unknown."""
         if not _is_from_page(head):
             raise RefusedError(HTTPStatus.FORBIDDEN)
         if head.method not in _KNOWN_METHODS:
@@ -85,9 +85,10 @@ class PageHandler:
             raise RefusedError(HTTPStatus.BAD_REQUEST)
 
     async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
-        """Return a file of the page, or the answer to a request of the page.
+        """Return a file of the page, or the compiler's answer to a request of the page.
 
-        Return None if nobody waits for the answer any more.
+        Return None if the client no longer waits. Raises RefusedError if the body is not a valid
+        request, or if no process can be started to answer it.
         """
         if head.path != _API:
             name = _file_name(head.path)
@@ -106,12 +107,12 @@ class PageHandler:
         return _response(HTTPStatus.OK, text.encode(), "application/json")
 
     def error_response(self, status: HTTPStatus) -> Response:
-        """Return the response for a rejected request."""
+        """Return the response for a refused request, with this status."""
         allowed = {"Allow": "GET, HEAD, POST"} if status is HTTPStatus.METHOD_NOT_ALLOWED else {}
         return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
 
     def close(self) -> None:
-        """Take no more requests, and cancel the requests that no thread has begun to answer."""
+        """Take no more requests, and cancel those that no thread has begun to answer."""
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _check_question(self, head: Head) -> None:
@@ -138,7 +139,10 @@ def _file_name(path: str) -> str:
 
 
 def _is_from_page(head: Head) -> bool:
-    """Whether a request is meant for this server, and does not come from a foreign page."""
+    """Whether the headers show that a request is for this server, and does not come from another page.
+
+    Only the start page may be opened by a link on another page.
+    """
     host = head.headers.get("host", "").lower()
     name, colon, port = host.partition(":")
     if name not in _NAMES or (colon and not (port.isascii() and port.isdecimal())):
@@ -172,10 +176,10 @@ def _read_all(reader: socket.socket) -> None:
 
 
 class PlaygroundServer:
-    """Serves the page at :data:`HOST` only; port 0 is any free port.
+    """Serves the playground to this machine only, at ``127.0.0.1``; with port 0, at any free port.
 
-    ``limit_s`` is the most seconds for an answer, and ``connections`` limits the connections.
-    Raises TltlError, TLT0776, if the port is not available.
+    ``limit_s`` is the most seconds for an answer. ``connections`` limits the number of connections
+    and their times. Raises TltlError, TLT0776, if the port is not available.
     """
 
     def __init__(self, port: int, limit_s: float = LIMIT_S, connections: Connections = PLAYGROUND) -> None:
@@ -227,8 +231,8 @@ class PlaygroundServer:
     def shutdown(self) -> None:
         """Stop :meth:`serve_forever` if it runs in another thread, and wait until it ends.
 
-        If it is called in the thread that ran :meth:`serve_forever`, do nothing, because
-        :meth:`serve_forever` has ended already.
+        In the thread that called :meth:`serve_forever`, do nothing, because that call has returned
+        already.
         """
         if self._thread is not current_thread() and not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
@@ -275,10 +279,10 @@ class PlaygroundServer:
         task.add_done_callback(report_failure)
 
     def _pause_accepting(self) -> None:
-        """Stop accepting connections, because the process cannot open more file descriptors.
+        """Stop accepting connections for a while, because the process cannot open more file descriptors.
 
-        If a connection may be closed, close it and go on. Otherwise, go on after :data:`_AGAIN_S`
-        seconds.
+        If an open connection may be closed, close it, and accept connections again at once.
+        Otherwise, do so after :data:`_AGAIN_S` seconds.
         """
         self._loop.remove_reader(self._listener)
         if self.connections.make_room():
@@ -299,9 +303,9 @@ class PlaygroundServer:
     def _signals_wake_loop(self) -> Iterator[None]:
         """Within the context, wake the event loop at each signal, so that the signal's handler runs at once.
 
-        Python runs the handler of a signal between two steps of the main thread. A signal that
-        another thread gets, or that comes just before the wait begins, would not be handled until a
-        request comes.
+        Python runs the handler of a signal between two steps of the main thread. Without this, a
+        signal that another thread gets, or that comes just before the loop begins to wait, would
+        not be handled until a request comes. In a thread other than the main thread, do nothing.
         """
         if current_thread() is not main_thread():
             yield
@@ -322,5 +326,5 @@ class PlaygroundServer:
                 self._loop.remove_reader(reader)
 
     def _wake(self) -> None:
-        """Wake the event loop twice a second. On Windows, it notices Ctrl-C only when it is awake."""
+        """Wake the event loop twice a second: on Windows, the loop notices Ctrl-C only when it is awake."""
         self._loop.call_later(0.5, self._wake)

@@ -1,4 +1,4 @@
-"""The data for the sliders with which a user of the playground sets the signals of a spec."""
+"""The data of the sliders with which a user of the playground sets the signals of a spec."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from tltlc.resolve.spec import Signal
 
 UNITS: Final = {"length": "m", "time": "s", "speed": "m/s", "angle": "rad"}
 _OPEN: Final = 100.0
-"""How far a slider reaches if the range of its signal is open, in SI units.
+"""How far a slider reaches where the range of its signal has no end, in SI units.
 
-If there are params of the signal's type, the greatest absolute value among them is used instead.
+If there are params of the signal's type, the greatest absolute value among them is used instead,
+unless it is 0.
 """
 
 
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:
-    """Return for each signal its name, type, unit, documentation, range and slider range.
+    """Return for each signal a dict with its name, type, unit, documentation, range and slider range.
 
-    An end of the range is None if the range is open there; a slider range always has two ends.
+    ``low`` and ``high`` are None where the range has no end; ``slider`` always has two finite ends.
     """
     return [
         {

@@ -35,7 +35,7 @@ def page_files() -> dict[str, bytes]:
 def site_files(pyodide: Path) -> dict[str, bytes]:
     """Return the contents of the static site's files, by path: the page, the compiler, and Pyodide.
 
-    ``pyodide`` is the folder of the npm package of Pyodide.
+    ``pyodide`` is the folder of the npm package Pyodide, which is Python for WebAssembly.
 
     Raises TltlError, TLT0730, if that folder lacks a required file.
     """
@@ -52,7 +52,7 @@ def site_files(pyodide: Path) -> dict[str, bytes]:
 
 
 def _archive() -> bytes:
-    """Return a zip file of the compiler and its libraries; equal contents give equal bytes."""
+    """Return a zip file of the compiler's needed parts and the standard library; equal contents give equal bytes."""
     library = standard_library()
     files = {path.relative_to(PACKAGE.parent): path for path in PACKAGE.rglob("*") if _is_needed(path)}
     files.update({Path("tltlc/stdlib", path.name): path for path in library.glob("*.tltl")})

@@ -19,19 +19,19 @@ PageLetter = Union[Sequence[str], Mapping[str, float]]
 """A step of a trace: the names of the atoms that hold, or the values of the signals by name."""
 
 _MOST_WORK: Final = 200_000
-"""The most steps of the search for a trace, if the spec is over infinite traces."""
+"""How many steps of work the search for a trace may take, if the spec is over infinite traces."""
 _LONGEST: Final = 200
-"""The most steps of a trace that the page shows in a table."""
+"""The most steps of a suggested trace; the page shows it in a table."""
 
 
 def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
-    """Return a row with the monitor's output for each step of a trace; a letter is the input of a step.
+    """Run the monitor on a trace, and return a row with its output for each step.
 
-    A letter gives the names of the atoms that hold (unknown names are ignored), or the values of
-    the signals. In a row, ``from`` is the state before the step, ``values`` are the values of the
-    atoms in order, and ``signals`` are values of the signals that make these atoms hold; None if no
-    such values were found. If the monitor refuses a step, its row has an ``error`` and is the last
-    row.
+    ``letters`` are the inputs of the steps. A letter gives the names of the atoms that hold (unknown
+    names are ignored), or the values of the signals. In a row, ``from`` is the state before the
+    step, ``values`` are the values of the atoms in order, and ``signals`` are values of the signals
+    with which exactly these atoms hold; None if no such values were found. If the monitor refuses a
+    step, the row of the step has an ``error``, and is the last row.
     """
     monitor, finder = Monitor(fspa), SampleFinder(fspa)
     result: list[dict[str, Any]] = []
@@ -66,9 +66,11 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
 
 
 def idle_step(fspa: Fspa) -> dict[str, Any]:
-    """Return the step that the page suggests for a new row of the trace: one in which little happens.
+    """Return the step that the page suggests for a new row of the trace, in which as little as possible happens.
 
-    In this step, few atoms hold, and the automaton stays in the initial state if possible.
+    In this step, few atoms hold, and the automaton stays in the initial state if possible. ``atoms``
+    has the names of the atoms that hold, and ``signals`` the values of the signals; None if no such
+    values were found.
     """
 
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
@@ -87,10 +89,11 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
 
 
 def shortest_traces(fspa: Fspa) -> dict[str, Any]:
-    """Return a shortest trace that succeeds and one that fails: ``{"succeed": …, "fail": …}``.
+    """Return a shortest trace that succeeds and a shortest one that fails: ``{"succeed": …, "fail": …}``.
 
-    None stands for a trace that does not exist or is too long for the page. Both are None if one of
-    the two searches takes too many steps.
+    A trace is a list of steps, each with ``atoms`` and ``signals``. It is None if there is no such
+    trace, or if it is too long for the page. Both are None if one of the two searches takes too much
+    work.
     """
     moves = Moves(fspa)
     try:
