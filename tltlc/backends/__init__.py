@@ -1,4 +1,4 @@
-"""The targets of the compiler, that is, the formats and languages that it can write.
+"""The targets of the compiler, that is, the formats and languages in which it can write an automaton.
 
 Each target is a module of this package, imported on first use. It has ``TARGET`` (a
 :class:`Target`) and a function ``emit(fspa, options) -> Files``, which returns files and writes
@@ -27,9 +27,10 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 class Target:
     """Describes a target, that is, a format or language that the compiler can write.
 
-    ``name`` is the name of the module of the target, and ``title`` its description in lists.
-    ``endings`` are the endings of the names of its files. ``known_as`` are names, in lower case,
-    that people may try instead of ``name``: the error for them suggests this target.
+    ``name`` is the name of the target and of its module, and ``title`` its description in lists.
+    ``endings`` are the endings of the names of its files, such as ``.dot``. ``known_as`` are other
+    names, in lower case, that people may try instead of ``name``: the error then suggests this
+    target.
     """
 
     name: str
@@ -46,9 +47,9 @@ def _ignore(_: Diagnostic) -> None:
 class Options:
     """Options of the targets.
 
-    ``notation`` is the notation of formulas in pictures. ``layout_limit_s`` is the time limit, in
-    seconds, of each attempt to lay out a picture. ``report`` is called with a diagnostic when a
-    target has to leave something out.
+    ``notation`` is the notation of formulas in pictures. ``layout_limit_s`` is the most seconds for
+    each attempt to lay out a picture. ``report`` is called with a diagnostic if a target has to leave
+    something out.
     """
 
     notation: Notation = "unicode"
@@ -70,7 +71,7 @@ def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:
 
 
 def target(name: str) -> Target:
-    """Return the description of a target; raises TltlError (TLT0710) if there is no target of that name."""
+    """Return the description of the target called ``name``; raise TltlError, TLT0710, if there is no such target."""
     target_: Target = _module(name).TARGET
     return target_
 

@@ -2,8 +2,8 @@
 
 It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
 if the C library's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. If an atom
-has no value for two reasons, the message may name either one, since C does not specify the order in
-which operands are evaluated.
+cannot be computed for two reasons, such as two divisions by 0, the message may name either one: C
+does not specify the order in which operands are evaluated.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ TARGET = Target(
 _INDENT = Printer.INDENT
 
 _RESERVED: Final = (*RESERVED, "monitor", "sample", "result", "states", "none")
-"""Names that no variable may have; the last ones are those that the template uses.
+"""Names that no variable may have: reserved names of C, and the names that the template uses.
 
 :mod:`tltlc.program.build` adds the variables of the step function.
 """
@@ -49,16 +49,17 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _C(Printer):
-    """Prints a program in C.
+    """Prints the program of a monitor (:mod:`tltlc.program`) as C code.
 
-    The names of its functions begin with ``prefix``, the name of the spec.
+    The names of its functions begin with ``prefix``, the name of the spec. ``atoms`` are the atoms
+    of the automaton.
     """
 
     def __init__(self, prefix: str, atoms: Sequence[Atom]) -> None:
         self._prefix, self._atoms = prefix, atoms
 
     def comment(self, text: str) -> list[str]:
-        """Return a comment that has only ASCII characters and no trigraphs, which all compilers read alike."""
+        """Return the lines of a comment, with only ASCII characters and no trigraphs: all compilers read it alike."""
         return super().comment(re.sub(r"[^\x00-\x7f]", _escape, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
@@ -71,8 +72,8 @@ class _C(Printer):
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function.
 
-        Some functions, such as the division, have no value for some arguments. They also get the
-        monitor as an argument, and set its field ``problem`` for these arguments.
+        Some functions have no value for some arguments, such as a division by 0. They also get the
+        monitor as an argument, and set its field ``problem`` in such a case.
         """
         if function in ("abs", "tanh"):
             return super().call({"abs": "fabs"}.get(function, function), arguments)
@@ -81,7 +82,7 @@ class _C(Printer):
 
 
 class _Source:
-    """Makes the source text of one monitor, by filling the template."""
+    """Makes the C header of one monitor, by filling the template ``monitor.h.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
@@ -180,8 +181,8 @@ class _Source:
         """Return the C lines that refuse a sample or params: they record the problem and return false.
 
         ``problem`` is the name of the problem in C, and ``index`` the index of the param, atom or
-        group that has it. The ``return`` is among these lines, and not inside the function that
-        records the problem, so that compilers see that the step ends here.
+        exclusive group with the problem. These lines contain the ``return``, and not the function
+        that records the problem, so that compilers see that the step ends here.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
@@ -229,9 +230,10 @@ class _Source:
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
+        """Return the code that converts bool signals to the numbers 0 and 1.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
+        that every step reads.
         """
         return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
@@ -252,11 +254,11 @@ class _Source:
         return [*lines, "}"]
 
     def _range_tests(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
-        """Return tests that are all true only if every signal is finite and in its range.
+        """Return C expressions that are all true only if every signal is finite and in its range.
 
         Signals that lack a bound are tested by their sum, which is finite only if all of them are.
-        If the sum of finite values overflows, the test fails, and the signals are checked one by
-        one.
+        If the sum of finite values overflows, the test fails, although the signals are valid. Then
+        they are checked one by one.
         """
         bounded: list[str] = []
         least: dict[float, list[str]] = {}
@@ -281,7 +283,7 @@ class _Source:
         return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         program_ = self._program
         places = program_.computed_in(None)
         lines = [line for index in places for line in self._value(index)]
@@ -369,13 +371,13 @@ def _octal(character: str) -> str:
 
 
 def _wrapped(line: str) -> list[str]:
-    """Break the first line of a long ``if`` into lines of about 100 characters."""
+    """Break a line that begins with ``if (!(`` into lines of about 100 characters."""
     return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
 
 
 def _list(items: Sequence[str], otherwise: str) -> str:
     """Return the text of the items of an array initializer.
 
-    Returns ``otherwise`` if there are none, since C needs at least one item.
+    If there are no items, use ``otherwise`` as the only item, because C needs at least one.
     """
     return _C.items(items or [otherwise], depth=1)

@@ -71,7 +71,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _CSharp(Printer):
-    """Prints a program in C#, with each brace on its own line."""
+    """Prints the program of a monitor (:mod:`tltlc.program`) as C# code, with each brace on its own line."""
 
     def branches(self, statement: If, depth: int) -> list[str]:
         """Return the lines of an ``if`` with all its cases and its ``else``."""
@@ -97,7 +97,7 @@ class _CSharp(Printer):
 
 
 class _Source:
-    """Makes the source text of one monitor, by filling the template."""
+    """Makes the C# code of one monitor, by filling the template ``monitor.cs.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -194,14 +194,15 @@ class _Source:
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
+        """Return the code that converts bool signals to the numbers 0 and 1.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
+        that every step reads.
         """
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         lines: list[str] = []
         range_checks: list[str] = []
         for index in self._program.computed_in(None):
@@ -248,7 +249,7 @@ class _Source:
         return [*lines, "}"]
 
     def _values_only_in(self, state: int) -> list[Statement]:
-        """Return the statements that compute the atoms that only the given state reads."""
+        """Return the statements that compute the atoms which only a step from ``state`` needs."""
         return [statement for index in self._program.computed_in(state) for statement in self._value(index)]
 
     def _judge(self) -> list[str]:
@@ -275,7 +276,7 @@ class _Source:
 
 
 def _check_lines(test: str, otherwise: str) -> list[str]:
-    """Return the code that runs ``otherwise`` if a test fails, and then ends the step if there is a problem."""
+    """Return the code that runs ``otherwise`` if a test fails, and then ends the step if that found a problem."""
     return [
         f"if (!({test}))",
         "{",

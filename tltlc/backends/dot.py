@@ -24,10 +24,7 @@ LINES: dict[Verdict, str] = {
     "pending": "#475569",
     "violated": "#dc2626",
 }
-"""The colour of a state's outline and of its distance mark, for each verdict.
-
-``FILLS`` has the colour inside the outline, a pale shade of it.
-"""
+"""The colour of a state's outline and distance mark, by verdict; ``FILLS`` has a pale shade for the inside."""
 
 FILLS: dict[Verdict, str] = {
     "satisfied": "#dcfce7",
@@ -113,7 +110,7 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
-    """Return the title of the graph: the name of the spec, its documentation, and a legend of the marks."""
+    """Return the title of the graph, as an HTML-like label: the spec's name, its documentation, and a legend."""
     legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrap_text(note, TITLE_WIDTH)]
     lines = [f"<B>{escape_html(fspa.name)}</B>"]
     if fspa.doc.strip():
@@ -129,7 +126,7 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Add a state to the graph ``drawn``, with its ``text``, or only with its number unless ``full``.
+    """Add a state to the graph ``drawn``: with its ``text`` if ``full``, and otherwise only with its number.
 
     If ``run`` has several states, they are folded: they become one state with a dashed outline.
     """
@@ -167,8 +164,8 @@ def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[s
 def _edge_style(source: State, target: State) -> dict[str, str]:
     """Return the Graphviz attributes of an edge that determine its style.
 
-    Edges to a state with a smaller distance are bold and straight. Edges that lead from a state
-    that is no trap into a trap are pale red and may bend.
+    Edges to a state with a smaller distance are bold and straight. Edges that enter a trap from
+    another kind of state are pale red and may bend.
     """
     if source.id == target.id:
         # The only edge that leaves a satisfied or violated state is its loop: draw it on the right, where no edge

@@ -105,8 +105,8 @@ class _EdgeLabels:
     """Converts guards to edge labels of a HOA file, which are expressions over the numbers of atoms.
 
     A label is built from the prime implicants of the guard, since they define the guard; the
-    guard's text is only for readers. With exclusive atoms, a label is false on letters that cannot
-    occur.
+    guard's text is only for readers. Letters in which two exclusive atoms hold cannot occur; the
+    label is false on them.
     """
 
     def __init__(self, fspa: Fspa) -> None:
@@ -116,7 +116,7 @@ class _EdgeLabels:
         self._known: dict[tuple[Implicant, ...], str] = {}
 
     def label(self, guard: Guard) -> str:
-        """Return the label of a guard, without square brackets."""
+        """Return the label of a guard, without square brackets: ``0 & !1`` if atom 0 holds and atom 1 does not."""
         if guard.primes not in self._known:
             self._known[guard.primes] = self._label(guard.primes)
         return self._known[guard.primes]
@@ -165,9 +165,9 @@ def _character(character: str) -> str:
 
 
 def _comment(text: str) -> str:
-    """Return a comment with the text.
+    """Return the text as a comment of a HOA file.
 
-    Blanks split every ``/*`` and ``*/`` in the text, since HOA comments nest.
+    In the text, ``/*`` becomes ``/ *`` and ``*/`` becomes ``* /``, since HOA comments nest.
     """
     lines = [escape_invisible(line.strip()) for line in text.strip().splitlines()]
     return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

@@ -35,10 +35,7 @@ TARGET = Target(
 _LONGEST = 110
 
 _FEW = 3
-"""The most atoms of an exclusive group that are tested in pairs.
-
-In a larger group, the atoms that hold are counted.
-"""
+"""The largest exclusive group whose atoms are tested in pairs; in a larger one, the atoms that hold are counted."""
 
 _ENTERED = "entered"
 """The variable with the entry of the next state in the table of states."""
@@ -65,11 +62,11 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _JavaScript(Printer):
-    """Prints a program in JavaScript.
+    """Prints the program of a monitor (:mod:`tltlc.program`) as JavaScript code.
 
-    ``atoms`` are the names of the atoms in the spec. Functions in ``built_in`` are functions of
-    ``Math``. All others are in the template of the monitor: as methods of the monitor if they have
-    no value for some arguments, and as functions otherwise.
+    ``atoms`` are the names of the atoms in the spec. Numeric functions in ``built_in`` are those of
+    ``Math``. All others are in the template of the monitor. Those that have no value for some
+    arguments, such as the division, are methods of the monitor there.
     """
 
     INDENT = "  "
@@ -104,14 +101,14 @@ class _JavaScript(Printer):
         return _number(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function: of ``Math``, of the monitor, or of the template."""
+        """Return the text of a call of a numeric function: ``Math.abs(x)``, ``this.#divide(x, y)`` or ``min(x, y)``."""
         if function in self._built_in:
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
 
 class _Source:
-    """Makes the source texts of one monitor, by filling the templates."""
+    """Makes the module of one monitor and its TypeScript types, by filling their templates."""
 
     def __init__(self, fspa: Fspa, module: str, declarations: str) -> None:
         self._fspa, self._module, self._declarations = fspa, module, declarations
@@ -204,7 +201,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         lines = self._values(None)
         for index, (name, in_range) in enumerate(zip(self._program.atoms, self._program.always_in_range, strict=True)):
             if not in_range:
@@ -212,9 +209,10 @@ class _Source:
         return lines
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code that computes the values of the atoms that only the given state needs.
+        """Return the code that computes the values of some atoms.
 
-        If ``state`` is None, it computes the atoms that every step needs.
+        These are the atoms that only a step from ``state`` computes or, if ``state`` is None, those
+        that every step computes.
         """
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
@@ -279,7 +277,10 @@ class _Source:
 
 
 def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
-    """Return the properties of an interface, each after its documentation."""
+    """Return the properties of a TypeScript interface, each after its documentation.
+
+    Each of ``fields`` has the name, the type and the documentation of a property.
+    """
     lines: list[str] = []
     for name, type_, doc in fields:
         doc_lines = [line.replace("*/", "* /") for line in comment_lines(doc)]
@@ -311,7 +312,10 @@ def _escape(character: str) -> str:
 
 
 def _in_range(name: str, low: float | None, high: float | None) -> str:
-    """Return a test that is true if a variable is a finite number from ``low`` to ``high``."""
+    """Return a JavaScript expression that is true if the variable ``name`` is a finite number in a range.
+
+    The range goes from ``low`` to ``high``; None means that there is no bound.
+    """
     if low is None and high is None:
         return f"Number.isFinite({name})"
     least = f"-Infinity < {name}" if low is None else f"{_number(low)} <= {name}"
@@ -320,7 +324,7 @@ def _in_range(name: str, low: float | None, high: float | None) -> str:
 
 
 def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
-    """Return the lines of an ``if`` that runs ``body``; ``word`` is the operator between its ``tests``."""
+    """Return the lines of an ``if`` that runs ``body``; its condition joins ``tests`` with the operator ``word``."""
     head = f"if ({f' {word} '.join(tests)})"
     if len(head) + len(body) < _LONGEST:
         return [f"{head} {body}"]

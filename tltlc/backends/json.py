@@ -25,7 +25,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def document_and_text(fspa: Fspa) -> tuple[dict[str, Any], str]:
-    """Return the artefact of an automaton as JSON data and as the text of a file, checked against the schema.
+    """Return the artefact of an automaton, checked against the schema, as JSON data and as the text of its file.
 
     Raises:
         TltlError: TLT0004 the file would be larger than :data:`tltlc.io.limits.ARTEFACT` allows;

@@ -3,7 +3,8 @@
 It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
 except for ``tanh``, which newer versions of Lua lack, and for powers in LuaJIT, which computes them
 in its own way: these agree within 1e-12. Lua allows at most 200 local variables and 200 nested
-blocks. For a spec that needs more, variables become fields of tables, and inner blocks functions.
+blocks. For a spec that needs more, variables become fields of tables, and inner blocks become
+functions.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ The step function has more local variables, and Lua allows 200 in all.
 """
 
 _FEW_STATES: Final = 8
-"""The most states that a step tests one after the other.
+"""The most states among which a step finds the current one by an ``if`` with a case for each state.
 
 If there are more, each state has a function.
 """
@@ -65,7 +66,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Source:
-    """Makes the source text of one monitor, by filling the template."""
+    """Makes the Lua module of one monitor, by filling the template ``monitor.lua.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -156,8 +157,8 @@ class _Source:
     def _result_names(self) -> str:
         """Return the names of the values that the function of each state returns, separated by commas.
 
-        Progress is one of them only if the spec is judged at its goal; otherwise it does not depend
-        on the edge taken.
+        Progress is among them only if the spec is judged at its goal (``judge goal``); otherwise it
+        does not depend on the edge that is taken.
         """
         progress = (states.PROGRESS,) if self._at_goal else ()
         return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
@@ -165,8 +166,8 @@ class _Source:
     def _parameters(self) -> str:
         """Return the parameters that the function of each state has, separated by commas.
 
-        They are the signals, the params and the atoms computed at every step, as far as any of
-        these functions reads them. If variables are fields of tables, they are the tables instead.
+        These are all signals, params and atoms computed at every step that any of the functions
+        reads. If variables are fields of tables, the parameters are the tables instead.
         """
         if self._variables_are_fields:
             return "signal, param, value"
@@ -177,7 +178,7 @@ class _Source:
         return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
 
     def _moves(self) -> list[str]:
-        """Return the source of a function for each state; nothing if the automaton has few states."""
+        """Return the lines of a function for each state; an empty list if the automaton has few states."""
         lines: list[str] = []
         for state in [] if self._few_states else self._fspa.states:
             lines += ["", *self._printer.comment(str(state.label))]
@@ -231,7 +232,7 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         lines: list[str] = []
         range_checks: list[str] = []
         failing = False
@@ -331,9 +332,9 @@ def _field(name: str, type_: str, doc: str) -> str:
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
-    """Return the first cases of the ``if`` that checks a signal: those in which the value is valid.
+    """Return the first cases of the ``if`` that checks a signal: if the value is valid, they convert it to a float.
 
-    These cases convert the value to a float.
+    ``variable`` is the Lua variable with the value. The caller adds the ``else``.
     """
     if signal.type == "bool":
         return [
@@ -353,5 +354,5 @@ def _row(field: Signal | Param, entries: str) -> str:
 
 
 def _list(items: Sequence[str]) -> str:
-    """Return the text of a list in Lua, with a line for each item."""
+    """Return the text of a list in Lua, with a line for each item; ``{}`` if there are no items."""
     return "{\n" + "".join(f"{LuaPrinter.INDENT}{item},\n" for item in items) + "}" if items else "{}"

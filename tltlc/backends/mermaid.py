@@ -38,9 +38,10 @@ _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 def emit(fspa: Fspa, options: Options) -> Files:
     """Return the file ``NAME.mmd``, where NAME is the name of the automaton.
 
-    A state shows its label and distance, and the colours of its verdict. An arrow shows guards;
+    A state shows its label and distance, in the colours of its verdict. An arrow shows guards;
     over infinite traces, each guard is followed by the sets of Rabin pairs that contain its edge.
-    Folded states are dashed. A legend explains the marks.
+    Long runs of states that differ only in a count are folded into one state, which is dashed. A
+    legend explains the marks.
     """
     drawing = folded_drawing(fspa)
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escape(fspa.name)}"]
@@ -58,7 +59,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
-    """Return the line that declares a drawn state in Mermaid.
+    """Return the line that declares a drawn state in Mermaid: ``state "…" as s0``.
 
     ``run`` has this state, or all states that are folded into it.
     """

@@ -64,7 +64,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Python(Printer):
-    """Prints a program in Python; ``atoms`` are the names of the atoms in the spec."""
+    """Prints the program of a monitor (:mod:`tltlc.program`) as Python code.
+
+    ``atoms`` are the names of the atoms in the spec.
+    """
 
     COMMENT: ClassVar[str] = "#"
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
@@ -75,7 +78,7 @@ class _Python(Printer):
         self._atoms = atoms
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements, without declarations of variables that have no value."""
+        """Return the lines of statements; declarations without a value are left out, since Python needs none."""
         needed = (
             statement for statement in statements if not (isinstance(statement, Declare) and statement.value is None)
         )
@@ -89,8 +92,8 @@ class _Python(Printer):
     def name(self, name: str) -> str:
         """Return the name of a variable in Python.
 
-        For ``steps_real``, the number of steps as a real number, this is the int ``steps``: Python
-        converts it itself.
+        For ``steps_real``, the number of steps as a real number, this is the int ``steps``, which
+        Python converts where a real number is needed.
         """
         return reward_step.STEPS if name == reward_step.STEPS_REAL else name
 
@@ -118,10 +121,10 @@ class _Python(Printer):
         return []
 
     def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength.
+        """Return the text of an expression and its binding strength, which decides where brackets are needed.
 
-        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster, and likewise ``max``. The
-        result is the same: of equal arguments, the first.
+        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster; so do nested calls of ``max``.
+        The result is the same: of equal arguments, the first.
         """
         match node:
             case NumericCall("min" | "max" as function):
@@ -143,7 +146,7 @@ def _arguments(node: NumericCall) -> list[ProgramExpression]:
 
 
 class _Source:
-    """Makes the source text of one monitor, by filling the template."""
+    """Makes the Python module of one monitor, by filling the template ``monitor.py.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -201,7 +204,11 @@ class _Source:
         return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
 
     def _function(self, state: int) -> str:
-        """Return the source of the function of a state, which finds the edge to take and its results."""
+        """Return the source of the function of a state, which finds the edge to take, and returns its results.
+
+        The results are the next state, the robustness, the progress if the spec is judged at its
+        goal, and the limiting atom.
+        """
         lines = call_lines(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
         lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
         body = split_deep_values(self._program.states[state], self._names)
@@ -215,9 +222,10 @@ class _Source:
         return "\n".join([*lines, *self._edge_lines(body, depth=1)])
 
     def _edge_lines(self, body: Sequence[Statement], depth: int) -> list[str]:
-        """Return the lines that run when an edge is taken, the last of which returns the results.
+        """Return the lines that run when an edge is taken; the last line returns the results.
 
-        Results with one assignment are returned directly, without a variable.
+        ``body`` has the statements that assign the results. A result with a single assignment is
+        returned directly, without a variable.
         """
         once = {
             statement.name: statement
@@ -255,9 +263,9 @@ class _Source:
         return [*lines, params] if self._program.params else lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes all atoms that a step may need.
+        """Return the code that computes the values, clamped to [-1, 1], of all atoms that a step may need.
 
-        The atoms that every step needs come first, then the atoms that a single state needs.
+        The atoms that every step needs come first, then those that a step from a single state needs.
         """
         program_ = self._program
         lines: list[str] = []
@@ -319,7 +327,7 @@ class _Source:
 
 
 def _within(signal: Signal, variable: str) -> str:
-    """Return a test that is true if a float is finite and in the range of a signal."""
+    """Return a Python expression that is true if the float ``variable`` is finite and in the range of a signal."""
     if signal.type == "bool":
         return f"({variable} == 0.0 or {variable} == 1.0)"
     low = f"-inf < {variable}" if signal.low is None else f"{float_literal(signal.low)} <= {variable}"
@@ -327,7 +335,7 @@ def _within(signal: Signal, variable: str) -> str:
 
 
 def _two_hold(atoms: Sequence[str]) -> str:
-    """Return a test that is true if at least two of the atoms hold; it is fast if none holds."""
+    """Return a Python expression that is true if at least two of the atoms hold; it is fast if none holds."""
     if len(atoms) > 8:
         return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]
@@ -353,7 +361,7 @@ def _inline(items: Sequence[str]) -> str:
 
 
 def _tuple(items: Sequence[str]) -> str:
-    """Return the text of a tuple, with a line for each item."""
+    """Return the text of a tuple, with a line for each item; ``()`` if there are no items."""
     return "\n".join(["(", *(f"{INDENT}{item}," for item in items), ")"]) if items else "()"
 
 

@@ -54,10 +54,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Rust(Printer):
-    """Prints a program in Rust.
+    """Prints the program of a monitor (:mod:`tltlc.program`) as Rust code.
 
-    ``atom`` is the index of the atom whose value is being printed. Functions that have no value for
-    some arguments get it as an argument, to name the atom in the error.
+    ``atom`` is the index of the atom whose computation is being printed. Functions that have no value
+    for some arguments, such as the division, also get this index, to name the atom in the error.
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
@@ -94,7 +94,7 @@ class _Rust(Printer):
 
 
 class _Source:
-    """Makes the source text of one monitor, by filling the template."""
+    """Makes the Rust module of one monitor, by filling the template ``monitor.rs.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
@@ -144,7 +144,7 @@ class _Source:
         return fill_template("monitor.rs.txt", places, present)
 
     def _title(self) -> list[str]:
-        """Return the comment that begins the file: the spec's name, documentation and formula."""
+        """Return a list with one text, the comment that begins the file: the spec's name, documentation and formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
         formula = ["```text", *comment_lines(str(fspa.formula).replace("```", "'''")), "```"]
@@ -153,7 +153,10 @@ class _Source:
         return ["\n//!\n".join(parts)]
 
     def _needs(self, functions: frozenset[str]) -> list[str]:
-        """Return a comment that says what the file needs besides ``core``."""
+        """Return the lines of a comment that says what the file needs besides ``core``.
+
+        ``functions`` are the numeric functions in the file that ``core`` lacks.
+        """
         if not functions:
             return [f"//! {_CORE}"]
         names = [f"`{'pow' if function == 'power' else function}`" for function in sorted(functions)]
@@ -206,15 +209,16 @@ class _Source:
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
+        """Return the code that converts bool signals to the numbers 0 and 1.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
+        that every step reads.
         """
         names = self._program.bools_read_in(state)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         program_ = self._program
         used = variables_read(statement for state in program_.states for statement in state)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
@@ -234,7 +238,10 @@ class _Source:
         return self._printer.lines((CommentLine(program_.atom_comments[index]), *statements), depth)
 
     def _values_only_in(self, state: int) -> list[str]:
-        """Return the code for the atoms that only the given state needs, and for the bool signals that they read."""
+        """Return the code that computes the atoms that only a step from ``state`` needs.
+
+        It first converts the bool signals that only these atoms read.
+        """
         lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
         return [*lines, *(line for index in self._program.computed_in(state) for line in self._value(index, depth=2))]
 

@@ -23,10 +23,11 @@ _ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
 def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
     """Return the picture with a title, and with the tooltips of its states and edges as their titles.
 
-    ``name`` is the automaton's name. Each drawn state gets the attribute ``data-states`` with the
-    number of its state, or the numbers of all states that are folded into it. Each edge gets
-    ``data-source`` and ``data-target`` with the numbers of its states. Texts are centred in their
-    shapes, so that they stay inside even if the reader's font is wider than Graphviz assumed.
+    ``svg`` is the picture as Graphviz writes it, and ``name`` the automaton's name. Each drawn state
+    gets the attribute ``data-states`` with its number, or with the numbers of all states that are
+    folded into it (``folded``, by the number of the drawn state). Each edge gets ``data-source`` and
+    ``data-target`` with the numbers of its states. Texts are centred in their shapes, so that they
+    stay inside even if the reader's font is wider than Graphviz assumed.
     """
     root = ET.fromstring(svg)
     root.set("role", "group")
@@ -48,9 +49,9 @@ def make_accessible(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]
 
 
 def _set_title(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
-    """Replace the title of a state or an edge, which is its name in the graph, by its tooltip.
+    """Replace the title of a state or an edge by its tooltip; Graphviz writes its name in the graph as the title.
 
-    Also sets the attributes ``data-states``, ``data-source`` and ``data-target``.
+    Also set the attributes ``data-states``, ``data-source`` and ``data-target``.
     """
     title = group[0]
     name = title.text or ""
@@ -67,7 +68,7 @@ def _set_title(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None
 
 
 def _unwrap_links(group: ET.Element) -> None:
-    """Replace each link by its contents; Graphviz makes links only to attach tooltips."""
+    """Replace each link in a group by its contents; Graphviz makes links only to attach tooltips."""
     children: list[ET.Element] = []
     for child in group:
         link = child.find(f"{_SVG}a")

@@ -1,9 +1,9 @@
 """Fold several runs of states that count at the same time, as in `F[0,100] a & F[0,100] b`.
 
-A run is a path of states that differ only in a count. Several runs that count together are parallel:
-their counting state n has the n-th state of each run. The inner counting states are all except the
-first and the last one. An edge from a counting state leads to the next one, in the same run or in
-another one, or out of the parallel runs.
+A run is a path of states that differ only in a count. Several runs that count together are parallel.
+Their n-th *counting state* is the tuple of the n-th states of the runs; the inner counting states
+are all except the first and the last one. An edge from a state in one counting state leads to a
+state in the next one, of the same run or another, or out of the parallel runs.
 """
 
 from __future__ import annotations
@@ -15,24 +15,25 @@ from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, DrawnEdge, Edg
 from tltlc.core.record import replace
 
 CountingState = tuple[int, ...]
-"""The states of parallel runs that have the same place in their runs: one state of each run."""
+"""The states at the same place of several parallel runs: one state of each run."""
 EdgeTargets = Mapping[int, Mapping[EdgeLabel, int]]
 """For each state and each label of an edge that leaves it, the target of the edge."""
 
 
 def fold_parallel_runs(fspa: Fspa) -> Drawing:
-    """Return the drawing with the inner counting states of parallel runs folded into the first of them.
+    """Return a drawing in which the inner states of parallel runs are folded: each run keeps only its first one.
 
-    In parallel runs, this holds for any two states that follow each other in a run:
+    A run is a path of states that differ only in a count, and its inner states are all except the
+    first and the last. Runs are parallel if they count at the same time. Any two states that follow
+    each other in one of several parallel runs have these properties:
 
     - They have the same verdict, the same acceptance and the same labels of edges.
     - Their edges with the same label lead to one state, or to two states that follow each other in
-      a run.
-    - If the second is in an inner counting state, only edges from the counting state before lead to
-      it.
+      one of the runs.
+    - If the second state is an inner one, all edges to it come from states one place before it.
 
-    An edge along a run would lead from the folded counting state to itself. It is drawn to the last
-    one instead.
+    The edge along a run would lead from the folded state to itself. It is drawn to the last state of
+    the run instead.
     """
     states, all_edges = fspa.states, whole_drawing(fspa).edges
     runs = [run for path in _paths(states, all_edges) for run in zip(*path, strict=True)]
@@ -47,21 +48,21 @@ def fold_parallel_runs(fspa: Fspa) -> Drawing:
 
 
 def _redirect(edge: DrawnEdge, first: Mapping[int, int], last: Mapping[int, int]) -> DrawnEdge:
-    """Return an edge with its target replaced by a state that is drawn.
+    """Return an edge whose target is a state that is drawn.
 
-    A target in an inner counting state is replaced by the state of its run in the first inner one.
-    If the edge then leads from this state to itself, it is redirected to the last state of the run.
-    ``first`` maps each inner state of a run to the first inner state of the run, and ``last`` maps
-    the first inner state to the last state.
+    If the target is an inner state of a run, replace it by the first inner state of the run. If the
+    edge then leads from this state to itself, replace it by the last state of the run. ``first`` maps
+    each inner state of a run to the first inner state, and ``last`` maps the first inner state to
+    the last state.
     """
     target = first.get(edge.target, edge.target)
     return replace(edge, target=last[target] if target == edge.source and target in last else target)
 
 
 def _paths(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[CountingState]]:
-    """Return, for each group of parallel runs that is folded, the path of its counting states.
+    """Return the path of counting states of each group of parallel runs that is folded.
 
-    The path has the inner counting states and the one after them.
+    A path has the inner counting states of the group, and then the last one.
     """
     steps: dict[int, dict[EdgeLabel, int]] = {state.id: {} for state in states}
     entering: list[set[int]] = [set() for _ in states]
@@ -86,10 +87,10 @@ def _paths_from(
     steps: EdgeTargets,
     entering: Sequence[set[int]],
 ) -> list[list[CountingState]]:
-    """Return the paths of counting states that begin with ``counting`` and ``following``, in order.
+    """Return the paths of counting states, in order, that start with ``following``, the one after ``counting``.
 
     A path ends at a counting state whose states do not continue the runs. Where the number of runs
-    changes, a new path begins.
+    changes, a new path begins. Paths with too few inner counting states to be folded are left out.
     """
     paths: list[list[CountingState]] = []
     path: list[CountingState] = []
@@ -111,11 +112,11 @@ def _paths_from(
 def _next_states(
     counting: CountingState, following: CountingState, states: Sequence[State], steps: EdgeTargets
 ) -> dict[int, int] | None:
-    """Map each state of the counting state ``following`` to the next state of its run.
+    """Map each state in the counting state ``following`` to the next state of its run.
 
-    ``counting`` is the counting state before ``following``. The map also has the first states of
-    runs that begin at ``following``. Returns None if the two counting states do not belong to
-    parallel runs.
+    ``counting`` is the counting state before ``following``. If further runs begin at the same place
+    as ``following``, the map also has their first states. Return None if the two counting states do
+    not belong to parallel runs.
     """
     successors: dict[int, int] = {}
     for state, after in zip(counting, following, strict=True):

@@ -57,14 +57,15 @@ def whole_drawing(fspa: Fspa) -> Drawing:
 
 
 def fold_runs(fspa: Fspa) -> Drawing:
-    """Return the drawing with the inner states of each run folded into one.
+    """Return a drawing in which the inner states of each long run are folded into one.
 
-    A run is a path with these properties:
+    A run is a path of states that differ only in a count, and its inner states are all except the
+    first and the last. A run has these properties:
 
-    - All its edges have the same label, and the last state has an edge with this label, too.
+    - All edges of the path have the same label, and the last state has an edge with this label, too.
     - Its states have the same verdict and the same acceptance. Apart from the edges with this
       label, the edges of its states have the same labels and targets.
-    - Only the edge of the path leads to an inner state.
+    - No edge leads to an inner state, except the edge along the path.
     """
     states, edges = fspa.states, whole_drawing(fspa).edges
     runs = _inner_runs(states, edges)
@@ -81,10 +82,9 @@ def fold_runs(fspa: Fspa) -> Drawing:
 
 
 def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[list[tuple[int, DrawnEdge]]]:
-    """Return, for each run that is folded, its inner states, each with its edge to the next state of the run.
+    """Return the inner states of each run that is folded, each with its edge to the next state of the run.
 
-    :func:`fold_runs` says what a run is. Its inner states are all except the first and the last
-    one.
+    :func:`fold_runs` says what a run and its inner states are.
     """
     outgoing: list[list[DrawnEdge]] = [[] for _ in states]
     entering: list[list[DrawnEdge]] = [[] for _ in states]
@@ -109,10 +109,10 @@ def _inner_runs(states: Sequence[State], edges: Sequence[DrawnEdge]) -> list[lis
 
 
 def _next_edge(edge: DrawnEdge, states: Sequence[State], outgoing: list[list[DrawnEdge]]) -> DrawnEdge | None:
-    """Return the edge that follows ``edge`` in a run, which is a path that :func:`fold_runs` may fold.
+    """Return the edge that follows ``edge`` in a run (:func:`fold_runs`).
 
-    Returns None if the two states of ``edge`` do not belong to a run. ``outgoing`` has the edges
-    that leave each state.
+    Return None if the two states of ``edge`` do not belong to a run. ``outgoing`` has the edges that
+    leave each state.
     """
     source, target = states[edge.source], states[edge.target]
     if (source.verdict, source.accepting) != (target.verdict, target.accepting):
@@ -135,7 +135,7 @@ def _without(left_out: DrawnEdge, edges: list[DrawnEdge]) -> list[tuple[EdgeLabe
 def distance_range(first: int | None, last: int | None, none: str = "∞") -> str:
     """Return one text for the distances of the first and the last state of a run: ``12…1``.
 
-    ``none`` is the text for traps. The states of a run have the same verdict, so all or none of
-    them are traps.
+    ``none`` is the text for traps, whose distance is None. The states of a run have the same
+    verdict, so all or none of them are traps.
     """
     return none if first is None or last is None else number_range(first, last)

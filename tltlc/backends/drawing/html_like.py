@@ -17,10 +17,10 @@ LONGEST_TEXT = 2000
 
 
 def table(rows: Iterable[str], cell: str = CENTRED, spacing: int = 0) -> str:
-    """Return an HTML-like table for Graphviz with one column, and a row for each text.
+    """Return an HTML-like table for Graphviz with one column, and a row for each of ``rows``.
 
-    Lines in a single cell would be too close to each other if their fonts differ. ``cell`` is the
-    tag that begins each cell.
+    ``rows`` are escaped texts, which may contain tags. ``cell`` is the tag that begins each cell.
+    Each row has its own cell, because lines of different fonts would be too close in a single cell.
     """
     inside = "".join(f"<TR>{cell}{row}</TD></TR>" for row in rows)
     return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="0" CELLSPACING="{spacing}">{inside}</TABLE>'
@@ -33,7 +33,7 @@ def escape_html(text: str) -> str:
 
 
 def literal_text(text: str) -> str:
-    """Return a text that Graphviz shows as it is, even if it looks like escapes or markup.
+    """Return a string for which Graphviz shows ``text`` literally, even if it looks like escapes or markup.
 
     A text with more than :data:`LONGEST_TEXT` characters is cut.
     """

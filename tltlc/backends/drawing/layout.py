@@ -36,7 +36,7 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
 """The ways to draw a graph, which are tried in this order.
 
 Each has the detail of the drawing, the layout engine, the most edges for which it is tried, and the
-words with which a message says what is left out.
+words with which a message says what is left out, if anything.
 """
 
 
@@ -77,10 +77,10 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
 
 
 def _lay_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
-    """Return the picture of a graph; None if the layout reached its time limit or its process was killed.
+    """Return the picture of the graph ``dot``, laid out by Graphviz's ``engine`` in a child process.
 
-    Raises KeyboardInterrupt if Ctrl-C ended the process, and TltlError, TLT0712, if the layout
-    failed.
+    Return None if the layout reached its time limit or its process was killed. Raises
+    KeyboardInterrupt if Ctrl-C ended the process, and TltlError, TLT0712, if the layout failed.
     """
     command = [sys.executable, str(CHILD), picture_format, engine]
     try:

@@ -8,17 +8,19 @@ from tltlc.backends.drawing.folding import Drawing, fold_runs
 
 
 def folded_drawing(fspa: Fspa) -> Drawing:
-    """Return a drawing in which states that differ only in a count are folded.
+    """Return a drawing in which long runs of states that differ only in a count are drawn as one state.
 
-    Folds single runs or parallel runs, whichever leaves fewer states.
+    Fold single runs (:func:`fold_runs`) or runs that count at the same time
+    (:func:`fold_parallel_runs`), whichever leaves fewer states.
     """
     return min(fold_runs(fspa), fold_parallel_runs(fspa), key=lambda drawing: len(drawing.states))
 
 
 def distance_note(drawing: Drawing, place: str, outline: str) -> str:
-    """Return the sentence of the legend that explains the number in each state.
+    """Return the sentence of the legend that explains the number in each state: ``Corner: distance to a goal.``
 
-    ``place`` says where the number is, and ``outline`` how the outlines of goal states look.
+    ``place`` says where the number is (``Corner``), and ``outline`` how the outlines of goal states
+    look (``double outline``).
     """
     goal = f" ({outline})" if any(state.accepting for state in drawing.states) else ""
     none = ", ∞ if none can be reached" if any(state.distance is None for state in drawing.states) else ""
@@ -26,7 +28,10 @@ def distance_note(drawing: Drawing, place: str, outline: str) -> str:
 
 
 def notes(fspa: Fspa, drawing: Drawing) -> tuple[str, ...]:
-    """Return the sentences of the legend that explain folded states and the marks of Rabin pairs, if there are any."""
+    """Return the sentences of the legend that explain folded states and the marks of Rabin pairs.
+
+    A sentence is left out if the drawing has nothing of the kind.
+    """
     return tuple(filter(None, (_folding_note(fspa, drawing), _pairs_note(fspa))))
 
 
@@ -36,9 +41,9 @@ def _folding_note(fspa: Fspa, drawing: Drawing) -> str:
 
 
 def _pairs_note(fspa: Fspa) -> str:
-    """Return the sentence that explains which marks an accepted trace must take.
+    """Return the sentence that explains which marks of Rabin pairs an accepted trace must have on its steps.
 
-    It is empty over finite traces, and if no trace is accepted.
+    The sentence is empty over finite traces, and if no trace is accepted.
     """
     if not any(pair.inf for pair in fspa.acceptance):
         return ""

@@ -26,10 +26,10 @@ _tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
 def guards_by_arrow(edges: Iterable[DrawnEdge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
-    """Map each pair of a source and a target to the texts of the guards of the edges between them.
+    """Return the guards of all edges from one state to another as texts, by ``(source, target)``.
 
-    Over infinite traces, a guard is followed by the sets of Rabin pairs that contain its edge:
-    ``a & b [fin 0] [inf 1]``. Edges that differ only in these sets share an arrow.
+    A picture shows these guards on one arrow. Over infinite traces, a guard is followed by the sets
+    of Rabin pairs that contain its edge: ``a & b [fin 0] [inf 1]``.
     """
     guards_of_arrow: dict[tuple[int, int], list[str]] = {}
     for edge in edges:
@@ -45,7 +45,7 @@ def escape_invisible(text: str) -> str:
 
 
 def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
-    """Return the text in lines of about ``width`` characters, broken at blanks.
+    """Break a text at blanks into lines of about ``width`` characters.
 
     A line never ends with an infix operator. Words are not split. Comparisons and lists of
     arguments are not split if they have at most twice the width. Text after ``most_lines`` lines is
@@ -64,9 +64,10 @@ def wrap_text(text: str, width: int, most_lines: int = 8) -> list[str]:
 
 
 def _pieces(words: list[str], longest: int) -> list[str]:
-    """Join words that must stay on one line into pieces of up to ``longest`` characters.
+    """Join words that must stay on one line, such as ``a``, ``<`` and ``b``, into pieces; return all pieces.
 
-    The word after an infix operator is joined to the operator even if the piece becomes longer.
+    A piece has up to ``longest`` characters. The word after an infix operator such as ``and`` is
+    joined to the operator even if the piece becomes longer.
     """
     pieces = [words[0]]
     for before, word in pairwise(words):

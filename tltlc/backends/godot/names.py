@@ -57,7 +57,7 @@ RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 
 
 def snake_case(names: Iterable[str]) -> dict[str, str]:
-    """Map each name with a capital letter to a new, unique name in snake_case.
+    """Map each name with a capital letter to a new, unique name in snake_case: ``nearDoor`` to ``near_door``.
 
     Names without a capital letter are left out. A variable with a capital letter could have the
     name of a class of the engine, such as ``Node``.

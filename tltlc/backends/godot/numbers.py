@@ -19,7 +19,7 @@ def number(value: float) -> str:
 
     Godot computes a literal from an integer and a power of ten. The result is exact only if doubles
     represent both exactly, which is usual up to 15 digits. For other numbers, the expression is a
-    quotient, or an integer times a power of two.
+    quotient, such as ``(10.0 / 11.0)``, or an integer times a power of two.
     """
     literal = repr(value)
     _, digits, exponent = Decimal(literal).as_tuple()

@@ -1,4 +1,4 @@
-"""Print a program in GDScript."""
+"""Print the program of a monitor in GDScript."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _CHOICE = -1
 
 
 class Gd(Printer):
-    """Prints a program in GDScript.
+    """Prints the program of a monitor (:mod:`tltlc.program`) as GDScript.
 
-    ``names`` maps variables of the program to their names in the script. ``functions`` maps
-    functions of the program to functions of Godot; all other functions are in the script. Functions
-    in ``swapped`` get their arguments in reverse order.
+    ``names`` maps variables of the program to their names in the script. ``functions`` maps numeric
+    functions of the program to functions of Godot; all others are functions of the script itself.
+    Functions in ``swapped`` get their arguments in reverse order.
     """
 
     INDENT: ClassVar[str] = "\t"
@@ -69,10 +69,10 @@ class Gd(Printer):
         return number(value)
 
     def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength.
+        """Return the text of an expression and its binding strength, which decides where brackets are needed.
 
-        If a ``min`` or ``max`` of two variables or numbers would call a function of the script, it
-        becomes a conditional expression, which is faster.
+        If Godot lacks an exact ``min`` or ``max``, a call with two variables or numbers becomes a
+        conditional expression, which is faster than a function of the script.
         """
         match node:
             case NumericCall("min" | "max" as function, (first, second)) if function not in self._functions:
@@ -88,5 +88,5 @@ class Gd(Printer):
 
 
 def _is_simple(node: ProgramExpression) -> bool:
-    """Whether an expression is a variable, a number or the negative of one, and so may be computed twice."""
+    """Whether an expression is a variable or a number, perhaps negated, and so costs little to compute twice."""
     return isinstance(node.operand if isinstance(node, Negate) else node, (ProgramVariable, Real))

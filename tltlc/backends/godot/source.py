@@ -1,8 +1,8 @@
-"""The script of a monitor, and a main script that runs it as a program, for every version of Godot.
+"""The GDScript of a monitor, and a main script that runs it as a program, for every version of Godot.
 
-They give the same results as :class:`tltlc.monitor.Monitor` with its default reward, to the last
-bit if the engine's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. The scripts
-do not use the engine's generic ``min``, ``max`` and ``clamp``, since these round to single
+The monitor gives the same results as :class:`tltlc.monitor.Monitor` with its default reward, to the
+last bit if the engine's ``pow``, ``exp`` and ``tanh`` are those that Python was built with. The
+scripts do not use the engine's generic ``min``, ``max`` and ``clamp``, since these round to single
 precision in Godot 3. Godot 3 also rounds a number that it parses from a string.
 """
 
@@ -42,10 +42,10 @@ _MEMBERS = {
     reward_step.VIOLATED: "verdict == Verdict.VIOLATED",
     reward_step.SATISFIED: "verdict == Verdict.SATISFIED",
 }
-"""How the script writes some variables of the program: mostly as members of the monitor.
+"""The text in the script for some variables of the program; most of them are members of the monitor.
 
-A step that refuses its sample returns before it assigns to any member, so the monitor stays
-unchanged.
+A step that refuses its sample returns before it assigns to any of these members, so the monitor
+stays unchanged.
 """
 
 
@@ -54,11 +54,11 @@ class Dialect:
     """How a version of Godot differs from other versions.
 
     ``version`` is the name of the version in templates, and ``title`` its name for readers.
-    ``base`` is Godot's class of reference-counted objects. ``functions`` maps functions of a
-    program to functions of Godot with exactly the same results. Those in ``swapped`` get their
-    arguments in reverse order, so that of equal values (0 and -0) they return the first. ``typed``
-    says whether GDScript has typed arrays and enum types, and ``wide`` whether its strings have
-    escapes for characters above U+FFFF.
+    ``base`` is Godot's class of reference-counted objects. ``functions`` maps numeric functions of
+    the monitor's program to functions of Godot with exactly the same results. Functions in
+    ``swapped`` get their arguments in reverse order, because Godot returns the last of equal values
+    (0 and -0) where the program needs the first. ``typed`` says whether GDScript has typed arrays
+    and enum types, and ``wide`` whether its strings have escapes for characters above U+FFFF.
     """
 
     version: str
@@ -70,7 +70,7 @@ class Dialect:
     wide: bool
 
     def types(self) -> dict[str, str]:
-        """Map each name of a type in the templates to the type in this version of Godot."""
+        """Map each name of a type in the templates to the type in this version: ``"ints"`` to ``"Array[int]"``."""
         arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
         arrays["verdict_array"] = "Verdict"
         types = {name: f"Array[{element}]" if self.typed else "Array" for name, element in arrays.items()}
@@ -92,7 +92,7 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
 
 
 class _Source:
-    """Makes the script of one monitor, by filling the template."""
+    """Makes the script of one monitor, by filling the template ``monitor.gd.txt``."""
 
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
@@ -162,7 +162,11 @@ class _Source:
         return self._fields([(name, "float", _signed(param.value), param) for param, name in fields])
 
     def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
-        """Return the variables of a class, each with its documentation."""
+        """Return the lines that declare the variables of a class, each with its documentation.
+
+        Each of ``fields`` has the variable's name, its type, its first value, and the signal or param
+        that it is for.
+        """
         lines: list[str] = []
         for name, type_, value, declared in fields:
             # Godot 4 shows `##` comments as documentation. There, `[` begins a tag, except before a number.
@@ -210,9 +214,10 @@ class _Source:
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, state: int | None) -> list[str]:
-        """Return the code that converts bool signals to numbers (0 or 1): those that only the given state reads.
+        """Return the code that converts bool signals to the numbers 0 and 1.
 
-        If ``state`` is None, it converts the bool signals that every step reads.
+        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
+        that every step reads.
         """
         names = map(self._printer.name, self._program.bools_read_in(state))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
@@ -221,7 +226,7 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values of the atoms that every step needs."""
+        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         lines = self._values(None)
         unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.always_in_range[index]]
         for index, name in unsure:
@@ -229,9 +234,10 @@ class _Source:
         return [*lines, *(self._stop() if unsure else [])]
 
     def _values(self, state: int | None) -> list[str]:
-        """Return the code that computes the values of the atoms that only the given state needs.
+        """Return the code that computes the values of some atoms.
 
-        If ``state`` is None, it computes the atoms that every step needs.
+        These are the atoms that only a step from ``state`` computes or, if ``state`` is None, those
+        that every step computes.
         """
         return [line for index in self._program.computed_in(state) for line in self._value(index)]
 
@@ -296,12 +302,12 @@ def _signed(value: float) -> str:
 
 
 def _ends(field: Signal | Param) -> tuple[str, str]:
-    """Return the lowest and the highest value of a signal or a param, as expressions."""
+    """Return the lowest and the highest value of a signal or a param, as GDScript: ``("0.0", "INF")``."""
     return "-INF" if field.low is None else _signed(field.low), "INF" if field.high is None else _signed(field.high)
 
 
 def _within(value: str, field: Signal | Param) -> str:
-    """Return a test that is true if ``value`` is finite and in the range of the signal or param."""
+    """Return a GDScript expression that is true if ``value`` is finite and in the range of a signal or param."""
     low, high = _ends(field)
     return (
         f"{value} {'>' if field.low is None else '>='} {low} and {value} {'<' if field.high is None else '<='} {high}"

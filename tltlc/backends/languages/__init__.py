@@ -1,1 +1,1 @@
-"""Parts of single targets whose modules would be too long: the reserved names of C, the syntax of Lua."""
+"""Parts that would make the module of a target too long: the reserved names of C, and the syntax of Lua."""

@@ -1,4 +1,4 @@
-"""Print a program, strings and keys of tables in Lua."""
+"""Print the program of a monitor, strings and table keys in Lua."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ KEYWORDS: Final = """
 
 
 class LuaPrinter(Printer):
-    """Prints a program in Lua.
+    """Prints the program of a monitor (:mod:`tltlc.program`) as Lua code.
 
-    ``fields`` maps the variables that are fields of tables to the text that accesses the field; all
-    other variables are local. ``parts`` collects the lines of functions that replace blocks nested
-    too deep; these functions use only fields.
+    ``fields`` maps each variable that is a field of a table to the text that accesses the field,
+    such as ``signal.health``; all other variables are local. ``atoms`` are the names of the atoms in
+    the spec. Blocks that are nested too deep become functions, whose lines are collected in
+    ``parts``. They can use only fields.
     """
 
     INDENT = "  "
@@ -55,7 +56,7 @@ class LuaPrinter(Printer):
         return reward_step.STEPS if name == reward_step.STEPS_REAL else self._fields.get(name, name)
 
     def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements, without declarations of fields that have no value."""
+        """Return the lines of statements; a declaration without a value is left out if the variable is a field."""
         needed = [
             statement
             for statement in statements
@@ -64,7 +65,7 @@ class LuaPrinter(Printer):
         return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
-        """Return the declaration of a local variable, or for a field, an assignment to it."""
+        """Return the declaration of a local variable; if the variable is a field, return an assignment to it."""
         local = "" if statement.name in self._fields else "local "
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{local}{self.name(statement.name)}{value}"
@@ -79,7 +80,8 @@ class LuaPrinter(Printer):
     def branches(self, statement: If, depth: int) -> list[str]:
         """Return the lines of an ``if``.
 
-        If it is nested too deep, returns a call of a new function with these lines.
+        If the ``if`` is nested too deep, move these lines to a new function in ``parts``, and return
+        a call of this function.
         """
         if depth < DEEPEST_BLOCK:
             return super().branches(statement, depth)

@@ -12,11 +12,11 @@ _PLACE = re.compile(r"@@(\w+)@@")
 
 
 def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
-    """Return the text of a file in this folder with its placeholders replaced.
+    """Return the text of a template, which is a file in this folder, with its placeholders replaced.
 
-    ``@@NAME@@`` is replaced by ``pieces["NAME"]``. If this is empty, a line with nothing but the
-    placeholder is removed. The lines between ``@@if NAME@@`` and ``@@end@@`` are kept if NAME is in
-    ``present``, and removed otherwise; these two marks may be in comments and cannot be nested.
+    ``@@NAME@@`` is replaced by ``pieces["NAME"]``. If this piece is empty, a line with nothing but
+    the placeholder is removed. The lines between ``@@if NAME@@`` and ``@@end@@`` are kept if NAME is
+    in ``present``, and removed otherwise; these two marks may be in comments and cannot be nested.
 
     Raises:
         KeyError: ``pieces`` has no entry for a placeholder.
