@@ -1,1 +1,1 @@
-"""Resolve a syntax tree into specs: imports, names, types, units, predicates, formulas."""
+"""Turn a syntax tree into specs: load imports, look up names, check types and units, build formulas."""

@@ -13,7 +13,10 @@ from tltlc.resolve.scope import Binding, Scope
 def match(
     use: NameExpr | CallExpr, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
 ) -> tuple[tuple[Parameter, Expr | None], ...]:
-    """Return each parameter with its argument, which is None where the default applies.
+    """Return each declared parameter with the argument that a call passes for it.
+
+    The pairs are in the order of declaration. The argument is None if the call leaves it out and the
+    parameter has a default. ``use`` is the call, or a name without brackets, which passes nothing.
 
     Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
     """

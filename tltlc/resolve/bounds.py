@@ -1,4 +1,4 @@
-"""Expand bounded temporal operators into ``X`` and ``N``."""
+"""Expand temporal operators with bounds: ``F[0,2] p`` becomes ``p | X(p | X p)``."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from tltlc.resolve.values import Env
 
 
 def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
-    """Return the formula of the bounded operator of ``expr``, applied to ``operand``.
+    """Return the bounded operator of ``expr``, applied to ``operand``, as a formula without bounds.
 
-    Past the end of the trace, ``F[a,b] p`` is false (strong next), and ``G[a,b] p`` requires
-    nothing (weak next). ``within n`` means ``[0,n]``, ``for n`` means ``[0,n-1]``, and
-    ``next after n`` means n times ``next``.
+    ``F`` expands to ``X`` (strong next), so ``F[a,b] p`` is false past the end of the trace. ``G``
+    expands to ``N`` (weak next), so ``G[a,b] p`` requires nothing there. ``within n`` means
+    ``[0,n]``, ``for n`` means ``[0,n-1]``, and ``next after n`` means n times ``next``. If
+    ``env.unbounded`` is set, the bound of ``F`` or ``G`` is left out instead.
 
     Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
     without a clock, TLT0315 if the formula becomes too large.
@@ -54,7 +55,7 @@ def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
     """Return ``F operand`` or ``G operand``, as if the operator had no bound.
 
-    For ``X`` and ``N``, whose number of steps is no bound, apply the operator ``steps`` times.
+    ``X`` and ``N`` have no bound to leave out: they are applied ``steps`` times.
     """
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)

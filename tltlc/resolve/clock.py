@@ -14,7 +14,10 @@ LONGEST_S: Final = 1e9
 
 
 def period_s(value: float, unit: str | None) -> float | None:
-    """Return the period of a frequency in Hz, or of a time, in seconds; None unless it is above zero."""
+    """Return the seconds between two samples, given a frequency (``20``, ``"Hz"``) or a time (``50``, ``"ms"``).
+
+    Return None if the value is not above zero, or if the unit is neither Hz nor a unit of time.
+    """
     in_si = units.in_si(value, unit)
     if in_si is None or value <= 0:
         return None
@@ -24,9 +27,10 @@ def period_s(value: float, unit: str | None) -> float | None:
 
 
 def clock_from_text(text: str) -> float | None:
-    """Return the seconds of a clock that is written as after the word ``clock``: ``20 Hz``, ``0.05 s``.
+    """Return the seconds between two samples for a text such as ``20 Hz`` or ``0.05 s``.
 
-    Return None for any other text, and for a period outside [1e-9, 1e9] seconds.
+    The text is what follows the word ``clock`` in a declaration. Return None for any other text, and
+    for a period outside [1e-9, 1e9] seconds.
     """
     module, errors = parse(SourceFile("<clock>", f"clock {text}", "text"))
     if errors or module.comments or len(module.declarations) != 1:

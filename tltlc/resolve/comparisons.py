@@ -23,18 +23,19 @@ _NEGATED = {"<=": ">", ">=": "<"}
 
 
 def comparison(expr: BinaryExpr, env: Env) -> Formula:
-    """Return the atom of a comparison, or its negation.
+    """Return the atom of a comparison such as ``health > 30``, or the negation of an atom.
 
     ``x >= c`` is ``not (x < c)``, and ``x <= c`` is ``not (x > c)``.
 
-    For x in [low, high], the robustness of ``x > c`` is (x - c) / (high - c) where x is above c,
-    and (x - c) / (c - low) where x is below c. So it is 1 at high and -1 at low. The robustness of
-    ``x < c`` is that of ``-x > -c``. If both sides vary, their difference is compared with 0.
-    The robustness is above 0 exactly where the comparison is true.
+    The robustness of the atom says how clearly the comparison is true or false. For x in
+    [low, high], the robustness of ``x > c`` is (x - c) / (high - c) where x is above c, and
+    (x - c) / (c - low) where x is below c. So it is 1 at high and -1 at low, and it is above 0
+    exactly where the comparison is true. The robustness of ``x < c`` is that of ``-x > -c``. If both
+    sides vary, their difference is compared with 0.
 
-    Raises ResolutionError if the comparison is constant over the range (TLT0310), if a side that is
-    needed for scaling is unbounded (TLT0311), or if the arithmetic of a side may overflow
-    (TLT0319).
+    Raises ResolutionError if a side is no number or the units differ, if the ranges make the
+    comparison always or never true (TLT0310), if a range that is needed for scaling has an infinite
+    end (TLT0311), or if the arithmetic of a side may overflow (TLT0319).
     """
     left, right = quantity(expr.left, env), quantity(expr.right, env)
     same_dimension(left, right, expr.right, env)
@@ -57,7 +58,7 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
 
 
 def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0319) if values within the ranges can make a side overflow."""
+    """Raise ResolutionError (TLT0319) if a side can overflow for values in the declared finite ranges."""
     if not side.overflows:
         return
     raise problem(
@@ -73,8 +74,9 @@ def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
 def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: BinaryExpr, env: Env) -> None:
     """Raise ResolutionError if a comparison is always or never true, or cannot be scaled.
 
-    The codes are TLT0310 for a constant comparison, and TLT0311 if the range that scales it is
-    open.
+    The codes are TLT0310 for a comparison that is always or never true, and TLT0311 for one whose
+    sides have no upper or lower end to scale by. ``op`` is ``<`` or ``>``. ``negated`` is true if the
+    source text has the opposite of ``op``, that is, ``>=`` or ``<=``.
     """
     source = env.scope.source
     x, c = left, right.low
@@ -108,14 +110,14 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
 
 
 def _is_percentage(x: Quantity, c: float, op: str, expr: BinaryExpr, env: Env) -> bool:
-    """Whether a ratio is compared with a plain number that makes sense as a percentage."""
+    """Whether a ratio is compared with a number that was probably meant in percent, as in ``health > 50``."""
     is_plain = isinstance(expr.right, NumberExpr) and expr.right.unit is None
     is_percentage = is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
     return is_percentage and (x.low, x.high) == (0, 1) and _is_ratio(expr.left, env)
 
 
 def _is_ratio(expr: Expr, env: Env) -> bool:
-    """Whether this is a signal or param declared as a ratio, by its type or by a range in percent."""
+    """Whether an expression is a signal or param of type ``ratio``, or one with a range in percent."""
     binding = env.scope.names.get(expr.name) if isinstance(expr, NameExpr) else None
     declaration = binding.declaration if binding else None
     if not isinstance(declaration, (SignalDecl, ParamDecl)):

@@ -23,8 +23,8 @@ MOST_SAMPLES = 10**9
 def number(expr: Expr, dimension: Dimension, env: Env, subject: str) -> float:
     """Return the value of a constant expression in SI units.
 
-    Raises ResolutionError if the expression is not constant or not of this dimension. ``subject``
-    names the value in the message.
+    Raises ResolutionError if the expression is not constant or does not have this dimension.
+    ``subject`` names the value in the message of the error.
     """
     value = quantity(expr, replace(env, constant=True, local={}))
     if value.dimension not in (None, dimension):
@@ -34,9 +34,10 @@ def number(expr: Expr, dimension: Dimension, env: Env, subject: str) -> float:
 
 
 def interval(declared: Interval, dimension: Dimension, env: Env) -> tuple[float | None, float | None]:
-    """Return the ends of a range in SI units; raise ResolutionError if it is empty.
+    """Return the lower and the upper end of a range, in SI units.
 
-    An end is None where the range is open (``inf``).
+    An infinite end is None: ``[0 m, inf]`` gives ``(0.0, None)``. Raises ResolutionError if the range
+    is empty (TLT0303), or if an end is not constant or does not have this dimension.
     """
     low = _range_end(declared.low, dimension, env)
     high = _range_end(declared.high, dimension, env)
@@ -52,10 +53,11 @@ def interval(declared: Interval, dimension: Dimension, env: Env) -> tuple[float 
 
 
 def samples(value: NumberExpr, env: Env) -> int:
-    """Convert a bound or a limit, in steps or as a time, to a number of samples; round a time up.
+    """Convert the number in a bound or a limit, such as ``20 steps`` or ``2 s``, to a number of samples.
 
-    A number without a unit counts samples. Raises ResolutionError: TLT0313 for a time if there is
-    no clock, TLT0312 for any other value that cannot be converted.
+    A time is divided by the clock's period and rounded up. A number without a unit counts samples.
+    Raises ResolutionError: TLT0313 for a time if there is no clock, TLT0312 for any other value that
+    cannot be converted.
     """
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
@@ -88,7 +90,7 @@ def samples(value: NumberExpr, env: Env) -> int:
 def _sample_count(steps: float, value: NumberExpr, env: Env) -> int:
     """Return ``steps`` rounded up to a whole number of samples.
 
-    Raises ResolutionError (TLT0312) if it is above MOST_SAMPLES.
+    Raises ResolutionError (TLT0312) at ``value`` if ``steps`` is above MOST_SAMPLES.
     """
     if steps > MOST_SAMPLES:
         title = f"this is more than {MOST_SAMPLES:,} steps"
@@ -100,10 +102,11 @@ _OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]
 
 
 def parse_override(text: str) -> tuple[float, Dimension | None] | None:
-    """Return the number in a text such as ``25 m``, in SI units, and its dimension.
+    """Return the number in a text such as ``25 m`` or ``3 km/h``, in SI units, and its dimension.
 
-    The text is the value of an option ``--param NAME=25 m``. The dimension is None if the text has
-    no unit. Returns None if the text is not a finite number with a unit or without one.
+    The text is the value of a param that a user sets from outside, as in ``--param NAME=25 m``. The
+    dimension is None if the text has no unit. Returns None if the text is no number, has an unknown
+    unit, or is too large for a float in SI units.
     """
     matched = _OVERRIDE.fullmatch(text.strip())
     if matched is None:

@@ -1,4 +1,4 @@
-"""The state shared by one run of resolution: declared signals and params, atoms, limits."""
+"""The tables that one run of resolution fills: declared signals and params, atoms in use, counted work."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
 
 LARGEST_EXPANSION = 100_000
-"""The most nodes in the tree of a formula whose bounds, quantifiers and lets are expanded."""
+"""The most nodes in the tree of a formula after its bounds, quantifiers and lets are expanded."""
 MOST_EXPANSIONS = 50_000
 """The most times that lets and quantifiers may be expanded in one run of resolution."""
 
@@ -48,10 +48,11 @@ class SignalInfo:
 
 @record
 class Instance:
-    """A predicate with its arguments, whose range and continuity are to be checked.
+    """A predicate with its arguments, recorded so that its range and continuity will be checked.
 
-    Arguments that are entities (objects of the level) are replaced by the names of the parameters,
-    so that all entities share one check.
+    ``expression`` is the value of the predicate, and ``low`` and ``high`` are its declared range. In
+    ``expression``, the names of parameters replace entities (objects of the level): ``near(s1)`` and
+    ``near(s2)`` share one check. ``source`` and ``span`` are the place of the declaration.
     """
 
     name: str
@@ -61,26 +62,30 @@ class Instance:
     source: SourceFile
     span: Span
     use: Label | None = None
-    """The place that passes numbers to the predicate; None if no numbers are passed.
+    """The place of a use that passes numbers, as in ``near(s1, close = 3 m)``; None if no numbers are passed.
 
-    The findings depend on these numbers.
+    What the check finds depends on these numbers.
     """
 
 
 class Context:
     """The tables that fill up while a program is resolved.
 
+    - ``log`` collects the diagnostics.
     - ``signal_infos`` and ``params`` have the declared signals and params, by name.
-    - ``signals`` has the signals in use, by full name.
+    - ``clock_s`` is the time between two samples in seconds, None without a clock. ``clock_failed``
+      is true if a declaration of a clock is in error.
+    - ``signals`` and ``atoms`` have those in use, by full name, such as ``near(s1)``.
     - ``instances`` has the predicates to be checked.
-    - ``values`` has the values found so far of signals, predicates, lets, calls and comparisons.
+    - ``values`` caches the values of signals, predicates, lets (named formulas), calls and
+      comparisons.
     - ``expanding`` maps the identity of a declaration to its name, for each let or predicate that is
       being expanded, outermost first.
     - ``broken`` has the identities of the declarations whose error has been reported.
     - ``bounds`` has the bounds expanded so far.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
 
-    The identity of an object is its ``id``. A key of ``instances`` or ``values`` contains the
+    The identity of an object is its ``id()``. A key of ``instances`` or ``values`` contains the
     identity of a declaration or expression, and the values of its parameters or local names.
     """
 
@@ -157,8 +162,8 @@ class Context:
     def count_arithmetic(self, expression: Expression, source: SourceFile, span: Span, counted_before: int = 0) -> int:
         """Return the number of nodes of an expression.
 
-        Raises ResolutionError (TLT0315) if they and ``counted_before`` (the nodes of earlier atoms)
-        are more than the limit for all atoms.
+        Raises ResolutionError (TLT0315) if this number plus ``counted_before``, the number of nodes of
+        earlier atoms, exceeds the limit for all atoms.
         """
         left = WORK["arithmetic of all atoms"] - counted_before
         size = sum(1 for _ in islice(nodes(expression), left + 1))
@@ -174,10 +179,10 @@ class Context:
         return size
 
     def recursion_error(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """Return the error for a let or predicate that uses itself; mark the whole cycle as reported.
+        """Return the error for a let or predicate that uses itself; mark all definitions of the cycle as reported.
 
-        ``declaration`` is the identity of its declaration, a key of ``expanding``. The diagnostic
-        of the error is None if the cycle was already reported.
+        ``declaration`` is the identity of the let or predicate, a key of ``expanding``. The error has
+        no diagnostic if the cycle was already reported.
         """
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
@@ -202,7 +207,7 @@ class Context:
         return names
 
     def tree_size(self, formula: Formula) -> int:
-        """Return the number of nodes of the formula written out as a tree, where shared parts count each time."""
+        """Return the number of nodes of a formula; a part that occurs several times counts each time."""
         if formula in self._sizes:
             return self._sizes[formula]
         stack = [formula]
@@ -219,10 +224,10 @@ class Context:
     def check_size(
         self, formula: Formula, subject: str, source: SourceFile, span: Span, *, is_bound: bool = False
     ) -> Formula:
-        """Return the formula unchanged; raise ResolutionError (TLT0315) if it became too large.
+        """Return the formula unchanged; raise ResolutionError (TLT0315) if it has too many nodes.
 
-        ``subject`` names in the error what expands. ``is_bound`` is True for a bound, which gets an
-        advice of its own.
+        In the error, ``subject`` names what was expanded, such as "the let `escape`". If ``is_bound``,
+        the advice of the error is about the bound of a temporal operator.
         """
         if self.tree_size(formula) > LARGEST_EXPANSION:
             raise expansion_error(subject, source, span, is_bound=is_bound)
@@ -237,8 +242,8 @@ _FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nes
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
     """Return the error for a formula that is too large after expansion.
 
-    ``subject`` names the bound, let, quantifier or parameter that expands. ``is_bound`` is True for
-    a bound, which gets an advice of its own.
+    ``subject`` names the bound, let, quantifier or parameter that was expanded. If ``is_bound``, the
+    advice of the error is about the bound of a temporal operator.
     """
     return problem(
         "TLT0315",

@@ -1,4 +1,4 @@
-"""Resolve signals, params and the clock into tables shared by the whole program."""
+"""Read the declarations of signals, params and the clock into tables that the whole program shares."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ from tltlc.resolve.values import Env, range_text
 
 
 def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
-    """Fill the tables of signals, params and the clock in ``context``; log problems there."""
+    """Enter the signals, params and clocks that all ``scopes`` declare into ``context``; log problems there.
+
+    At the end, set params to the values that ``options`` gives them.
+    """
     places: dict[str, Label] = {}
     ranged: set[str] = set()
     clock: Label | None = None

@@ -1,4 +1,4 @@
-"""Uses of declared params and signals in expressions, as quantities: numbers with range and dimension."""
+"""Turn the uses of params and signals in expressions into quantities: numbers with a range and a dimension."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def param(binding: Binding, env: Env) -> Quantity:
-    """Return the quantity that a param stands for in an expression, with its range and dimension."""
+    """Return the quantity for a use of a param: its value in an expression, with its range and dimension.
+
+    Raises ResolutionError without a diagnostic if the declaration of the param is in error.
+    """
     declaration = binding.declaration
     assert isinstance(declaration, ParamDecl)
     declared = env.context.params.get(declaration.name)
@@ -29,9 +32,10 @@ def param(binding: Binding, env: Env) -> Quantity:
 
 
 def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
-    """Return the quantity that a signal stands for in an expression, with its range and dimension.
+    """Return the quantity for a use of a signal, such as ``health`` or ``distance(s1)``.
 
-    If the signal has parameters, the arguments in ``expr`` must be entities.
+    Arguments must be entities (objects of the level). Raises ResolutionError if the arguments do not
+    fit, and without a diagnostic if the declaration of the signal is in error.
     """
     declaration = binding.declaration
     assert isinstance(declaration, SignalDecl)
@@ -48,7 +52,7 @@ def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
 
 
 def signal_value(signal: Signal) -> Quantity:
-    """Return a signal as a quantity: an expression with the range and the dimension of the signal."""
+    """Return a signal as a quantity: an expression that reads it, with its range and dimension."""
     low = -inf if signal.low is None else signal.low
     high = inf if signal.high is None else signal.high
     dimension = units.TYPES[signal.type]

@@ -22,10 +22,10 @@ from tltlc.resolve.values import Env, Quantity
 
 
 def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
-    """Return the dimension of two quantities that are added or compared.
+    """Return the common dimension of two quantities that are added or compared.
 
-    A dimension that is None fits any other. Raises ResolutionError (TLT0305) at ``at`` if the
-    dimensions differ.
+    A quantity without a dimension (None), such as 0, fits any other; the result is None if both have
+    none. Raises ResolutionError (TLT0305) at ``at`` if the dimensions differ.
     """
     if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
         return left.dimension if left.dimension is not None else right.dimension
@@ -35,8 +35,9 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
 def _keeps_value(written_unit: str | None, expected_unit: SiUnit | None, actual: Dimension) -> bool:
     """Whether the fix for a wrong unit may keep the number and only change the unit after it.
 
-    It may if no unit was written, or if the written unit is the numerator of the expected one, as
-    ``m`` is that of ``m/s``. If no unit is expected, the written unit must be the SI unit.
+    If a unit is expected, the fix may add it to a plain number (``3`` to ``3 m``), or complete a
+    speed (``3 m`` to ``3 m/s``). If a plain number is expected, the fix may drop the SI unit of the
+    dimension ``actual`` (``3 m`` to ``3``), but no other unit: 3 km are not 3.
     """
     if expected_unit is None:
         unit = units.si_unit(actual)
@@ -45,9 +46,10 @@ def _keeps_value(written_unit: str | None, expected_unit: SiUnit | None, actual:
 
 
 def _has_other_units(dimension: Dimension, unit: SiUnit, env: Env) -> bool:
-    """Whether a visible declaration of this dimension uses units other than the SI unit.
+    """Whether some visible declaration of this dimension is written in units other than the SI unit.
 
-    Looks at signals, params, and the parameters of lets and predicates.
+    An example is ``signal depth: length in [0 cm, 50 cm]``. Looks at signals and params, and at lets
+    and predicates with a parameter of this dimension.
     """
     usual = {unit.numerator, unit.denominator}
     for binding in env.scope.names.values():
@@ -65,7 +67,7 @@ def _has_other_units(dimension: Dimension, unit: SiUnit, env: Env) -> bool:
 
 
 def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
-    """Whether a declaration is a signal or param of this dimension, or has a parameter of it."""
+    """Whether a declaration is a signal or param of this dimension, or has a parameter of this dimension."""
     if isinstance(declaration, (SignalDecl, ParamDecl)):
         return units.TYPES.get(declaration.type or "") == dimension
     if isinstance(declaration, (LetDecl, PredicateDecl)):
@@ -76,10 +78,10 @@ def _has_dimension(dimension: Dimension, declaration: Declaration) -> bool:
 def mismatch(
     expected: Dimension, actual: Dimension, at: Expr, env: Env, why: str, *, help_is_in_why: bool = False
 ) -> ResolutionError:
-    """Return the error for the expression ``at``, which has the wrong dimension.
+    """Return the error (TLT0305) for the expression ``at``, which has the wrong dimension.
 
-    ``why`` says in the message where the expected dimension comes from. If it also says what to do
-    (``help_is_in_why``), the error gets no help to divide by a unit.
+    ``why`` is a text for the message that says where the expected dimension comes from. Set
+    ``help_is_in_why`` if the text also says what to do; then the error does not advise to divide.
     """
     while isinstance(at, GroupExpr):
         at = at.inner

@@ -1,4 +1,6 @@
-"""Resolve formulas: replace predicates, comparisons, lets, quantifiers and bounds by logic.
+"""Resolve formulas: turn predicates and comparisons into atoms, and expand lets, quantifiers and bounds.
+
+A let is a named formula, perhaps with parameters. Each use is replaced by its body.
 
 The functions that walk the tree are generators (:mod:`tltlc.resolve.trampoline`), so that neither a
 long chain of operators nor deeply nested lets can exhaust Python's stack.
@@ -65,7 +67,10 @@ def formula(expr: Expr, env: Env) -> Formula:
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Expand a let with symbolic arguments, so that its body is checked even if nothing uses it."""
+    """Check the body of a let, with placeholders as its arguments.
+
+    This finds errors in a let that nothing uses. Raises ResolutionError for the first error.
+    """
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
     values: dict[str, ResolvedValue] = {}
@@ -104,9 +109,10 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
 
 
 def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
-    """Resolve a call or comparison; use an earlier result if its names had the same values then.
+    """Resolve a call or comparison, or return the cached result.
 
-    Its names are the parameters and quantified variables in it.
+    A result is cached with the values of the parameters and quantified variables in the expression,
+    and is used again only for equal values.
     """
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
@@ -143,7 +149,10 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
 
 
 def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:
-    """Return a bool as an atom, whose robustness is 1 where the bool is true, else -1."""
+    """Return the atom of a bool signal or argument. Its robustness is 1 where the bool is true, else -1.
+
+    A constant gives the formula ``true`` or ``false``.
+    """
     if value.is_constant:
         return logic.TRUE if value.low else logic.FALSE
     if env.symbolic:
@@ -187,7 +196,11 @@ def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGe
 
 
 def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> FormulaGenerator:
-    """Expand the body of a let with the values of its parameters, once for each combination of values."""
+    """Return the formula of a let, whose parameters have the values in ``inside.local``.
+
+    The formula is cached for each combination of values. ``span`` is the place of the use, in the
+    source of ``user``. Raises ResolutionError if the let uses itself, or if the formula is too large.
+    """
     context, source = inside.context, user.scope.source
     key = id(declaration)
     if key in context.broken:

@@ -18,7 +18,7 @@ _ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None,
 
 
 def check_arguments(call: CallExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0210) if a function does not get the arguments that it takes."""
+    """Raise ResolutionError (TLT0210) if a built-in function gets a named argument, or too few or too many."""
     name, source, count = call.name, env.scope.source, len(call.arguments)
     named = next((argument for argument in call.arguments if argument.name is not None), None)
     if named is not None:
@@ -31,9 +31,10 @@ def check_arguments(call: CallExpr, env: Env) -> None:
 
 
 def dimension(call: CallExpr, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
-    """Return the dimension of the value of a call; ``values`` are its arguments.
+    """Return the dimension of the value of a call: a length for ``max(3 m, x)``, a plain number for ``exp(x)``.
 
-    Raises ResolutionError (TLT0305) if the dimensions of the arguments do not fit.
+    ``values`` are the arguments of the call. The result is None if it fits any dimension, as for
+    ``max(0, 0)``. Raises ResolutionError (TLT0305) if the dimensions of the arguments do not fit.
     """
     first, rest = values[0], values[1:]
     if call.name in ("exp", "tanh"):

@@ -23,19 +23,23 @@ _NO_FILE: Final = "there is no file `{}` beside this one"
 
 @record
 class LoadedModule:
-    """A parsed module, its name in messages, and the module that each of its imports loads."""
+    """A parsed file (``module``), its name in messages (``title``), and its imports.
+
+    ``imports`` pairs each import declaration with the module that it loads.
+    """
 
     module: Module
     title: str
     imports: tuple[tuple[Import, LoadedModule], ...]
     complete: bool
-    """Whether the file and everything it imports could be read without error."""
+    """Whether this file and all files that it imports, directly or indirectly, were read without error."""
 
 
 def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModule, ...]:
-    """Return every module reachable from ``module``, once each, imported modules first.
+    """Return ``module`` and all modules that it imports, directly or indirectly, once each.
 
-    The last one is ``module`` itself. Imports that fail are logged and left out.
+    Imported modules come before the modules that import them, so ``module`` is the last. Imports that
+    fail are logged and left out.
     """
     done: dict[Path, LoadedModule] = {}
     stack = [_Visit(module, _path_of(module.source), Path(module.source.name).stem)]
@@ -67,10 +71,11 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[LoadedModul
 
 
 def imported_files(source: SourceFile, library_dirs: Iterable[Path] = ()) -> Iterator[Path]:
-    """Yield the paths of the files that the imports of a source text lead to, in order.
+    """Yield the paths that the import declarations of a source text search.
 
-    The text need not compile. Paths without a file are yielded, too, if a file there would be
-    imported instead of an existing one.
+    For each import, these are the paths in the order of the search, up to the first one with a file.
+    So a program that watches them notices a new file that would be imported instead. The files are
+    not opened, and the text need not compile.
     """
     for declaration in _parse_once(source)[0].declarations:
         if isinstance(declaration, Import):
@@ -91,19 +96,19 @@ def standard_library() -> Path:
 
 
 def library_with(name: str) -> str | None:
-    """Return the name of the library in the standard library that declares ``name``; None if none does.
+    """Return the library that declares ``name``: ``"stealth"`` for ``"alive"``; None if there is none.
 
-    Messages suggest to import this library.
+    Only the libraries of the standard library are searched. Messages suggest to import the result.
     """
     return _names_of_libraries().get(name)
 
 
 @lru_cache(maxsize=1)
 def _names_of_libraries() -> Mapping[str, str]:
-    """Map each name to the library in the standard library that declares it.
+    """Map each name that the standard library declares to the library that declares it.
 
-    If several libraries declare a name, the first one in alphabetical order counts. Reads the library
-    files, so it is used only for messages.
+    If several libraries declare a name, the first one in alphabetical order counts. This reads all
+    library files, so call it only for messages.
     """
     import re
 
@@ -117,7 +122,7 @@ def _names_of_libraries() -> Mapping[str, str]:
 
 
 class _Visit:
-    """A module whose imports are being followed."""
+    """A module whose imports are being loaded, and the import declaration that led to it, if any."""
 
     def __init__(
         self, module: Module, path: Path, title: str, declaration: Import | None = None, complete: bool = True
@@ -144,9 +149,9 @@ def _path_of(source: SourceFile) -> Path:
 
 
 def _folder(source: SourceFile) -> Path:
-    """Return the folder to which the imports of a source text are relative, as the user wrote it.
+    """Return the folder in which the imports of a source text are searched first, as the user wrote its path.
 
-    For a text without a file, it is the current folder.
+    For a text without a file, this is the current folder.
     """
     if source.kind == "standard library":
         return standard_library()
@@ -154,7 +159,10 @@ def _folder(source: SourceFile) -> Path:
 
 
 def _candidates(declaration: Import, here: Path, library_dirs: Iterable[Path]) -> tuple[Path, ...]:
-    """Return the paths at which an imported file may be, in the order of the search; ``here`` is the own folder."""
+    """Return the paths at which an imported file may be, in the order of the search.
+
+    ``here`` is the folder of the importing file.
+    """
     if declaration.is_path:
         return (here / declaration.target,)
     name = declaration.target.replace(".", "/") + ".tltl"
@@ -162,9 +170,9 @@ def _candidates(declaration: Import, here: Path, library_dirs: Iterable[Path]) -
 
 
 def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, Path]:
-    """Return the absolute path of an imported file, and its path as the user wrote the folder.
+    """Return the path of an imported file twice: absolute, and for messages in the form that the user wrote.
 
-    Raises ResolutionError: TLT0010 if there is no file, TLT0777 if it may not be read.
+    Raises ResolutionError: TLT0010 if there is no such file, TLT0777 if it may not be read.
     """
     target = declaration.target
     here = _folder(source)
@@ -225,10 +233,10 @@ def _is_in_deleted_folder(path: Path) -> bool:
 
 
 def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
-    """Raise ResolutionError (TLT0777) for a path that may not be read, even if there is no file.
+    """Raise ResolutionError (TLT0777) for a path outside the folders that may be read.
 
-    The error does not reveal whether there is a file. A path with a NUL byte is accepted here: it
-    names no file on any system, so it cannot leave a folder.
+    The error is the same whether or not there is a file, so it reveals nothing about files there. A
+    path with a NUL byte is accepted here, because it names no file on any system.
     """
     if "\0" not in declaration.target and not may_read(path):
         raise ResolutionError(outside_diagnostic(declaration.target, (Label(source, declaration.target_span),)))
@@ -239,7 +247,10 @@ def _similar_help(suggestion: str | None) -> str | None:
 
 
 def _quoted_library(target: str, folders: tuple[Path, ...]) -> str | None:
-    """Return the name of a library that the user wrote like a path, in quotes; None if there is no such library."""
+    """Return the name of the library that the user meant by a quoted path: ``stealth`` for ``import "stealth"``.
+
+    Return None if no folder has a library with this name.
+    """
     name = target.removesuffix(".tltl")
     return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
 
@@ -264,9 +275,10 @@ def _normalise(path: Path) -> str:
 
 
 def _read(path: Path, written: Path) -> SourceFile:
-    """Read a file; its name in messages is its path as the user wrote it.
+    """Read a file. Its name in messages is ``written``, the path as the user wrote it.
 
-    The name of a file of the standard library does not depend on where the package is installed.
+    A file of the standard library is named ``<standard library>/core.tltl`` instead, wherever the
+    package is installed.
     """
     kind: SourceKind = "standard library"
     try:

@@ -29,18 +29,18 @@ _DECLARATIONS = {
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
-"""Maps what an unknown name should be to the declaration that a message suggests.
+"""Maps what an unknown name is used as to the declaration that the error suggests.
 
-The message suggests it if the name resembles no known name.
+The error suggests a declaration if the name resembles no known name.
 """
 
 
 def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], noun: str) -> Binding:
     """Return the binding of a name: its declaration and scope.
 
-    Raises ResolutionError (TLT0201) if the name is unknown. The error suggests a name of one of
-    ``kinds``; ``noun`` says in its message what is missing. If a failed import may have declared
-    the name, the error has no diagnostic.
+    A binding of any kind is returned. Raises ResolutionError (TLT0201) if the name is unknown. The
+    error suggests a similar name of one of ``kinds``, and calls the missing name a ``noun``: "no
+    predicate `foo` here". If a failed import may have declared the name, the error has no diagnostic.
     """
     binding = env.scope.names.get(use.name)
     if binding is not None:
@@ -92,7 +92,10 @@ _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
 
 
 def _split_operator_letters(name: str, env: Env, kinds: tuple[BindingKind, ...]) -> str | None:
-    """Return ``F a`` for ``Fa`` if `a` is a visible name of one of these kinds, else None."""
+    """Split temporal operators from a name: return ``F G a`` for ``FGa`` if ``a`` is a visible name, else None.
+
+    A name that is not local must be of one of ``kinds``.
+    """
     for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
         if name[letters - 1] not in "FGXN":
             break
@@ -104,7 +107,10 @@ def _split_operator_letters(name: str, env: Env, kinds: tuple[BindingKind, ...])
 
 
 def entity(expr: Expr, env: Env) -> Entity:
-    """Return the entity that an argument names; raise ResolutionError if it names none."""
+    """Return the entity (object of the level) that an argument names.
+
+    Raises ResolutionError: TLT0201 if the name is unknown, TLT0302 if the argument is no entity.
+    """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, NameExpr):
@@ -130,7 +136,7 @@ _ONE_ENTITY = "name one entity here: write a condition for each entity, and join
 
 
 def _entities_help(env: Env) -> str:
-    """Return a help text that lists the visible entities."""
+    """Return a help text that lists the visible entities, or says how to declare one."""
     known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
     listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
     if len(known) == 1:
@@ -139,7 +145,7 @@ def _entities_help(env: Env) -> str:
 
 
 def entity_help(entity: str, env: Env, *, number: bool) -> str:
-    """Return a help text that shows how to use an entity in a condition, or in arithmetic."""
+    """Return a help text that shows how to use an entity: in arithmetic if ``number``, else in a condition."""
     # Sorting by kind puts predicates before signals: predicates are declared to be used this way.
     for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
         declared = binding.declaration
@@ -155,7 +161,10 @@ def entity_help(entity: str, env: Env, *, number: bool) -> str:
 
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
-    """Return the kind of an argument, judged by its outermost operator or name; unknown names count as formulas."""
+    """Guess from the outermost operator or name whether an expression is an entity, a number or a formula.
+
+    Unknown names count as formulas.
+    """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
     if isinstance(expr, (tree.NumberExpr, tree.WhenExpr)):

@@ -1,12 +1,12 @@
-"""The robustness of a comparison: its margin, scaled to [-1, 1].
+"""Compute the robustness of a comparison ``left > right``: its margin, scaled to [-1, 1].
 
-The margin is ``left - right``. Scaling divides it by the width of its range. The sign must be
-right: the robustness is above 0 exactly where the left side is greater. Subtraction of doubles
-keeps the sign. Division can lose it: a small margin over a large width rounds to 0, and the width
-of a large range overflows. Two measures prevent this. Where the quotient might round to 0, the
-robustness of a margin above 0 is at least the smaller of the margin and
-:data:`tltlc.expression.tree.LEAST`. If the width overflows, both sides are halved before they are
-subtracted.
+The margin is ``left - right``. Scaling divides a margin above 0 by the greatest possible margin, and
+a margin below 0 by the size of the least. The robustness must have the right sign: it is above 0
+exactly where the left side is greater. Subtraction of doubles keeps the sign, but division can lose
+it: a small margin over a large width rounds to 0, and the width of a large range overflows. Two
+measures prevent this. Where the quotient might round to 0, the robustness of a margin above 0 is at
+least the smaller of the margin and :data:`tltlc.expression.tree.LEAST`. If the width overflows, both
+sides are halved before they are subtracted.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _NEVER_LOST: Final = 2.0**-126
 
 
 def robustness(left: Quantity, right: Quantity) -> Expression:
-    """Return the robustness of ``left > right``, scaled separately above and below 0.
+    """Return an expression for the robustness of ``left > right``, scaled separately above and below 0.
 
-    It is 1 at the greatest margin and -1 at the least. The sides must have finite ranges, and some
-    of their values must make the comparison true.
+    Its value is 1 at the greatest possible margin ``left - right``, and -1 at the least. The sides
+    must have finite ranges, and some of their values must make the comparison true.
     """
     holding, failing = _MarginRange(left.high, right.low), _MarginRange(right.high, left.low)
     share = _share(left, right, holding)
@@ -45,7 +45,7 @@ def robustness(left: Quantity, right: Quantity) -> Expression:
 
 @record
 class _MarginRange:
-    """The range of the margins above 0, or of those below 0. Their sizes go from 0 to ``width``.
+    """The sizes that a margin can have on one side of 0: from 0 to ``width``, which is ``most - least``.
 
     ``most`` is the greatest value of one side of the comparison, and ``least`` the least value of
     the other side.
@@ -56,7 +56,7 @@ class _MarginRange:
 
     @property
     def width(self) -> float:
-        """The size of the largest margin of this range: its upper end. Infinite if it overflows."""
+        """The largest size of a margin; infinite if the subtraction overflows."""
         return self.most - self.least
 
     @property
@@ -66,7 +66,7 @@ class _MarginRange:
 
     @property
     def order(self) -> tuple[float, float]:
-        """The key that sorts ranges by width, even if widths overflow."""
+        """The sort key of ranges by width; it also works for widths that overflow."""
         return self.width, self.half_width
 
 
@@ -92,12 +92,12 @@ def _margin(left: Quantity, right: Quantity) -> Expression:
 
 
 def _gap(left: Quantity, right: Quantity) -> float:
-    """Return a lower bound for the size of a margin that is not 0. The bound may be 0."""
+    """Return a lower bound for the size of every margin other than 0. The bound may be 0."""
     return max(_spacing(left), _spacing(right))
 
 
 def _spacing(side: Quantity) -> float:
-    """Return a lower bound for the distance from a value of a side to the next float."""
+    """Return a lower bound for the distance from any value of a side to the next float; 0 if it may be 0."""
     if side.low <= 0 <= side.high:
         return 0.0
     return ulp(min(abs(side.low), abs(side.high))) / 2

@@ -12,10 +12,10 @@ from tltlc.core.record import EMPTY, record
 class ResolveOptions:
     """Settings of resolution.
 
-    ``library_dirs`` are searched for imports after the file's own folder. ``params`` overrides the
-    values of params by name; a value is written as in a source text, ``"25 m"``, and is in SI units
-    if it has no unit. ``proofs`` turns on the proofs that predicates stay in their ranges, which
-    take longer than everything else.
+    ``library_dirs`` are searched for imports after the file's own folder. ``params`` maps names of
+    params to values that replace the declared ones. A value is written as in a source text,
+    ``"25 m"``; without a unit, it is in SI units. ``proofs`` turns on the proofs that predicates stay
+    in their ranges. The proofs take longer than everything else.
     """
 
     library_dirs: tuple[Path, ...] = ()

@@ -26,13 +26,13 @@ _NEVER_NEGATIVE = ("length", "time", "speed")
 
 
 def check_predicates(context: Context) -> None:
-    """Check the range and continuity of every predicate in use, each once, and log the findings.
+    """Check the range and continuity of every predicate in ``context.instances``, and log the findings.
 
     A predicate must stay in its range for all values of the params. A jump of its value is reported
-    only if it occurs with the current values of the params: ``near(exit, close = 3 m)`` jumps in a
-    level of 2 m, which does not matter if the level has 20 m.
+    only if the predicate jumps at the current values of the params: ``near(exit, close = 3 m)`` jumps
+    in a level of 2 m, which does not matter if the level has 20 m.
 
-    All checks together may take a limited number of steps. If no steps are left, one warning
+    All checks together may take a limited number of steps. If too few steps are left, one warning
     (TLT0503) names the first predicate that was not checked and counts the others.
     """
     from tltlc.resolve.range_proof.work_budget import step_limit
@@ -61,9 +61,10 @@ def _check(instance: Instance, context: Context) -> None:
 
 
 def _holds_without_negatives(instance: Instance, context: Context) -> bool:
-    """Whether a predicate leaves its range only if some length, time or speed is negative.
+    """Whether a predicate leaves its range only where some length, time or speed is negative.
 
-    Only signals without a declared lower end count: the game most likely never makes them negative.
+    This considers only signals without a declared lower end. The game most likely never makes them
+    negative.
     """
     from tltlc.resolve.range_proof import check_predicate
 
@@ -78,7 +79,7 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
 
 
 def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
-    """Whether the check of a predicate's continuity reports anything with every param fixed at its value."""
+    """Whether the check of a predicate for jumps still reports something if every param has its current value."""
     from tltlc.resolve.range_proof import check_predicate
 
     if not _variables_read(instance, ParamNode):
@@ -89,10 +90,7 @@ def _jumps_at_param_values(instance: Instance, context: Context) -> bool:
 
 
 def _variables_read(instance: Instance, kind: type[N]) -> list[N]:
-    """Return the nodes of a predicate that read signals, or those that read params.
-
-    ``kind`` is the class of these nodes.
-    """
+    """Return the nodes of class ``kind`` in the expression of a predicate: those that read signals, or params."""
     return [node for node in nodes(instance.expression) if isinstance(node, kind)]
 
 

@@ -1,4 +1,4 @@
-"""Uses of predicates: their arguments, their value, and the names of their atoms."""
+"""Resolve the uses of predicates: check their arguments, and compute their values and the names of their atoms."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown, 
 
 @record
 class PredicateUse:
-    """One use of a predicate: its value and its documentation.
+    """One use of a predicate, such as ``near(s1)``: its value, and the documentation of the predicate.
 
-    The value has the name of the atom and the declared range.
+    The text of ``value`` is the name of the atom, and its range is the declared range.
     """
 
     value: Quantity
@@ -40,10 +40,10 @@ class PredicateUse:
 
 
 def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
-    """Return one use of a predicate, with its arguments filled in.
+    """Return a use of a predicate, with the arguments in place of the parameters.
 
-    The name of the value is the name of the atom, e.g. ``near(s1, close=3)``. ``depth`` is the
-    number of operators around the use.
+    The text of its value is the name of the atom, e.g. ``near(s1, close=3)``. ``depth`` is the
+    number of operators around the use. Raises ResolutionError if an argument or the body is in error.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
@@ -77,10 +77,11 @@ def predicate(use: NameExpr | CallExpr, binding: Binding, env: Env, depth: int =
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Instantiate a predicate with symbolic arguments, so that its body is checked even if nothing uses it.
+    """Check the body of a predicate that nothing uses, with placeholders as its arguments.
 
-    Whether its value stays in its range is checked only if each parameter is an entity or has a
-    default: with a symbol in place of a number, the range of the value is unknown.
+    Do nothing if a use of the predicate has been recorded. The range of the value is checked only if
+    each parameter is an entity or has a default: with a placeholder for a number, the range is
+    unknown. Raises ResolutionError if the body or a default is in error.
     """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
@@ -103,9 +104,10 @@ def check_unused(binding: Binding, env: Env) -> None:
 
 
 def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> ResolvedValue:
-    """Return the value of an argument of a predicate, or of a numeric argument of a ``let``.
+    """Return the value of an argument of a predicate, or of an argument of a ``let`` that is no formula.
 
-    Raises ResolutionError if the argument does not fit the parameter.
+    The value is an entity or a quantity. ``depth`` is the number of operators around the use. Raises
+    ResolutionError if the argument does not fit the parameter.
     """
     while isinstance(argument, GroupExpr):
         argument = argument.inner
@@ -139,7 +141,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
 
 
 def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
-    """Return the declared type of a parameter, or None if any value fits it.
+    """Return the declared type of a parameter, or None if no type is declared, so that any number fits.
 
     Raises ResolutionError (TLT0211) for an unknown type.
     """
@@ -171,9 +173,10 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
 
 
 def _symbolic_value(parameter: Parameter, binding: Binding, env: Env) -> ResolvedValue:
-    """Return a value that stands for any argument of a parameter.
+    """Return a placeholder for the argument of a parameter, to check a predicate that nothing uses.
 
-    For a number, it is a signal with the parameter's name.
+    For an entity, this is an entity with the parameter's name; for a parameter with another type, a
+    signal with this name; without a type, an Unknown.
     """
     if parameter.type == "entity":
         return Entity(parameter.name)
@@ -267,10 +270,10 @@ def _note_instance(
     depth: int,
     place: Label | None,
 ) -> None:
-    """Record a predicate with its arguments, so that its range and continuity will be checked.
+    """Record a predicate with its arguments in ``env.context``, so that its range and continuity will be checked.
 
-    Entities are replaced by the names of the parameters, so that uses that differ only in entities
-    are checked once.
+    The names of parameters replace entities, so uses that differ only in entities, such as
+    ``near(s1)`` and ``near(s2)``, are checked once. ``declared`` is the declared range.
     """
     general: dict[str, ResolvedValue] = {}
     names: dict[str, str] = {}

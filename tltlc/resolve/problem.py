@@ -13,9 +13,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 
 
 class ResolutionError(Exception):
-    """Raised where a clause or declaration cannot be resolved.
+    """Raised when a clause or declaration cannot be resolved.
 
-    ``diagnostic`` is None if the cause has already been reported.
+    ``diagnostic`` is the error to report; None if its cause has already been reported.
     """
 
     def __init__(self, diagnostic: Diagnostic | None) -> None:
@@ -23,10 +23,10 @@ class ResolutionError(Exception):
         super().__init__(diagnostic.title if diagnostic else "reported before")
 
     def add_use(self, use: Label, source: SourceFile, body: Span) -> None:
-        """Add the label ``use``, the place where a definition is used, to a problem inside the definition.
+        """Add a label that shows where a definition is used, if the error is in the body of the definition.
 
-        ``body`` is the span of the definition's body in ``source``. Does nothing if the problem is
-        not in the body, or if the arguments of the use cannot have caused it.
+        ``use`` is the place of the use, and ``body`` the span of the body in ``source``. Does nothing
+        if the error is elsewhere, or if the arguments of the use cannot have caused it.
         """
         diagnostic = self.diagnostic
         if diagnostic is None or diagnostic.code not in _OF_ARGUMENTS or len(diagnostic.labels) >= _MOST_PLACES:
@@ -57,9 +57,9 @@ def problem(
     related: tuple[Label, ...] = (),
     fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
-    """Return an error at ``span``, with ``message`` under the caret.
+    """Return a ResolutionError with a diagnostic at ``span``, which shows ``message`` under the caret.
 
-    ``advice`` becomes the help of the diagnostic, and ``related`` its further labels.
+    ``advice`` becomes the help of the diagnostic. The labels ``related`` follow the main label.
     """
     labels = (Label(source, span, message), *related)
     return ResolutionError(Diagnostic(code, title, labels, advice, fixes=fixes))
@@ -83,9 +83,9 @@ class Log:
         self._diagnostics.setdefault((diagnostic.code, place), diagnostic)
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Return all diagnostics, sorted by file and then by position.
+        """Return all diagnostics, sorted by file and then by position in the file.
 
-        The file whose problem was reported first comes first.
+        Files are in the order in which they had their first diagnostic.
         """
         files: dict[str, int] = {}
 

@@ -32,7 +32,8 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
     """Resolve an arithmetic expression to a quantity: a number with a range and a dimension.
 
     ``depth`` is the number of operators around the expression. Raises ResolutionError if the
-    expression is not a number, its units do not fit, or it is too deep or too wide.
+    expression is not a number, if its units do not fit, or if it has too many operators inside each
+    other or too many arguments or cases.
     """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
@@ -45,10 +46,10 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
-    """Return the resolved condition of a ``when``, and its text for the names of atoms.
+    """Resolve the condition of a ``when``, and return it with its text.
 
-    ``depth`` is the number of operators around the expression. Raises ResolutionError if the
-    expression is no condition.
+    The text becomes a part of the name of an atom. ``depth`` is the number of operators around the
+    expression. Raises ResolutionError (TLT0318) if the expression is no condition.
     """
     while isinstance(expr, GroupExpr):
         expr = expr.inner
@@ -175,8 +176,8 @@ def _infix(expr: tree.BinaryExpr, env: Env, depth: int) -> Quantity:
 def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
     """Whether a division is a literal speed such as ``3 m/s``.
 
-    The unit after the ``/`` is lexed as a name. A signal or param of that name takes precedence,
-    except in constants, where neither is allowed.
+    The lexer reads the ``s`` as a name. If a signal or param is called ``s``, the division is by it,
+    except in a constant, which can contain neither.
     """
     left, per = expr.left, expr.right
     if isinstance(left, tree.Unary) and left.op == "-":
@@ -190,10 +191,10 @@ def _is_per_time(expr: tree.BinaryExpr, env: Env) -> bool:
 
 
 def _check_speed(expr: tree.BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0304) for ``a / 1 m/s``, where the speed needs brackets.
+    """Raise ResolutionError (TLT0304) for ``a / 1 m/s`` without brackets around the speed.
 
-    The parser reads this as ``(a / 1 m) / s``. If `s` is declared, that may be meant, and there is
-    no error.
+    The parser reads this as ``(a / 1 m) / s``. There is no error if ``s`` is declared, since the
+    author may mean this.
     """
     inner, per = expr.left, expr.right
     if (

@@ -1,4 +1,4 @@
-"""The range of an operator's result from the ranges of its arguments.
+"""Compute the range of an operator's result from the ranges of its arguments.
 
 This is plain interval arithmetic without outward rounding. It computes the values of constants and
 the ranges by which comparisons are scaled, where a range from 0 to 1 must not grow by rounding.
@@ -32,7 +32,10 @@ def range_of(op: str, args: tuple[ValueRange, ...]) -> ValueRange:
 
 
 def overflows(op: str, args: tuple[ValueRange, ...]) -> bool:
-    """Whether the ranges are finite, and ``op`` is defined everywhere in them but may overflow."""
+    """Whether ``op`` may overflow for arguments in finite ranges.
+
+    False if a range is infinite, or if the operator is undefined somewhere, as ``1 / x`` is at 0.
+    """
     if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
         return False
     return not all(isfinite(end) for end in range_of(op, args))

@@ -71,16 +71,15 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> Resolution
 def resolve_atoms(
     module: Module, texts: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
-    """Resolve texts from outside a module, such as an imported automaton, to atoms of the module.
+    """Find the atoms of a module that texts from elsewhere name, such as the labels of an imported automaton.
 
-    Each of the ``texts`` is a formula of one atom, or the name of an atom of the module's own
-    specs. (Names of atoms have no units, so not every name is a valid formula.) Returns three
-    things:
+    Each of the ``texts`` is a formula of one atom, such as ``near(s1, close = 3 m)``, or the name of an
+    atom that the module's specs use: ``near(s1, close=3)``. Returns three things:
 
-    - the vocabulary of the atoms, None if the module or a text is in error, or if two texts name
-      the same atom;
+    - the atoms with the signals and params that they use; None if the module or a text is in error,
+      or if two texts name the same atom;
     - a function that resolves further formulas without reporting anything;
-    - the diagnostics that no ``allow`` comment silences.
+    - the diagnostics, without those that an ``allow`` comment silences.
     """
     env, groups, modules = _declare_names(module, options or ResolveOptions())
     context = env.context
@@ -115,9 +114,9 @@ def resolve_atoms(
 
 
 def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, Label]:
-    """Return the name of the atom that a text names, and its place in the text.
+    """Return the name of the atom that a text stands for, and a label for its place in the text.
 
-    Raises ResolutionError if the text is no atom.
+    The parsed text is added to ``expressions``. Raises ResolutionError if the text is no atom.
     """
     text = source.text.strip()
     start = source.text.find(text)
@@ -142,9 +141,10 @@ def _atom(source: SourceFile, env: Env, expressions: list[Expr]) -> tuple[str, L
 def _declare_names(
     module: Module, options: ResolveOptions
 ) -> tuple[Env, tuple[tuple[str, ...], ...], tuple[LoadedModule, ...]]:
-    """Return the environment of a module, the ``exclusive`` groups, and all modules.
+    """Load a module with its imports, and enter all declarations.
 
-    The groups come from the module and from its imports.
+    Return the environment of the module, the groups of atoms that it and its imports declare
+    ``exclusive``, and all loaded modules. The context of the environment has the diagnostics.
     """
     context = Context()
     modules = load(module, options, context.log)
@@ -154,7 +154,7 @@ def _declare_names(
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
-    """Return the names of the atoms of each ``exclusive`` declaration of a module."""
+    """Return, for each ``exclusive`` declaration of a module, the names of its atoms. Log those in error."""
     env = Env(context, scope)
     groups = []
     for declaration in scope.module.declarations:
@@ -215,7 +215,7 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
 
 
 def _check_unused(scope: Scope, env: Env) -> None:
-    """Check the module's own predicates and lets that nothing has used."""
+    """Check the bodies of the module's own predicates and lets, also of those that nothing uses; log errors."""
     for binding in scope.names.values():
         if binding.scope is not scope:
             continue

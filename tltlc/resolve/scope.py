@@ -1,4 +1,4 @@
-"""The names that are visible in a module: its own and those of its imports."""
+"""Find the names that are visible in a module: its own and those of its imports."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _MERGED = ("signal", "param", "entity")
 
 @record
 class Binding:
-    """What a name means: its declaration, and the scope of the declaration.
+    """What a name means: its declaration, and the scope of the module that declares it.
 
-    ``via`` is the library or file from which the name is imported, None for a name of the module
-    itself.
+    ``via`` is the library or file from which the name is imported; None for a name that the module
+    declares itself.
     """
 
     kind: BindingKind
@@ -46,7 +46,10 @@ class Binding:
 
 @record
 class Scope:
-    """A module and the names visible in it; ``title`` is the name of the module in messages."""
+    """A module and the names that are visible in it, each with its binding.
+
+    ``title`` is the name of the module in messages.
+    """
 
     module: Module
     title: str
@@ -61,10 +64,11 @@ class Scope:
 
 
 def build_scopes(modules: Iterable[LoadedModule], log: Log) -> tuple[Scope, ...]:
-    """Return one scope per module, in the given order (imported modules first).
+    """Return one scope per module, in the order of ``modules``, which has imported modules first.
 
-    The import that exceeds the limit of names (TLT0012) brings no names, and neither does any later
-    import.
+    Conflicts of names are logged. All imports together may make a limited number of names visible.
+    The import that exceeds the limit is an error (TLT0012); this import and all later ones are left
+    out.
     """
     scopes: dict[int, Scope] = {}
     budget = _NameBudget()
@@ -84,16 +88,16 @@ def build_scopes(modules: Iterable[LoadedModule], log: Log) -> tuple[Scope, ...]
 
 
 def closest_name(name: str, scope: Scope, kinds: Iterable[BindingKind], local: Iterable[str] = ()) -> str | None:
-    """Return the visible name of one of these kinds that an unknown name most likely misspells.
+    """Return the visible name that an unknown name most likely misspells, or None if no name is close.
 
-    Returns None if no name is close.
+    Only names of one of ``kinds``, and the names in ``local``, count.
     """
     allowed_kinds = set(kinds)
     return likely_name(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in allowed_kinds)])
 
 
 class _NameBudget:
-    """How many names, and how many letters in them, further imports may still make visible."""
+    """Counts down how many names, and how many letters in prefixed names, imports may still make visible."""
 
     def __init__(self) -> None:
         self._names: int = IMPORTED.values or 0
@@ -101,9 +105,10 @@ class _NameBudget:
         self._is_over = False
 
     def covers(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
-        """Subtract the names of an import from the budget, and return whether they fit.
+        """Subtract the names of an import from the budget, and return whether the budget covers them.
 
-        If they do not, log an error.
+        Log an error for the first import that exceeds the budget, and return False for it and all
+        later ones.
         """
         if self._is_over:
             return False
@@ -218,7 +223,7 @@ def _not_offered_error(
 
 
 def _aliased_import(target: str | None) -> str:
-    """Return an import statement for a library or file, with a short alias."""
+    """Return an import statement with a short alias: ``import stealth as st`` for ``stealth``."""
     target = target or ""
     letters = "".join(c for c in target.rsplit("/", 1)[-1] if c.isascii() and c.isalpha())[:2].lower()
     target_text = f'"{target}"' if "/" in target or target.endswith(".tltl") else target

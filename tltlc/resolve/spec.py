@@ -1,6 +1,6 @@
-"""The data model of a resolved specification: every name, type and unit is known.
+"""The records of a resolved specification, in which every name, type and unit is known.
 
-Nothing here refers to the syntax tree, except by span for messages.
+They do not contain parts of the syntax tree, only spans in the source text for messages.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ class Param:
 
 @record
 class Atom:
-    """An atom. It holds where the value of its expression, which lies in [-1, 1], is above 0.
+    """An atom: it is true at a sample where its expression, whose value lies in [-1, 1], is above 0.
 
-    ``base`` and ``arguments`` are those of the predicate or signal, as they are written. An atom that
-    is a comparison, such as ``x > 3``, has its text as its base and no arguments.
+    ``near(s1)`` has the base ``near`` and the argument ``s1``. An atom that is a comparison, such as
+    ``x > 3``, has its text as its base and no arguments.
     """
 
     base: str
@@ -80,11 +80,11 @@ class Bound:
 
 @record
 class Conjunct:
-    """One conjunct of a spec's formula and its clause, so that errors can name the clause.
+    """One conjunct of a spec's formula, with the place of its clause, so that errors can show the clause.
 
-    ``bounds`` are the bounds expanded in the clause. ``unbounded`` is the formula with ``F p`` for
-    ``F[0,3] p`` and ``G p`` for ``G[0,3] p``; it decides when a spec is judged (docs/adr/0009). It
-    is None if it equals ``formula``.
+    ``bounds`` are the bounds that were expanded in the clause. ``unbounded`` is the formula with
+    ``F p`` for ``F[0,3] p`` and ``G p`` for ``G[0,3] p``; None if it equals ``formula``. It decides
+    whether an episode is judged at its goal or at its limit (docs/adr/0009).
     """
 
     formula: Formula
@@ -96,12 +96,14 @@ class Conjunct:
 
 @record
 class Spec:
-    """A specification, ready for the automaton.
+    """A specification from which an automaton can be built.
 
-    ``atoms`` are the atoms of the formula in order of appearance, then those only in ``exclusive``.
-    ``exclusive`` holds groups of indices into ``atoms``. ``signals`` and ``params`` are those that
-    the atoms use, in order of first use. ``judge`` is None if no clause sets it (semantics, section
-    4). ``clock_s`` is the sampling period in seconds, or None if no clock is declared.
+    ``parts`` are the conjuncts of ``formula``. ``atoms`` are the atoms of the formula in order of
+    appearance, then those that occur only in ``exclusive``. ``exclusive`` has groups of indices into
+    ``atoms``: no two atoms of a group hold at the same sample. ``signals`` and ``params`` are those
+    that the atoms use, in order of first use. ``judge`` says whether an episode is judged when it
+    reaches its goal or at its limit; None if no clause says so. ``clock_s`` is the time between two
+    samples in seconds, or None if no clock is declared.
     """
 
     name: str
@@ -124,9 +126,9 @@ class Spec:
 
 @record
 class Vocabulary:
-    """A list of atoms without a formula, with the signals and params that they use.
+    """A list of atoms that belong to no formula, with the signals and params that they use.
 
-    ``atoms`` are the requested atoms in order, then those that are only in ``exclusive``. The other
+    ``atoms`` are the requested atoms in order, then those that occur only in ``exclusive``. The other
     fields are as in :class:`Spec`.
     """
 
@@ -139,9 +141,9 @@ class Vocabulary:
 
 @record
 class RepeatedSample:
-    """A ``step`` of a test: the names of the atoms that hold at a sample, which is repeated ``times`` times.
+    """A ``step`` of a test: a sample of truth values, repeated ``times`` times.
 
-    All other atoms are false.
+    The atoms named in ``holds`` are true at the sample, and all other atoms are false.
     """
 
     times: int
@@ -165,7 +167,10 @@ class Expect:
 
 @record
 class Test:
-    """A ``test`` block of a spec."""
+    """A ``test`` block: samples, and what must be true after them, in the order of the text.
+
+    ``spec`` is the name of the spec that is tested.
+    """
 
     title: str
     spec: str
@@ -178,8 +183,8 @@ class Test:
 class ResolvedFile:
     """A resolved file: its own specs and tests, in order.
 
-    ``exclusive`` is the vocabulary of all ``exclusive`` groups that the file and its imports
-    declare, used or not.
+    ``exclusive`` has all atoms, and all groups of atoms, that the file and its imports declare
+    ``exclusive``, even if no spec uses them.
     """
 
     specs: tuple[Spec, ...]

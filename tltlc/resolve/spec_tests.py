@@ -1,4 +1,4 @@
-"""Resolve ``test`` blocks: traces of atoms and expectations about them."""
+"""Resolve ``test`` blocks: traces of truth values of atoms, and what a spec must say of them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from tltlc.resolve.values import Env
 
 
 def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
-    """Return the resolved test, or None if anything in it or its spec is in error.
+    """Return the resolved test, or None if the test or its spec is in error.
 
-    ``specs`` holds every spec of the file, None for a spec in error. Problems go to the log.
+    ``specs`` maps the name of every spec of the file to the spec, or to None if it is in error. Errors
+    of the test are logged.
     """
     context, source = env.context, env.scope.source
     name = declaration.spec.name
@@ -74,9 +75,11 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
 
 
 def _literal(literal_expr: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
-    """Return the name of an atom, and whether the literal says that the atom holds.
+    """Return the name of the atom in a literal, and whether the literal says that the atom holds.
 
-    The atom is written as a formula, or as the name of the atom, which has no units.
+    ``not near(s1)`` gives ``("near(s1)", False)``. The atom may be written as a formula
+    (``near(s1, close = 3 m)``) or by its name (``near(s1, close=3)``). ``names`` maps the names of the
+    spec's atoms, without spaces, to the names. Raises ResolutionError (TLT0316) if it is no literal.
     """
     holds, inner = True, literal_expr
     while isinstance(inner, GroupExpr) or (isinstance(inner, Unary) and inner.op == "not"):

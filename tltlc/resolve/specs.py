@@ -1,4 +1,4 @@
-"""Resolve specs: their clauses, the conjunction of the clauses, and settings such as ``limit``."""
+"""Resolve specs: turn clauses such as ``reach`` into one formula, and read settings such as ``limit``."""
 
 from __future__ import annotations
 
@@ -78,9 +78,10 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
 
 
 def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Context) -> Vocabulary:
-    """Return the vocabulary of the atoms with the names ``used``.
+    """Return the atoms with the names ``used``, and the signals, params and groups that belong to them.
 
-    It contains all atoms of each ``exclusive`` group that shares at least two atoms with ``used``.
+    A group of ``exclusive`` atoms belongs to them if it contains at least two of them. Then its other
+    atoms are returned, too.
     """
     used = list(used)
     exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
@@ -97,7 +98,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:
-    """Return the conjuncts of a clause, each with its bounds and its formula without bounds."""
+    """Return the conjuncts of a clause, each with the bounds in the clause and its formula without bounds."""
     read = _READERS[clause.kind]
     before = len(env.context.bounds)
     parts = read(clause, env)
@@ -151,9 +152,9 @@ def _conjunct(conjunct: Formula, clause: Clause, env: Env) -> Conjunct:
 
 
 def _store_metadata(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
-    """Store a clause that sets an option of the spec, such as ``limit``.
+    """Store a clause that sets an option of the spec, such as ``limit``, in ``metadata`` under its keyword.
 
-    Raises ResolutionError (TLT0214) if the spec already has a clause with this keyword.
+    Raises ResolutionError (TLT0214) if there is already a clause with this keyword.
     """
     source = env.scope.source
     if clause.kind in metadata:

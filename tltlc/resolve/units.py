@@ -80,9 +80,9 @@ def type_of_unit(unit: str) -> str | None:
 
 
 def in_si(value: float, unit: str | None) -> tuple[float, Dimension] | None:
-    """Return a literal's value in SI units and its dimension.
+    """Return the value of a literal in SI units, and its dimension: 1000.0 and a length for ``1 km``.
 
-    Returns None for a unit that measures no quantity (``steps``).
+    Returns None for an unknown unit, and for ``steps``, which count samples.
     """
     if unit is None:
         return value, PLAIN
@@ -99,12 +99,12 @@ def time_units() -> tuple[str, ...]:
 
 
 def si_unit(dimension: Dimension) -> SiUnit | None:
-    """Return the SI unit of a dimension, or None if it has no unit with a name."""
+    """Return the SI unit of a dimension, such as ``m/s``; None for a plain number or an area."""
     return _SI.get(dimension)
 
 
 def dimension_text(dimension: Dimension) -> str:
-    """Return the dimension in words, e.g. ``a length``."""
+    """Return the dimension in words: ``a length``, or ``a quantity in m^2`` if it has no name."""
     if dimension in _NAMES:
         return _NAMES[dimension]
     return "a quantity in " + " ".join(
@@ -125,5 +125,5 @@ def product(left: Dimension | None, right: Dimension | None, sign: float = 1.0) 
 
 
 def power(base: Dimension | None, exponent: float) -> Dimension | None:
-    """Return the dimension of ``base ^ exponent``."""
+    """Return the dimension of ``base ^ exponent``; None, which fits any dimension, if that of ``base`` is None."""
     return None if base is None else (base[0] * exponent, base[1] * exponent, base[2] * exponent)

@@ -1,4 +1,4 @@
-"""The values of expressions during resolution: entities, quantities and formulas."""
+"""The values that expressions have during resolution, and the environment in which names get these values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from tltlc.resolve.scope import Scope
 from tltlc.resolve.units import Dimension, si_unit
 
 LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
-"""How tightly the outermost operator in the text of a quantity binds, from loosest to tightest."""
+"""How tightly the outermost operator in the text of a quantity binds, from loosest to tightest.
+
+The text of a quantity without an operator, such as a name or a call, is CLOSED.
+"""
 
 
 @record
@@ -63,7 +66,7 @@ class Quantity:
 
 @record
 class Unknown:
-    """A parameter whose value is unknown, for the check of a definition that nothing uses."""
+    """A placeholder for an argument of unknown kind, for the check of a definition that nothing uses."""
 
     name: str
 
@@ -73,12 +76,13 @@ ResolvedValue = Union[Entity, Quantity, Formula, Unknown]
 
 @record
 class Env:
-    """The environment of an expression: the scope of its text and the values of its parameters.
+    """What the names in an expression mean: the names visible in its module, and its local names.
 
-    ``symbolic`` marks the check of a definition whose parameters have no values yet. ``constant``
-    allows numbers only. ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``. It is
-    used only on text that has already been read with its bounds, so no size is checked and nothing is
-    counted again.
+    ``local`` has the values of parameters and quantified variables. ``symbolic`` is true while a
+    definition is checked with placeholders as its arguments. ``constant`` forbids signals and params.
+    ``unbounded`` makes ``F[0,3] p`` mean ``F p``, and ``G[0,3] p`` mean ``G p``. It is set only for
+    text that has already been resolved with its bounds, so no size is checked and nothing is counted
+    again.
     """
 
     context: Context
@@ -93,7 +97,7 @@ class Env:
         return replace(self, scope=scope, local=local)
 
     def with_local(self, name: str, value: ResolvedValue) -> Env:
-        """Return the environment with one more local name."""
+        """Return a copy of the environment with one more local name."""
         return replace(self, local={**self.local, name: value})
 
 
@@ -124,9 +128,10 @@ _INFIX = {
 
 
 def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
-    """Apply ``op`` to quantities; ``dimension`` is that of the result.
+    """Return the quantity ``op`` applied to ``args``; ``dimension`` is the dimension of the result.
 
-    Constants give a constant, or None if the value is not finite (``1 / 0``).
+    If all arguments are constant, so is the result. Return None if its value is infinite or
+    undefined, as for ``1 / 0``.
     """
     ranges = tuple((arg.low, arg.high) for arg in args)
     low, high = range_of(op, ranges)

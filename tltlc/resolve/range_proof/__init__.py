@@ -1,6 +1,6 @@
-"""Check the range and continuity of predicates.
+"""Check that predicates stay in their ranges, and that they do not jump between cases.
 
-Begin with :mod:`tltlc.resolve.range_proof.check`.
+To read the code, begin with :mod:`tltlc.resolve.range_proof.check`.
 """
 
 from tltlc.resolve.range_proof.check import RangeProblem, check_predicate

@@ -1,4 +1,8 @@
-"""Split an expression with ``when`` into cases: expressions without ``when``, with constraints."""
+"""Split an expression with ``when`` into cases: expressions without ``when``, with constraints.
+
+``when x > 3: 1  otherwise: x`` has the case ``1`` where ``x - 3 > 0``, and the case ``x`` where
+``3 - x >= 0``.
+"""
 
 from __future__ import annotations
 
@@ -38,9 +42,10 @@ class ConstrainedValue:
 
 
 def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[ConstrainedValue, ...]:
-    """Return the cases of an expression, in order; together they cover every point.
+    """Return the cases of an expression, in the order of the text; at every point, some case applies.
 
-    ``split_extremes`` also splits min, max, abs and clamp. Raises TooManyCasesError.
+    ``split_extremes`` also splits min, max, abs and clamp: ``abs(x)`` has the cases ``x`` and ``-x``.
+    Raises TooManyCasesError if there are more than LARGEST_NUMBER_OF_CASES.
     """
     result: list[ConstrainedValue] = []
     for case in _expand(expression, (), split_extremes):
@@ -51,9 +56,11 @@ def cases(expression: Expression, *, split_extremes: bool = False) -> tuple[Cons
 
 
 def condition_operands(expression: Expression) -> tuple[ConstrainedValue, ...]:
-    """Return the expressions that the ``when`` conditions compare.
+    """Return the arithmetic expressions that the conditions of a ``when`` compare.
 
-    Each comes with the constraints that hold when it is evaluated. Raises TooManyCasesError.
+    Each comes with the constraints under which it is evaluated. They are needed to prove that a
+    condition is always defined, so single signals, params and numbers are left out. Raises
+    TooManyCasesError.
     """
     result: list[ConstrainedValue] = []
     _collect_operands(expression, (), result)
@@ -61,7 +68,7 @@ def condition_operands(expression: Expression) -> tuple[ConstrainedValue, ...]:
 
 
 def whens(expression: Expression) -> Iterator[When]:
-    """Yield the ``when`` expressions that are not inside another one."""
+    """Yield the ``when`` expressions that are not inside another ``when``."""
     if isinstance(expression, When):
         yield expression
     elif isinstance(expression, Op):
@@ -70,7 +77,7 @@ def whens(expression: Expression) -> Iterator[When]:
 
 
 def size(expression: Expression, most: int) -> int:
-    """Return the number of nodes, or ``most + 1`` if there are more than ``most``."""
+    """Return the number of nodes of an expression; stop counting at ``most + 1``."""
     return sum(1 for _ in islice(nodes(expression), most + 1))
 
 

@@ -1,5 +1,4 @@
-"""Check whether a predicate stays in its declared range, and whether its ``when`` cases join
-continuously.
+"""Check that a predicate stays in its declared range, and that it does not jump between ``when`` cases.
 
 There are four results: proved (no finding), wrong at a concrete point, unproved, and unchecked (the
 check would exceed its step limit). These methods are tried in turn:
@@ -50,11 +49,11 @@ _NO_POINT: Mapping[str, float] = {}
 
 @record
 class RangeProblem:
-    """A finding: the range or continuity of a predicate is wrong, or could not be proved.
+    """A finding: a predicate leaves its range or jumps, or this could not be ruled out.
 
-    ``witness`` gives the value of each signal and param at the point that ``message`` describes. It
-    is empty if ``kind`` ends in ``unproved`` or ``unchecked``. ``is_undefined`` is true if the
-    predicate has no value at that point.
+    ``witness`` is the point where the predicate does so: it maps names of signals and params to
+    values. It is empty if ``kind`` ends in ``unproved`` or ``unchecked``. ``is_undefined`` is true if
+    the predicate has no value at this point.
     """
 
     kind: FindingKind
@@ -72,10 +71,10 @@ def check_predicate(
 ) -> tuple[RangeProblem, ...]:
     """Return the findings on a predicate with the declared range ``[low, high]``.
 
-    The checks cover all values of the signals and params. ``signals`` and ``params`` hold at least
-    those that the expression reads, by name; an end of a range that is None is open. There is at
-    most one finding on the range and one on continuity. Takes a bounded number of steps and never
-    raises.
+    The checks cover all values of the signals and params in their ranges. ``signals`` and ``params``
+    must contain at least those that the expression reads, by name. There is at most one finding on
+    the range and one on jumps between cases; there is none if both are proved. Takes a bounded number
+    of steps, and reports a check that needs more as a finding.
     """
     with step_limit(_MOST_STEPS):
         if size(expression, LARGEST_SIZE) > LARGEST_SIZE:
@@ -103,7 +102,7 @@ def _unchecked_problem(aspect: Literal["range", "continuity"], why: str) -> Rang
 def _findings(predicate: Predicate) -> tuple[RangeProblem, ...]:
     """Return the findings on the range of a predicate, and then on its continuity.
 
-    If the range cannot be checked within the steps, continuity is not checked.
+    If the check of the range needs too many steps or cases, continuity is not checked.
     """
     try:
         with step_limit(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
@@ -132,9 +131,10 @@ _TOO_MANY_MEETINGS = f"more than {MOST_MEETING_CASES} cases of its `when` may me
 
 @record
 class Predicate:
-    """The predicate to check: its value, the ranges of its variables, and the declared range.
+    """The predicate to check: its expression, the ranges of its variables, and its declared range.
 
-    ``bools`` are the variables that are bools.
+    A variable is a signal or a param. ``box`` maps each to its range. ``bools`` are the variables that
+    are bools.
     """
 
     expression: Expression
@@ -165,7 +165,7 @@ def _check_range(predicate: Predicate) -> RangeProblem | None:
 
 
 def _find_wrong_range(predicate: Predicate) -> RangeProblem | None:
-    """Return a point where the value leaves its range or is undefined.
+    """Search for a point where the value leaves its range or is undefined, and return the finding.
 
     Returns None if the search finds no such point within its steps.
     """
@@ -207,9 +207,9 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
 
 
 def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
-    """Return a proof goal for each pair of cases of a ``when`` that may differ where they meet.
+    """Return a proof goal for each two cases of a ``when`` that may have different values where they meet.
 
-    Cases that are proved to agree there without sympy are left out.
+    Pairs whose values are proved to be equal there without sympy are left out.
     """
     all_cases = cases(when)
     if len(all_cases) < 2:
@@ -221,7 +221,10 @@ def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
 
 
 def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal], whole: ConstrainedBox) -> bool:
-    """Whether sympy proves the remaining goals, or proved them before and the answer is cached."""
+    """Whether sympy can prove all ``goals``; uses the cached answer if the question is not new.
+
+    ``kind`` is ``range`` or ``continuity``.
+    """
     from tltlc.resolve.range_proof import proof_cache
 
     def compute() -> proof_cache.Answer:
@@ -269,7 +272,7 @@ def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:
 
 
 def _point_text(values: Mapping[str, float]) -> str:
-    """Return the values of variables for a message: ``with distance = 3, far = 2 ``.
+    """Return the values of variables as the beginning of a message: ``with distance = 3, far = 2 ``.
 
     Returns an empty text if there are no variables.
     """

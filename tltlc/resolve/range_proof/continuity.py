@@ -1,9 +1,10 @@
-"""Check whether a value is continuous in its signals where ``when`` cases meet.
+"""Check that an expression does not jump where two cases of a ``when`` meet.
 
-A value is continuous if each ``when`` in it is. For fixed params, two cases of a ``when`` can meet
-only where all their constraints hold if ``>`` is read as ``>=``. The ``when`` is continuous if, for
-every pair of cases, both values agree at these points. Bool signals take only two values and are
-treated like params.
+The expression is continuous in its signals if each ``when`` in it is. Two cases of a ``when`` meet
+only at points that satisfy the constraints of both, with ``>=`` in place of ``>``. The ``when`` is
+continuous if every two cases have equal values at these points. Params are fixed while a game runs,
+so jumps between their values do not matter. Bool signals have only two values and are treated like
+params.
 """
 
 from __future__ import annotations
@@ -41,9 +42,10 @@ class Meeting:
 def meetings(
     all_cases: Sequence[ConstrainedValue], whole: ConstrainedBox, bools: frozenset[Variable]
 ) -> Iterator[Meeting]:
-    """Yield each pair of cases that may meet, unless both have the same expression as their value.
+    """Yield each pair of cases that may meet, except pairs with the same expression as their value.
 
-    Raises TooManyCasesError.
+    ``whole`` has the ranges of all variables. Raises TooManyCasesError if there are more than
+    MOST_MEETING_CASES cases.
     """
     if len(all_cases) > MOST_MEETING_CASES:
         raise TooManyCasesError
@@ -75,14 +77,13 @@ def proves_agreement(meeting: Meeting) -> bool:
 
 
 def agreement_goal(meeting: Meeting) -> ProofGoal:
-    """Return what is to be proved: that two cases have equal values where they meet."""
+    """Return the goal of a proof that two cases have equal values where they meet."""
     difference = Op("-", (meeting.first.value, meeting.second.value))
     return ProofGoal(difference, meeting.constraints, 0.0, 0.0)
 
 
 def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
-    """Return the constraint with ``>=`` in place of ``>`` if it contains a signal that is not a
-    bool.
+    """Return the constraint with ``>=`` in place of ``>`` if it reads a signal that is not a bool.
 
     Such a signal can come arbitrarily close to the border.
     """
@@ -92,10 +93,10 @@ def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Co
 
 
 def _same_after_substitution(difference: Expression, region: ConstrainedBox) -> bool:
-    """Whether ``difference`` becomes zero if the equations of the region are inserted.
+    """Whether ``difference`` becomes zero after substituting the equations that hold on the region.
 
-    Each equation that holds on the region is solved for a signal, param or other factor in it. The
-    solution then replaces this factor in ``difference``.
+    Each equation is solved for a signal, param or other factor in it. The solution then replaces this
+    factor in ``difference``: with ``x = 3``, ``x - 3`` becomes 0.
     """
     from tltlc.resolve.range_proof import normal_form as nf
 

@@ -1,11 +1,10 @@
-"""Prove that a quotient of polynomials is never negative, by eliminating one variable after
-another.
+"""Prove that a quotient of polynomials is never negative, by eliminating one variable after another.
 
 On a closed region, for fixed other variables, the minimum of a continuous ``f`` over one variable
 lies where the derivative is 0, at a root of a constraint, at an end of the variable's range, or in
 the limit at an open end. Substituting each of these candidates gives functions of the other
-variables, which must not be negative either. Steps are counted: an answer comes within a bounded
-number of steps on terms of bounded size.
+variables, which must not be negative either. The number of steps and the size of the terms are
+limited, so an answer always comes.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ Ranges = Mapping[Term, Interval]
 
 
 class GiveUpError(Exception):
-    """Raised when a proof needs a method that this module does not have, or too much work."""
+    """Raised when a proof needs a method that this module does not have, or too many steps."""
 
 
 class Prover:
@@ -51,9 +50,10 @@ class Prover:
         self.steps = 0
 
     def proves_nonnegative(self, f: Term, limits: Sequence[Term], ranges: Ranges, *, strict: bool) -> bool:
-        """Whether f is provably >= 0 (> 0 if strict) at the points of the ranges where each limit is >= 0.
+        """Whether f is provably >= 0 (> 0 if strict) wherever all ``limits`` are >= 0.
 
-        Limits are terms, and every symbol has a range. If the result is False, f may still be >= 0.
+        ``limits`` are terms. ``ranges`` has the range of every symbol in f and in the limits. If the
+        result is False, f may still be >= 0.
         """
         self.steps += 1
         if self.steps > _MOST_STEPS:
@@ -76,7 +76,7 @@ class Prover:
         return self._by_elimination(f, limits, {**ranges, **_ranges_of(region)}, strict)
 
     def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Whether ``f`` is provably never negative, shown by eliminating one of its variables.
+        """Eliminate one variable of ``f``, and return whether ``f`` is then provably never negative.
 
         The variables are tried in turn, those of the lowest degree first. Raises GiveUpError if no
         variable can be eliminated.
@@ -97,7 +97,7 @@ class Prover:
         return any(self.proves_nonnegative(term, limits, ranges, strict=True) for term in (f, -f))
 
     def _eliminate(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
-        """Whether ``f`` is provably never negative at any candidate for its minimum over x."""
+        """Whether ``f`` is provably never negative at the points where its minimum over x can lie."""
         if _degree(f, x) > LARGEST_DEGREE:
             raise GiveUpError
         rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
@@ -189,7 +189,7 @@ def _is_solvable(limit: Term, x: Term) -> bool:
 
 
 def _border_roots(limit: Term, x: Term) -> list[Term]:
-    """Return the values of x at which a constraint on x begins or ceases to hold.
+    """Return the values of x at which the constraint ``limit >= 0`` begins or ceases to hold.
 
     The constraint must be solvable for x (:func:`_is_solvable`).
     """

@@ -21,7 +21,10 @@ from tltlc.resolve.range_proof.region import ConstrainedBox, bound
 
 
 def proves_all(goals: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
-    """Whether each goal is proved: its value is defined and within bounds where the constraints hold."""
+    """Whether sympy and interval arithmetic prove all goals on the region ``whole``.
+
+    False means only that no proof was found.
+    """
     try:
         for goal in goals:
             parts = cases(goal.value, split_extremes=True)
@@ -45,10 +48,10 @@ def proves_all(goals: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
 def proves_within_exactly(
     value: Expression, constraints: Sequence[Constraint], region: ConstrainedBox, low: float, high: float
 ) -> bool:
-    """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE.
+    """Whether ``value`` is provably defined and in ``[low, high]``, up to TOLERANCE, on a region.
 
-    The proof covers the points of the region where the constraints hold. ``region`` already
-    includes the constraints; ``value`` has no ``when``.
+    ``region`` must already be narrowed by ``constraints``, which are needed again as equations and
+    inequalities for sympy. ``value`` has no ``when``.
     """
     try:
         translation, prover = _Translation(region), Prover()
@@ -72,7 +75,9 @@ def proves_within_exactly(
 class _Translation:
     """Translates expressions to sympy terms.
 
-    Each variable gets a symbol, and so does each term that is not a quotient of polynomials.
+    Each variable becomes a symbol, and so does each part such as ``exp(x)`` that is no quotient of
+    polynomials. ``ranges`` has the range of each symbol. ``equations`` has terms that are >= 0: two
+    for each square root, which say that the square of its symbol is the argument.
     """
 
     def __init__(self, region: ConstrainedBox) -> None:

@@ -1,9 +1,9 @@
 """Interval arithmetic on the real line, rounded outwards.
 
 An interval is a pair ``(low, high)`` with ``low <= high``. An infinite end means that there is no
-bound on that side; the values themselves are finite. A function that is named for an operation, such
-as :func:`add`, takes and returns intervals: its result contains every value that the operation has
-for numbers from the argument intervals. Zeros stay exact, so signs survive rounding.
+bound on that side; the values themselves are finite. A function such as :func:`add` takes and returns
+intervals. Its result contains the sum of any two numbers from the argument intervals. An end that is
+exactly 0 is not rounded, so signs survive.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _LARGEST_POWER = 64
 
 
 class UndefinedError(Exception):
-    """Raised when an operation is undefined for some values in the intervals of its arguments; the text says why."""
+    """Raised when an operation may be undefined for numbers from its argument intervals; the text says why."""
 
 
 def add(a: Interval, b: Interval) -> Interval:
@@ -45,7 +45,8 @@ def multiply(a: Interval, b: Interval) -> Interval:
 def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
     """Return an interval that contains ``x / y`` for all x in a and y in b.
 
-    Raises UndefinedError if y may be 0. ``nonzero`` states that y is not 0, although b may end at 0.
+    Raises UndefinedError if b contains 0. With ``nonzero``, an end of b may be 0, and y is any other
+    number of b.
     """
     if b[0] < 0 < b[1] or b == (0.0, 0.0) or (0.0 in b and not nonzero):
         raise UndefinedError("divides by zero")

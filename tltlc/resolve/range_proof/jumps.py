@@ -1,4 +1,4 @@
-"""Search for points on the border of two cases where the value jumps.
+"""Search for points on the border of two ``when`` cases where the value of an expression jumps.
 
 The search is deterministic, and its work is bounded.
 """
@@ -32,10 +32,10 @@ class Jump:
 def find_jump(
     all_cases: Sequence[ConstrainedValue], expression: Expression, box: Box, bools: frozenset[Variable]
 ) -> Jump | None:
-    """Return a border point between two cases where the expression clearly jumps.
+    """Search for a point on the border of two cases where the expression clearly jumps.
 
-    Returns None if the search finds no such point. The cases belong to one ``when`` in the
-    expression.
+    ``all_cases`` are the cases of one ``when`` in the expression. Returns None if the search finds no
+    such point, which does not prove that there is none.
     """
     crossings = 0
     candidates = list(points(expression, box, bools))
@@ -89,9 +89,10 @@ def _points_along(start: Point, variable: Variable, box: Box, expression: Expres
 def _jump_between(
     all_cases: Sequence[ConstrainedValue], expression: Expression, start: Point, end: Point, variable: Variable
 ) -> Jump | None:
-    """Find the border between points of two cases by bisection, and return the jump there.
+    """Find the border between two points by bisection, and return the jump there.
 
-    Returns None if the value does not clearly jump there.
+    ``start`` and ``end`` lie in different cases and differ only in ``variable``. Returns None if the
+    value does not clearly jump at the border.
     """
     low, high = start[variable], end[variable]
     left, right = _case_at(all_cases, start), _case_at(all_cases, end)

@@ -1,7 +1,8 @@
-"""Quotients of polynomials with exact coefficients, to compare expressions and find their signs.
+"""Convert expressions to quotients of polynomials, to compare them and find their signs exactly.
 
 A polynomial maps monomials to coefficients. A monomial is a set of (factor, exponent) pairs. A
-factor is a signal, a param, or an expression whose operator is not one of ``+ - * / ^``.
+factor is a signal, a param, or an expression such as ``sqrt(x)``, whose operator is not one of
+``+ - * / ^``.
 """
 
 from __future__ import annotations
@@ -38,9 +39,9 @@ class Quotient:
 
 
 def quotient(expression: Expression) -> Quotient:
-    """Return an expression without ``when`` as a quotient of polynomials, its normal form.
+    """Return the normal form of an expression without ``when``: a quotient of polynomials.
 
-    The result is cached for the duration of a check. Raises TooLargeError.
+    The result is cached until the active :func:`step_limit` ends. Raises TooLargeError.
     """
     work = current_budget()
     if work is None or not isinstance(expression, Op):
@@ -72,7 +73,7 @@ def _quotient(expression: Expression) -> Quotient:
 
 
 def exact_decimal(value: float) -> Fraction:
-    """Return the decimal number that was written: 0.1 is one tenth."""
+    """Return the decimal number that a float prints as, exactly: 1/10 for 0.1."""
     return Fraction(repr(float(value)))
 
 
@@ -82,10 +83,10 @@ def constant(value: Fraction | int) -> Polynomial:
 
 
 def polynomial_bound(polynomial: Polynomial, region: ConstrainedBox) -> Interval:
-    """Return an interval that contains the polynomial's values on a region.
+    """Return an interval that contains all values of a polynomial on a region.
 
-    Raises UndefinedError if a factor may be undefined there, and TooLargeError if a coefficient
-    does not fit into a float.
+    Raises UndefinedError if a factor may be undefined on the region, and TooLargeError if a
+    coefficient does not fit into a float.
     """
     total = _sum_of_terms(polynomial, region)
     for expression, known in region.known.items():

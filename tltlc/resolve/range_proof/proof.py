@@ -3,7 +3,7 @@
 There are three methods, cheapest first:
 
 - interval arithmetic on the whole region;
-- the exact sign of the difference between the expression, or a ratio in it, and a bound;
+- the exact sign of the expression minus a bound, also for quotients inside the expression;
 - interval arithmetic on smaller and smaller parts of the region.
 """
 
@@ -36,7 +36,7 @@ class ProofGoal:
 
 
 def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[ProofGoal]:
-    """Try to prove each goal on the region ``whole``, with bounded work; return the unproved ones."""
+    """Try to prove each goal on the region ``whole``, within a limited number of steps; return the unproved goals."""
     nodes = sum(size(goal.value, _NODES_OF_ALL) for goal in goals)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
     open_goals = []
@@ -49,9 +49,10 @@ def unproved_goals(goals: Sequence[ProofGoal], whole: ConstrainedBox) -> list[Pr
 
 
 def proves_within(value: Expression, region: ConstrainedBox, low: float, high: float, parts: int = MOST_PARTS) -> bool:
-    """Whether the value is provably defined and in ``[low, high]``, up to TOLERANCE, on the region.
+    """Whether ``value`` is provably defined and in ``[low, high]``, up to TOLERANCE, on the whole region.
 
-    ``parts`` limits the number of parts into which the region is divided.
+    False means only that no proof was found. ``parts`` is the most parts into which the region is
+    divided.
     """
     if holds_at_once(value, region, low, high):
         return True
@@ -63,9 +64,9 @@ def proves_within(value: Expression, region: ConstrainedBox, low: float, high: f
 
 
 def holds_at_once(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
-    """Whether one interval evaluation proves that the value is defined and in ``[low, high]``.
+    """Whether interval arithmetic on the undivided region proves that the value is in ``[low, high]``.
 
-    The evaluation is on the whole region, and the bounds have a margin of TOLERANCE.
+    The value must also be defined. It may be outside by TOLERANCE, because rounding may add as much.
     """
     try:
         return is_within(bound(value, region), low, high)
@@ -88,9 +89,10 @@ def _is_defined(value: Expression, region: ConstrainedBox) -> bool:
 
 
 def _with_ratios(value: Expression, region: ConstrainedBox) -> ConstrainedBox:
-    """Return the region with proved bounds on each quotient in ``value``.
+    """Return the region with proved bounds on each quotient in ``value``, such as ``x / (x + 1) <= 1``.
 
-    A lower bound is 0 or -1, and an upper bound 0 or 1. A bound that cannot be proved is infinite.
+    Only 0 and -1 are tried as lower bounds, and 0 and 1 as upper bounds. If no proof succeeds, the
+    bound is infinite.
     """
     known = dict(region.known)
     for node in _ratios(value):
@@ -110,9 +112,10 @@ def _ratios(value: Expression) -> Iterator[Op]:
 
 
 def _proves_by_sign(value: Expression, region: ConstrainedBox, low: float, high: float) -> bool:
-    """Whether signs prove that the value is in bounds.
+    """Whether exact signs prove that the value is in ``[low, high]``.
 
-    For ``n/d`` with d of one sign, the signs of ``n - low * d`` and ``n - high * d`` decide.
+    The value is written as a quotient ``n / d``. If d has only one sign on the region, the signs of
+    ``n - low * d`` and ``n - high * d`` decide.
     """
     from tltlc.resolve.range_proof.normal_form import TooLargeError, add, exact_decimal, polynomial_bound, quotient
 

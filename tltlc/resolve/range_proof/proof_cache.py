@@ -1,8 +1,9 @@
 """Cache the results of proofs about the ranges of predicates, because importing sympy is slow.
 
 Sympy is imported only for a proof whose result is not in the cache. The cache is a file in the
-folder ``$TLTLC_CACHE_DIR``; if this is not set, in the user's cache folder; if it is empty, there is
-no cache. A file that cannot be read or written is ignored.
+folder that the environment variable ``TLTLC_CACHE_DIR`` names, or in the user's cache folder if the
+variable is not set. If the variable is empty, there is no cache. A file that cannot be read or
+written is ignored.
 """
 
 from __future__ import annotations
@@ -60,9 +61,10 @@ def answer(question: str, compute: Callable[[], Answer]) -> Answer:
 
 
 def question(kind: str, expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float) -> str:
-    """Return a text that identifies what is to be proved.
+    """Return a text that identifies what is to be proved, the key of the cache.
 
-    Two predicates have the same text only if they differ in nothing but names.
+    ``kind`` is ``range`` or ``continuity``. The text does not contain the names of signals and params,
+    so predicates that differ only in these names share an answer.
     """
     names = {variable: f"{type(variable).__name__[0].lower()}{n}" for n, variable in enumerate(variables(expression))}
     ranges = [
@@ -76,7 +78,7 @@ def question(kind: str, expression: Expression, box: Box, bools: frozenset[Varia
 def cache_folder() -> Path | None:
     """Return the folder of the user's cached answers, or None if answers are not stored.
 
-    They are not stored if ``TLTLC_CACHE_DIR`` is set but empty, or if the user has no home folder.
+    Answers are not stored if ``TLTLC_CACHE_DIR`` is set but empty, or if the user has no home folder.
     """
     chosen = os.environ.get("TLTLC_CACHE_DIR")
     if chosen is not None:
@@ -92,7 +94,7 @@ def cache_folder() -> Path | None:
 
 
 def _read(path: Path) -> dict[str, Answer]:
-    """Return the answers in a file; none if it is missing, damaged or of another version."""
+    """Return the answers in a file, by key; an empty dict if the file is missing, damaged or of another version."""
     try:
         content = load(path, REPORT)
     except (OSError, ValueError, RecursionError):

@@ -21,11 +21,11 @@ _FAR_AWAY = 1e6
 
 @record
 class ConstrainedBox:
-    """A region: the points of a box where some expressions lie within known bounds.
+    """A region: the points of a box at which certain expressions lie within known bounds.
 
-    A box has an interval for each signal and param. ``known`` has the bounds of the expressions.
-    Those in ``nonzero`` are 0 nowhere in the region. A region may be empty without being recognised
-    as empty.
+    ``box`` maps each signal and param to its interval. ``known`` maps expressions to their bounds. The
+    expressions in ``nonzero`` are 0 nowhere in the region. A region can be empty although nothing here
+    shows it.
     """
 
     box: Box
@@ -33,7 +33,7 @@ class ConstrainedBox:
     nonzero: frozenset[Expression] = frozenset()
 
     def constrain(self, constraints: Iterable[Constraint]) -> ConstrainedBox | None:
-        """Return the part of the region where the constraints hold, with its box narrowed to it.
+        """Return the part of the region where the constraints hold, with a box as small as can be derived.
 
         Returns None if this part is provably empty.
         """
@@ -51,9 +51,9 @@ class ConstrainedBox:
         return ConstrainedBox(self.box, known, frozenset(nonzero)).narrow()
 
     def narrow(self) -> ConstrainedBox | None:
-        """Return the same region with a smaller box, as far as the known bounds allow.
+        """Return the same region with a smaller box: bounds on ``x - y`` may narrow the intervals of x and y.
 
-        Returns None if the bounds exclude each other.
+        Returns None if no point of the box satisfies all known bounds.
         """
         box = dict(self.box)
         narrowing = _Narrowing(box)
@@ -86,7 +86,7 @@ class ConstrainedBox:
 
 
 def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
-    """Return the constraints, and for each two on ``a - b`` and ``b - c`` also one on ``a - c``.
+    """Return the constraints, and also ``a - c >= 0`` for each two ``a - b >= 0`` and ``b - c >= 0``.
 
     Interval arithmetic does not derive the third constraint from the other two.
     """
@@ -269,9 +269,9 @@ def _require_defined(bounds: Interval | None) -> Interval:
 
 
 def _length(side: Interval) -> float:
-    """Return the length of a side on a logarithmic scale.
+    """Return the length of a side of a box on a logarithmic scale, to choose the side to cut.
 
-    It says how much a cut across the side may help.
+    Unbounded sides have a finite length, too.
     """
     return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
 

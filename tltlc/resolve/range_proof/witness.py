@@ -1,4 +1,4 @@
-"""Search for points where a range is wrong.
+"""Search for points where the value of an expression leaves its declared range.
 
 The search is deterministic, and its work is bounded.
 """
@@ -62,12 +62,12 @@ def _cost(expression: Expression) -> int:
 def find_wrong_point(
     expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
 ) -> SamplePoint | None:
-    """Return a point of the box where the value is undefined or clearly outside ``[low, high]``.
+    """Search a box for a point where the value is undefined or clearly outside ``[low, high]``.
 
     Returns None if there is no such point among those tried. Simple points are tried first. A later
     point replaces an earlier one only if it is much worse: undefined, or much farther outside.
-    ``bools`` are the variables that are only 0 or 1. Raises OutOfWorkError if no point is found
-    within the step limit.
+    ``bools`` are the variables that are only 0 or 1. Raises OutOfWorkError if the step limit ends
+    the search before it finds a point.
     """
 
     def excess(witness: SamplePoint) -> float:
@@ -139,26 +139,28 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
 
 
 def _constants(expression: Expression) -> Iterator[float]:
-    """Yield the constants in an expression, as values to try for its variables: cases may meet there.
+    """Yield the constants in an expression as values to try for its variables, since cases may meet there.
 
-    LEAST is left out: it is the least robustness of a comparison, and no case begins or ends there.
+    The constant LEAST is left out: it comes from scaling comparisons, and no case begins or ends there.
     """
     return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
 
 
 def _fraction(number: int, position: int) -> float:
-    """Return the term ``number`` of a sequence of numbers spread over (0, 1).
+    """Return a number in [0, 1): term ``number`` of a sequence that is spread evenly.
 
-    It is an additive recurrence modulo 1, whose step depends on ``position``.
+    The sequence is an additive recurrence modulo 1. Its step depends on ``position``, the index of the
+    variable, so that each variable has another sequence.
     """
     stride: float = 0.6180339887498949 ** (1 + position / 3)
     return (0.5 + number * stride) % 1.0
 
 
 def _value_at_fraction(side: Interval, fraction: float, is_bool: bool) -> float:
-    """Return the value at a fraction of a range.
+    """Return the value at a fraction of a range: 2.5 for 0.25 of [0, 10].
 
-    An unbounded range is mapped so that most values lie near its finite end or near 0.
+    ``fraction`` is in [0, 1). An unbounded range is mapped so that most values lie near its finite end
+    or near 0.
     """
     low, high = side
     if is_bool:

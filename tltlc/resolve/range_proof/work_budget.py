@@ -17,9 +17,9 @@ class OutOfWorkError(Exception):
 
 
 class ProofBudget:
-    """The remaining steps of a :func:`step_limit`, and a cache that lives as long as the limit is active.
+    """The number of steps that remain of a :func:`step_limit` (``left``), and a cache (``memo``).
 
-    ``left`` is the number of steps that remain. ``memo`` is the cache.
+    The cache lives as long as the limit is active.
     """
 
     __slots__ = ("left", "memo")
@@ -48,10 +48,10 @@ def spend(steps: int = 1) -> None:
 
 @contextmanager
 def step_limit(steps: int, *, counts_outside: bool = True) -> Iterator[ProofBudget]:
-    """Limit the ``with`` block to this many steps.
+    """Limit the ``with`` block to this many steps; :func:`spend` raises OutOfWorkError beyond them.
 
     If ``counts_outside``, the steps also count against the enclosing limit, and the block gets no
-    more than that limit has left.
+    more steps than the enclosing limit has left. Yields the budget of the block.
     """
     outer = _CURRENT.get() if counts_outside else None
     allowed = steps if outer is None else min(steps, max(0, outer.left))
