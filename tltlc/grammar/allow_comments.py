@@ -28,7 +28,7 @@ _BRACE: Final = re.compile(r"(?:\s|//[^\n]*\n)*\{")
 
 @record
 class Allowance:
-    """A diagnostic code that a comment silences. A comment with two codes gives two allowances.
+    """A diagnostic code that a comment allows. A comment with two codes gives two allowances.
 
     ``span`` is the place of the code in the source text. ``statements`` are the spans of the
     clauses and declarations that the comment applies to; None means the whole file.
@@ -61,11 +61,11 @@ def is_allowing(comment: Comment) -> bool:
 
 
 def commented_spans(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
-    """Return the comments that allow codes, each with the spans of the statements it applies to.
+    """Return the comments that allow codes, each with the spans of the statements that it applies to.
 
     Statements are clauses and declarations. None in place of the spans means the whole file.
     Comments that apply to the same line share one tuple object, so callers can group the comments
-    by the identity of their tuples.
+    by the ``id()`` of their tuples.
     """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:
@@ -109,13 +109,13 @@ def _statements_by_line(module: Module) -> dict[int, dict[Span, None]]:
 
 
 def _statement_parts(module: Module) -> Iterator[tuple[Span, Span]]:
-    """Yield pairs of spans: a statement, and a part of it.
+    """Yield pairs of spans: a statement, and a part of the statement.
 
-    A statement is a clause or a declaration. A comment that applies to a line of a part applies to
-    the statement.
+    A statement is a clause or a declaration. A comment beside any part applies to the statement.
 
-    A block has two parts, its head and its closing brace. A declaration of several entities has one
-    part, which ends after the first name. Each further name is a statement of its own.
+    A spec in braces has two parts, its head and its closing brace; its clauses are statements of their
+    own. ``entity a, b`` is two statements: ``entity a`` and ``b``. Any other statement is its only
+    part.
     """
     for declaration in module.declarations:
         span = declaration.span

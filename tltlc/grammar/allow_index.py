@@ -1,6 +1,6 @@
-"""Find the diagnostics that comments silence, and the comments that have silenced a diagnostic.
+"""Find the diagnostics that ``allow`` comments silence, and the comments that have silenced one.
 
-:mod:`tltlc.grammar.allow_comments` describes the comments.
+:mod:`tltlc.grammar.allow_comments` describes the comments, such as ``// tltlc: allow TLT0421``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def drop_silenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> 
 
 
 class AllowIndex:
-    """The codes that comments in some modules allow. It remembers which of them have silenced a diagnostic.
+    """The codes that comments in some modules allow, and which of these codes have silenced a diagnostic.
 
     The comments are indexed by the clauses and declarations that they apply to, so that a lookup
     does not search all comments.
@@ -45,7 +45,10 @@ class AllowIndex:
         return file.allowances if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Return whether a comment silences a diagnostic; mark each comment that silences it as used."""
+        """Return whether a comment silences a diagnostic, judged by its code and first label.
+
+        Mark each comment that silences the diagnostic as used.
+        """
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)
@@ -75,7 +78,7 @@ class _FileAllowances:
         self._statements = _StatementSpans(statement for statement in self._by_statement if statement is not None)
 
     def silences(self, code: str, offset: int) -> bool:
-        """Return whether a comment allows a code at an offset; mark each comment that allows it as used."""
+        """Return whether a comment allows a code at an offset of the file; mark all such comments as used."""
         # The end of a statement is inclusive: an offset right after its last character belongs to it, too.
         statements = {None, *self._statements.spans_at(offset), *self._statements.spans_at(offset - 1)}
         # A list, not a generator: `any` must not stop before all comments are marked.
@@ -83,7 +86,7 @@ class _FileAllowances:
         return any(is_allowed)
 
     def _allow(self, code: str, statement: Span | None) -> bool:
-        """Return whether a comment allows a code in a statement; mark each comment that allows it as used.
+        """Return whether a comment allows a code in a statement; mark all such comments as used.
 
         The statement None means the whole file.
         """
@@ -97,9 +100,9 @@ class _FileAllowances:
 
 
 class _StatementSpans:
-    """Spans of statements, which can be looked up by an offset that they contain.
+    """The spans of statements, searched by an offset in the text.
 
-    Of two spans that overlap, one contains the other.
+    Two spans may overlap only if one contains the other.
     """
 
     def __init__(self, spans: Iterable[Span]) -> None:

@@ -49,9 +49,9 @@ _EXPECT_HELP = f"the form is {TEST_ITEMS['expect']}"
 class Builder:
     """Builds the syntax tree of one file, and collects errors in ``diagnostics``.
 
-    The parser calls ``make_NAME`` for the rule NAME of the grammar. Each method takes the span of
-    the text that the rule matched, then the values of the rule's parts. The value of an absent part
-    is None.
+    The parser calls the method ``make_NAME`` when it has read the rule NAME of the grammar. Each method
+    takes the span of the text that the rule matched, then the values of the rule's parts: tokens, and
+    what the methods of other rules returned. The value of an absent optional part is None.
     """
 
     def __init__(self, source: SourceFile, docs: dict[int, str]) -> None:
@@ -260,7 +260,7 @@ class Builder:
 
 
 def _convert_inf(limit: Expr) -> Expr:
-    """Return an end of a range, with the name ``inf`` (or ``-inf``) converted to a number."""
+    """Return an end of a range. If it is the name ``inf`` or ``-inf``, convert it to a number."""
     if isinstance(limit, tree.NameExpr) and limit.name == "inf":
         return tree.NumberExpr(inf, None, limit.span)
     if isinstance(limit, tree.Unary) and limit.op == "-":

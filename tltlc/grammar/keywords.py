@@ -38,10 +38,10 @@ TEST_ITEMS: Final = {
 }
 
 CASES: Final = "write cases as `when x > 3: 1 otherwise: -1`"
-"""The help for a case distinction that is written in the syntax of another language."""
+"""The help text for a case distinction in the syntax of another language, such as ``a ? b : c``."""
 
 OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
-"""Maps clause keywords to the operators that mean the same in a formula; `require` needs none."""
+"""Maps clause keywords to the operators that mean the same inside a formula; `require` needs no operator."""
 
 CONDITIONS: Final = ("if", "when", "whenever", "while")
 """English words that begin a condition."""
@@ -116,10 +116,10 @@ _OTHER_WORDS: Final = frozenset(
 
 @lru_cache(maxsize=1000)
 def closest_word(word: str, known: tuple[str, ...]) -> str | None:
-    """Return the word of ``known`` that ``word`` equals or misspells; the case of ``word`` does not matter.
+    """Return the word of ``known`` that ``word`` equals or misspells, ignoring capital letters.
 
-    None if ``word`` resembles no known word, or if it is one of the English words that only look
-    like a misspelling (``_OTHER_WORDS``).
+    Return None if ``word`` resembles no known word, or if it is one of ``_OTHER_WORDS``: English words
+    that only look like a misspelling.
     """
     word = word.lower()
     return None if word in _OTHER_WORDS else likely_name(word, known)

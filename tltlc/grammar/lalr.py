@@ -1,4 +1,4 @@
-"""The LALR(1) parser. It turns tokens into a tree, with the tables that lark built."""
+"""The LALR(1) parser: it turns tokens into a syntax tree, using tables that lark has built."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class UnexpectedTokenError(Exception):
 
 
 def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: object) -> Any:
-    """Parse the tokens as the nonterminal ``start``, and return the builder's value for it.
+    """Parse the tokens as the nonterminal ``start``, and return the value that the builder makes of them.
 
-    The last token must be ``$END``. A reduction by a rule with the action ``name`` calls
+    The last token must be ``$END``. When the parser has read a rule with the action ``name``, it calls
     ``builder.make_name(span, *values)`` with the values that the rule keeps. If the builder has no
-    such method, the value of the reduction is the list of these values.
+    such method, the value of the rule is the list of these values.
 
     Raises:
         UnexpectedTokenError: a token does not fit the grammar.
@@ -71,10 +71,9 @@ def run(tables: ParserTables, start: str, tokens: Sequence[Token], builder: obje
 
 
 def stack_after(tables: ParserTables, start: str, tokens: Sequence[Token]) -> list[int]:
-    """Return the stack of states that the parser has after it read ``tokens``.
+    """Return the stack of states of the parser after ``tokens``, the beginning of a text of ``start``.
 
-    The tokens are the beginning of a text of the nonterminal ``start``. The parser may still reduce
-    the stack when it sees the next token.
+    The parser may still reduce the stack when it sees the next token.
     """
     try:
         run(tables, start, [*tokens, Token(BAD, "", 0, 0)], None)
@@ -104,10 +103,10 @@ def _accepts(tables: ParserTables, states: list[int], terminal: str) -> bool:
 
 
 def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], index: int) -> str:
-    """Return the terminal of a token that the parser reads in ``state``.
+    """Return the terminal of the token at ``index``, which the parser reads in ``state``.
 
-    An unreserved word, such as ``within``, is a name where the grammar allows no such keyword, and
-    a keyword where it allows no name. Where it allows both, the word is a keyword if a number
+    For most tokens, this is the token's type. An unreserved word, such as ``within``, can be a keyword
+    or a name, and the grammar decides which. Where it allows both, the word is a keyword if a number
     follows (``F within 20 steps p``).
     """
     token = tokens[index]
@@ -120,7 +119,11 @@ def _terminal_of(tables: ParserTables, state: int, tokens: Sequence[Token], inde
 
 
 def _kept_values(values: list[Any], keep: tuple[int, ...]) -> list[Any]:
-    """Return the values that a rule keeps, with absent parts as None and lists spliced in."""
+    """Return the values that a rule keeps, given the values of its parts.
+
+    :class:`~tltlc.grammar.tables.GrammarRule` explains ``keep``. An absent part is None. The items of
+    a list are returned one by one; if the list comes first, it is extended in place.
+    """
     # Extend a growing list in place: copying it each time would take quadratic time.
     kept: list[Any] = []
     for place, position in enumerate(keep):

@@ -19,7 +19,10 @@ BAD: Final = "BAD"
 
 
 class Token(NamedTuple):
-    """A piece of text with its terminal, ``type``, and its half-open range of character offsets."""
+    """A word, number or sign of the text. ``type`` is its terminal in the grammar, such as ``NAME``.
+
+    ``start`` and ``end`` are a half-open range of character offsets.
+    """
 
     type: str
     text: str
@@ -33,7 +36,7 @@ class Token(NamedTuple):
 
 
 class Tokens(NamedTuple):
-    """The tokens of a text, the last of type ``$END``, and its comments.
+    """The tokens of a text, which end with a token of type ``$END``, and the comments of the text.
 
     ``docs`` maps the offset of a token to the documentation comment directly before it.
     """
@@ -44,7 +47,7 @@ class Tokens(NamedTuple):
 
 
 def tokenize(text: str) -> Tokens:
-    """Split a text into tokens; unreadable parts become ``BAD`` tokens.
+    """Split a text into tokens; parts that the language does not know become tokens of type ``BAD``.
 
     Stops after :data:`MAX_TOKENS` tokens and then adds ``$END``. So a result with more than
     :data:`MAX_TOKENS` tokens means that the text is too long.
@@ -87,7 +90,11 @@ def tokenize(text: str) -> Tokens:
 
 @lru_cache(maxsize=1)
 def _pattern() -> re.Pattern[str]:
-    """Return one pattern for all tokens; the name of the group that matched last is the token's type."""
+    """Return one regular expression for all tokens.
+
+    The last group that matched has the name of the token's type, ``SIGN`` for a sign. A character that
+    matches no group is ``BAD``.
+    """
     tables: ParserTables = load()
     patterns = tables.patterns
     signs = "|".join(re.escape(sign) for sign in sorted(tables.signs, key=len, reverse=True))

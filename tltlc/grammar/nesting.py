@@ -1,4 +1,4 @@
-"""Limits on how deep a text may nest, so that all later stages can walk its tree recursively."""
+"""Limit how deep the expressions of a text may nest, so that all later stages can walk them recursively."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _CLOSING = {"RPAR", "RSQB", "RBRACE"}
 
 
 def bracket_depth_error(source: SourceFile, tokens: Sequence[Token]) -> Diagnostic | None:
-    """Return an error for the first bracket that nests too deep, or None."""
+    """Return an error for the first bracket that makes more than MAX_BRACKETS open at once, or None."""
     depth = 0
     for token in tokens:
         if token.type in _OPENING:
@@ -41,7 +41,7 @@ def bracket_depth_error(source: SourceFile, tokens: Sequence[Token]) -> Diagnost
 
 
 def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic | None:
-    """Return an error if an expression nests too deep, else None; does not recurse."""
+    """Return an error if the tree of an expression is deeper than MAX_DEPTH, else None; does not recurse."""
     level: list[Expr] = [expression]
     for _ in range(MAX_DEPTH):
         level = [child for parent in level for child in children(parent)]
@@ -55,9 +55,10 @@ def expression_depth_error(source: SourceFile, expression: Expr) -> Diagnostic |
 def drop_deep_declarations(
     source: SourceFile, declarations: Iterable[Declaration]
 ) -> tuple[tuple[Declaration, ...], list[Diagnostic]]:
-    """Drop the declarations, and the clauses of specs, that nest too deep.
+    """Drop the declarations, and the clauses of specs, with an expression that nests too deep.
 
-    Return what is left, and an error for each declaration or clause that was dropped.
+    Return the other declarations, and an error for each declaration or clause that was dropped. A spec
+    whose clauses are all dropped is dropped, too.
     """
     kept: list[Declaration] = []
     diagnostics: list[Diagnostic] = []
@@ -81,7 +82,7 @@ def drop_deep_declarations(
 def drop_deep_clauses(
     source: SourceFile, clauses: Iterable[tree.Clause]
 ) -> tuple[tuple[tree.Clause, ...], list[Diagnostic]]:
-    """Drop the clauses that nest too deep; return the others, and an error for each dropped one."""
+    """Drop the clauses whose formulas nest too deep; return the other clauses, and an error for each dropped clause."""
     kept: list[tree.Clause] = []
     diagnostics: list[Diagnostic] = []
     for clause in clauses:

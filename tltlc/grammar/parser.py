@@ -1,6 +1,6 @@
 """Parse a .tltl text into its syntax tree.
 
-The parser reads a text without errors in one run. It reads a text with errors again, declaration by
+A text without errors is parsed in one run. If this fails, the text is parsed again, declaration by
 declaration and clause by clause (:mod:`tltlc.grammar.mistakes.recovery`), so that each broken part is
 reported once.
 """
@@ -61,7 +61,7 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
 
 
 def is_too_large(source: SourceFile) -> bool:
-    """Whether a text is larger than a file may be, or has too many tokens."""
+    """Whether a text has more bytes than a source file may have, or more tokens than the parser accepts."""
     if len(source.text.encode(errors="replace")) > SOURCE.size:
         return True
     # Each token has at least one character, so most texts need not be tokenized.

@@ -27,11 +27,11 @@ STARTS = ("module", "declaration", "clause", "test_item", "expression")
 class GrammarRule:
     """A rule of the grammar, which says how the parser makes one value for the nonterminal ``origin``.
 
-    The parser pops ``size`` values from its stack. It passes those in ``keep`` to the builder's
-    method ``make_ACTION``, where ACTION is the text in ``action``. An entry of ``keep`` is the
-    position of a popped value, ``-1`` for an absent optional part, or ``-2 - i`` for a list at
-    position i, whose items are passed one by one. If ``action`` is empty, the rule returns its only
-    kept value instead. If it is ``*``, the rule returns the list of its kept values.
+    The parser pops ``size`` values from its stack. It passes those that ``keep`` selects to the
+    builder's method ``make_ACTION``, where ACTION is the text in ``action``. An entry of ``keep`` is
+    the position of a popped value, ``-1`` for an absent optional part (None), or ``-2 - i`` for a list
+    at position i, whose items are passed one by one. There are two special actions: an empty text
+    returns the only kept value, and ``*`` returns the list of kept values.
     """
 
     origin: str
@@ -44,12 +44,12 @@ class GrammarRule:
 class ParserTables:
     """The tables of the parser and the lexer.
 
-    ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce).
-    ``gotos[state]`` maps a nonterminal to the next state. ``words`` and ``signs`` map each spelling
-    to its terminal. ``soft`` does so for the unreserved words, which can be names, too. ``units``
-    are the spellings of units, longest first. ``starts`` and ``ends`` map each nonterminal of
-    ``STARTS`` to its first and its accepting state. ``patterns`` maps the other terminals, such as
-    ``NAME``, to regular expressions.
+    ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce), where
+    ``rule`` is an index of ``rules``. ``gotos[state]`` maps a nonterminal to the next state.
+    ``words`` and ``signs`` map each spelling of a reserved word or sign to its terminal. ``soft`` maps
+    the words that can also be names, such as ``within``. ``units`` are the spellings of units, longest
+    first. ``starts`` and ``ends`` map each nonterminal of ``STARTS`` to its first and its accepting
+    state. ``patterns`` maps the other terminals, such as ``NAME``, to regular expressions.
     """
 
     rules: tuple[GrammarRule, ...]
@@ -77,7 +77,10 @@ def load() -> ParserTables:
 
 
 def build(grammar: bytes) -> dict[str, Any]:
-    """Return the tables as plain data for JSON; raises lark's GrammarError if the grammar has a conflict."""
+    """Build the tables of a grammar with lark, and return them as plain data for JSON.
+
+    Raises lark's GrammarError if the grammar has a conflict.
+    """
     from lark import Lark
     from lark.lexer import Lexer
 
@@ -133,7 +136,7 @@ def _breadth_first(table: Any) -> dict[int, int]:
 
 
 def _action(rule: Any) -> tuple[str, list[int]]:
-    """Return the builder's method for a lark rule, and which values it keeps (see :class:`GrammarRule`)."""
+    """Return the fields ``action`` and ``keep`` of the :class:`GrammarRule` for a rule of lark."""
     absent = [len(run) for run in "".join(str(int(b)) for b in rule.options.empty_indices).split("0")]
     if not rule.options.empty_indices:
         absent = [0] * (len(rule.expansion) + 1)
@@ -161,7 +164,10 @@ def _distinct(rows: list[dict[str, int]]) -> list[dict[str, int]]:
 
 
 def _spellings(terminals: Any) -> dict[str, Any]:
-    """Return the spellings of all terminals that are lists of fixed texts, and the patterns of the others."""
+    """Return the fields of :class:`ParserTables` that the lexer uses, from ``words`` to ``patterns``.
+
+    A terminal that is a list of fixed texts has spellings; any other terminal has a pattern.
+    """
     words: dict[str, str] = {}
     signs: dict[str, str] = {}
     soft: dict[str, str] = {}
@@ -182,7 +188,10 @@ def _spellings(terminals: Any) -> dict[str, Any]:
 
 
 def _texts(pattern: Any) -> list[str] | None:
-    """Return the texts that a terminal's pattern lists, or None if it is no list of texts."""
+    """Return the texts that a terminal's pattern lists: ``["G", "always"]`` for ``(?:G|always)``.
+
+    Return None if the pattern is no list of fixed texts.
+    """
     if pattern.type == "str":
         return [pattern.value]
     listed = re.fullmatch(r"\(\?:(.*)\)", pattern.value, re.DOTALL)

@@ -1,4 +1,6 @@
-"""Check the operands of ``then``: an operand with two possible readings needs brackets (TLT0102).
+"""Require brackets around an operand of ``then`` that could be read in two ways (TLT0102).
+
+An example is ``F a then b``, which may mean ``(F a) then b`` or ``F (a then b)``.
 
 Outside ``reach``, an operand must be an atom, a negated atom or in brackets. In ``reach``, ``then``
 binds loosest, so only an operand that begins with a temporal operator needs brackets.
@@ -76,7 +78,7 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
 
 
 def _leading_operator(operand: Expr) -> tree.Unary | None:
-    """Return the temporal operator that begins an operand, or None.
+    """Return the temporal operator at the beginning of an operand, also after ``not``; None without one.
 
     An operator in brackets does not count.
     """
@@ -131,9 +133,9 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
     ``F a then b``, the fixes give ``(F a) then b`` and ``F (a then b)``. If other operands of the
     sequence lack brackets, the first fix puts brackets around them, too.
 
-    There is no fix if an operand without brackets after ``then`` says by itself at which step it
-    holds, such as ``next a``. There is also no fix if brackets around the operand are the only fix
-    and would lose the order of the operands.
+    In two cases there is no fix. First, an operand without brackets after ``then`` says by itself at
+    which step it holds, as ``next a`` does. Second, brackets around the operand are the only possible
+    fix, but would lose the order: ``b`` before ``a`` satisfies ``(F a) then b``.
     """
     operand = sequence[position]
     bare = [element for element in sequence if _lacks_brackets(element, lenient)]
@@ -155,10 +157,10 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
 
 
 def _names_its_step(operand: Expr) -> bool:
-    """Whether an operand says by itself at which step it holds.
+    """Whether an operand begins with a temporal operator, perhaps after `not`, and is more than `F a`.
 
-    Such an operand begins with a temporal operator, perhaps after `not`, and is more than `F a`.
-    Examples are `next a`, `always a` and `F a & b`.
+    Examples are `next a`, `always a` and `F a & b`. Such an operand says by itself at which step it
+    holds.
     """
     leading = _leading_operator(operand)
     return leading is not None and (leading.op != "F" or leading is not operand)

@@ -1,8 +1,8 @@
 """The nodes of the syntax tree: frozen records, each with its span in the source text.
 
 Formulas and arithmetic are both expressions, since an LALR(1) parser that reads an opening bracket
-cannot know which of them follows; :mod:`tltlc.resolve` finds the types. Each operator is stored
-under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
+cannot know whether a formula or arithmetic follows; :mod:`tltlc.resolve` finds the types. Each
+operator is stored under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
 ``+ - * / ^ < <= > >=``.
 
 The field ``doc`` has the text of the ``///`` comment before a declaration or clause; it is empty
@@ -38,7 +38,7 @@ class Constant:
 
 @record
 class NameExpr:
-    """A name without brackets after it; may contain dots."""
+    """A name without arguments, such as ``alive``; it may contain dots: ``st.near``."""
 
     name: str
     span: Span
@@ -55,7 +55,7 @@ class Argument:
 
 @record
 class CallExpr:
-    """A call ``name(arguments)`` of a predicate, a signal of an entity, a ``let`` or a function."""
+    """A call ``name(arguments)`` of a predicate, a signal with parameters, a ``let`` or a function."""
 
     name: str
     arguments: tuple[Argument, ...]
@@ -143,11 +143,10 @@ Expr = Union[NumberExpr, Constant, NameExpr, CallExpr, Unary, BinaryExpr, GroupE
 
 @record
 class Import:
-    """An import, such as ``import stealth (near)``, ``import stealth as st``,
-    ``import "file.tltl"``.
+    """An import: ``import stealth (near)``, ``import stealth as st`` or ``import "file.tltl"``.
 
-    ``target`` is the name or the path that is imported. ``names`` are the names in brackets, None
-    if there are no brackets.
+    ``target`` is the name of a library, or a path if ``is_path``. ``names`` are the names in brackets;
+    None if there are no brackets. ``alias`` is the name after ``as``, or None.
     """
 
     target: str
@@ -242,7 +241,7 @@ class PredicateDecl:
 
 @record
 class LetDecl:
-    """A definition: ``let name(parameters) = formula``."""
+    """A named formula: ``let name(parameters) = formula``, or ``let name = formula``."""
 
     name: str
     parameters: tuple[Parameter, ...]
@@ -296,10 +295,10 @@ class SpecDecl:
 
 @record
 class TestStep:
-    """A line of a test with a sample, to be repeated ``times`` times.
+    """A line of a test that gives a sample: ``step 3x alive, not near(s1)``.
 
-    An example is ``step 3x alive, not near(s1)``. ``times_span`` is the place of the number ``3``;
-    None if the line has no number.
+    The sample is repeated ``times`` times. ``times_span`` is the place of the number ``3``; None if the
+    line has no number, and ``times`` is 1. ``atoms`` are the expressions after it.
     """
 
     times: int
@@ -326,7 +325,7 @@ class TestExpect:
 
 @record
 class TestDecl:
-    """A test: ``test "…" for SPEC { step … expect … }``."""
+    """A test: ``test "title" for SPEC { step … expect … }``."""
 
     title: str
     spec: NameExpr

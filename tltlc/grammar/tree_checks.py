@@ -27,7 +27,7 @@ _BOUND_HELP: Final = {
 
 
 def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
-    """Yield the errors in declarations that the parser accepted."""
+    """Yield the errors in declarations that the parser accepted: in whole specs, clauses and expressions."""
     for declaration in declarations:
         if isinstance(declaration, tree.SpecDecl):
             yield from _check_spec(source, declaration)

@@ -16,7 +16,7 @@ _SHORT: Final = 3
 """The greatest length of a short word.
 
 Most short words are one letter away from another word. So only two exchanged neighbours, or a
-doubled letter, count as a typo.
+doubled letter, count as a typo in a short word.
 """
 _LONG: Final = 7
 """The fewest letters of a word that may have two typos."""
@@ -30,10 +30,10 @@ _NEGATING: Final = ("no", "nt")
 def likely_name(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that ``name`` equals or most likely misspells, or None.
 
-    The choices, in this order, are:
+    The result is the first of these that exists:
 
-    - the first known name that differs only in capital letters and underscores;
-    - the first known name that ends with a dot and ``name``;
+    - the first known name that differs at most in capital letters and underscores;
+    - the first known name that ends with a dot and ``name``, such as ``st.near`` for ``near``;
     - the known name with the fewest typos, if no other name has as few. With more than 2,000 known
       names, this choice is left out.
     """
@@ -71,9 +71,9 @@ def _plain(name: str) -> str:
 def _count_typos_in_parts(name: str, known: str) -> int | None:
     """Return how many typos turn ``known`` into ``name``, compared word by word.
 
-    ``nearDoor`` has two words. Return None if a word is no misspelling of the word at its place in
-    the other name. Also return None if the two names differ in their digits, their number of words
-    or their number of dots.
+    ``nearDoor`` and ``near_door`` have two words. Return None if a word is no misspelling of the word
+    at the same place in the other name. Also return None if the two names differ in their digits,
+    their number of words or their number of dots.
     """
     if name.count(".") != known.count("."):
         return None
@@ -92,7 +92,10 @@ def _count_typos_in_parts(name: str, known: str) -> int | None:
 
 
 def _begin_alike(word: str, known: str) -> bool:
-    """Whether both words have the same first letter, or their first two letters are exchanged."""
+    """Whether both words have the same first letter, or begin with the same two letters in exchanged order.
+
+    In the second case, the third letters must be the same, too.
+    """
     return word[:1] == known[:1] or (word[:2] == known[1::-1] and word[2:3] == known[2:3])
 
 

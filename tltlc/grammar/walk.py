@@ -9,7 +9,11 @@ from tltlc.grammar.tree import Declaration, Expr
 
 
 def expressions(declaration: Declaration) -> Iterator[Expr]:
-    """Yield the expressions of a declaration, in order; for a spec, clause by clause."""
+    """Yield the outermost expressions of a declaration, in the order of the text.
+
+    These are the ends of ranges, defaults, values and bodies; in a spec, the formulas and values of its
+    clauses, without tags; in a test, the atoms of its steps.
+    """
     match declaration:
         case tree.SignalDecl():
             yield from _range_ends(declaration.interval)
@@ -48,8 +52,8 @@ def parts(expression: Expr) -> Iterator[Expr]:
 def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> list[Expr]:
     """Return the operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
 
-    If the expression has no operator ``op`` at its top, return it alone. With ``through_brackets``,
-    ``a & (b & c)`` has three operands.
+    If the outermost operator is not ``op``, the list has only the expression itself. With
+    ``through_brackets``, ``a & (b & c)`` has three operands.
     """
     chain: list[Expr] = []
     pending = [expression]
@@ -66,15 +70,15 @@ def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> li
 
 
 def conjuncts(expression: Expr) -> list[Expr]:
-    """Return the operands of the outermost chain of ``and``, in order.
+    """Return the operands of the outermost chain of ``and``, in order: three for ``a and (b and c)``.
 
-    Brackets around a part of the chain do not matter. Without a chain, return the expression alone.
+    If the outermost operator is not ``and``, the list has only the expression itself.
     """
     return operands(expression, "and", through_brackets=True)
 
 
 def children(expression: Expr) -> Iterator[Expr]:
-    """Yield the direct operands of an expression, in order."""
+    """Yield the direct operands of an expression, in order; nothing for a name, number or constant."""
     match expression:
         case tree.Unary():
             yield expression.operand

@@ -1,4 +1,8 @@
-"""Errors about whole clauses: an unknown keyword, a keyword inside a formula, a limit in other words."""
+"""Explain mistakes in whole clauses: an unknown keyword, a keyword inside a formula, a limit in other words.
+
+Each function of ``CLAUSE_RULES`` recognises one mistake. It returns the error, or None if parsing
+failed for another reason.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +65,10 @@ _LIMITS: Final = frozenset(
         *("max time N", "maximum time N", "N limit", "N timeout"),
     )
 )
-"""Phrases, by word, with a number ``N`` that can only mean a limit of the episode. Units are left out."""
+"""Phrases that can only mean a limit of the episode, split into words.
+
+``N`` stands for the number. Units are left out: ``limit of 400 steps`` is ``("limit", "of", "N")``.
+"""
 _MARKS: Final = frozenset("-–—*+•·.:)")
 """Bullets that people write before the lines of a list. `!` is not among them: it means `not`."""
 _LONGEST_LIMIT: Final = 7
@@ -74,7 +81,10 @@ _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
 
 
 def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a declaration, clause or line of a test begins with no keyword of its kind, else None."""
+    """Return an error if the first word is no keyword that can begin such a piece of text, else None.
+
+    An example is ``get a`` in place of the clause ``reach a``.
+    """
     keywords, token = KEYWORDS.get(failure.start), failure.token
     if failure.stop.index or not keywords or failure.is_at_end or token.type in OPENING.values():
         return None
@@ -95,7 +105,7 @@ def unknown_keyword(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
-    """Whether a clause can have only one meaning if ``keyword`` replaces its first word."""
+    """Whether a clause has only one possible meaning if ``keyword`` replaces its first word."""
     stop = len(failure.tokens) - 1
     if keyword == "require":
         return not is_of_one_step(failure, 1, stop)
@@ -106,7 +116,7 @@ def _is_clear_keyword(failure: ParseFailure, keyword: str) -> bool:
 
 
 def clause_outside_spec(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a clause stands outside a spec, after a complete declaration, else None."""
+    """Return an error if a clause follows a complete declaration, outside any spec, else None."""
     whole = failure.start == "declaration" and END in failure.allowed_terminals
     return _outside_error(failure) if whole and failure.token.text in CLAUSES and not failure.open_brackets else None
 
@@ -144,9 +154,9 @@ def clause_inside_formula(failure: ParseFailure) -> Diagnostic | None:
 
 
 def synonym_inside_formula(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if another word for a keyword stands inside a formula, else None.
+    """Return an error if a synonym of a clause keyword stands inside a formula, else None.
 
-    An example is ``keep a implies never b``.
+    An example is ``keep a implies never b``: ``never`` is a synonym of ``avoid``.
     """
     before, at = failure.previous_token, failure.stop.index - 1
     keyword = (
@@ -173,7 +183,7 @@ def _clause_keyword(failure: ParseFailure) -> str:
 
 
 def _is_next_goal(failure: ParseFailure, word: str) -> bool:
-    """Whether the keyword ``word`` after `then` only repeats that a goal follows, as in ``a then reach b``."""
+    """Whether the keyword ``word`` after `then` is `reach` and can be left out, as in ``a then reach b``."""
     return word == "reach" and _clause_keyword(failure) not in ("keep", "avoid")
 
 
@@ -218,7 +228,10 @@ def joined_clauses(failure: ParseFailure) -> Diagnostic | None:
 
 
 def limit_in_other_words(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a limit has another form, else None: ``limit of 400 steps``, ``limit: 20 seconds``."""
+    """Return an error if a ``limit`` clause has a wrong form, else None.
+
+    Examples are ``limit of 400 steps`` and ``limit: 20 seconds``.
+    """
     return (
         _limit_error(failure, "a limit is a number of steps or a time") if failure.tokens[0].type == "LIMIT" else None
     )
@@ -269,9 +282,10 @@ def _outside_error(failure: ParseFailure) -> Diagnostic:
 
 
 def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | None:
-    """Return an error if a line of a spec begins with no keyword; its help guesses what the line means.
+    """Return the error for a line of a spec without a keyword, such as ``always a``, or None.
 
-    Returns None if this function cannot explain the line.
+    The help of the error guesses what the line means. None means that this function cannot explain
+    the line.
     """
     tokens, token = failure.tokens, failure.token
     diagnostic = _limit_error(failure, title)
@@ -321,9 +335,9 @@ def _line_without_keyword(failure: ParseFailure, title: str) -> Diagnostic | Non
 
 
 def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
-    """Return an error if a line is only a number, its unit and a few words, such as ``20 s limit``, else None.
+    """Return an error if a line has only a number, its unit and a few words, such as ``20 s limit``, else None.
 
-    The error has a fix if the line can only be a limit.
+    The error has a fix if the line can only mean a limit.
     """
     tokens = [token for token in failure.tokens[:-1] if token.text not in (":", "=", ",")]
     if len(tokens) > _LONGEST_LIMIT:
@@ -354,7 +368,7 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
 
 
 def _is_own_line(failure: ParseFailure) -> bool:
-    """Whether the broken piece of text stands alone on its lines, apart from braces and comments."""
+    """Whether nothing but braces and comments stands beside the broken text on its lines."""
     text, tokens = failure.source.text, failure.tokens
     before = text[: tokens[0].start].rpartition("\n")[2].rpartition("{")[2]
     after = text[tokens[-1].end :].partition("\n")[0].partition("//")[0].partition("}")[0]

@@ -17,7 +17,10 @@ _COMPARISONS: Final = {
 
 
 def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a comparison is in words, else None: ``coins is more than 3``, ``health above 50%``."""
+    """Return an error if a comparison is written in words, else None.
+
+    Examples are ``coins is more than 3`` and ``health above 50%``.
+    """
     at = failure.stop.index
     if not failure.wants_operator or failure.token.type != "NAME":
         return None

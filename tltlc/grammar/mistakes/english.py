@@ -1,4 +1,4 @@
-"""Explain plain English where the language has another form: `if`, `while`, `before`, a bound after its formula."""
+"""Explain English words that are no operators: `if`, `while`, `before`, or a time after its formula."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
 None stands for the beginning of the formula.
 """
 _OF_THE_REST: Final = ("after", "unless", "but")
-"""Words that may apply to all goals that follow, or only to the next one."""
+"""Words that may apply to all the goals after them, or only to the next goal."""
 _SEPARATORS: Final = ("then", ",", ":")
 
 
@@ -85,7 +85,11 @@ def _without_error(failure: ParseFailure) -> Diagnostic:
 
 
 def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Return the error for an English word between two formulas, such as ``keep a while b``."""
+    """Return the error for an English word between two formulas, such as ``keep a while b``.
+
+    ``forms`` are the ways to write the phrase in the language. The error has a fix if the phrase has
+    only one possible meaning.
+    """
     at, kind = failure.stop.index, clause_keyword(failure)
     begin, stop = goal_starts(failure, at)[-1], formula_stop(failure)
     second = at + 1 + (failure.tokens[at + 1].text == "by")
@@ -106,7 +110,10 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def _prefix_word_error(failure: ParseFailure, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
-    """Return the error for an English word or a time before its formula: ``reach if b then a``."""
+    """Return the error for an English word or a time before its formula, such as ``reach if b then a``.
+
+    ``at`` is the index of the word. ``timed`` is true for a time, such as ``within 20 steps a``.
+    """
     if timed:
         return prefix_time_error(failure, at, forms)
     stop, form = formula_stop(failure), forms.get(clause_keyword(failure), forms[""])

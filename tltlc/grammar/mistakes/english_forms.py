@@ -1,4 +1,4 @@
-"""The forms of the language for phrases in plain English, such as `a while b` and `a within 20 steps`."""
+"""Tables of English phrases, such as `a while b`, and how to write them in the language."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from tltlc.grammar.keywords import CONDITIONS
 
 @record
 class Form:
-    """A way to write an English phrase in the language.
+    """A way to write an English phrase in the language: ``{b} implies {a}`` for ``a if b``.
 
-    In ``formula``, ``{a}``, ``{b}`` and ``{c}`` are parts of the phrase. If ``clause`` is not empty,
-    it is the keyword of a clause that replaces the whole clause of the phrase.
+    In ``formula``, ``{a}``, ``{b}`` and ``{c}`` stand for the parts of the phrase. If ``clause`` is not
+    empty, a clause with this keyword must replace the whole clause: ``keep a before b`` becomes
+    ``require a weak_until b``.
     """
 
     formula: str
@@ -22,9 +23,9 @@ class Form:
 
 
 Forms = Mapping[str, Form]
-"""Maps the keyword of a clause to the form in which an English phrase is written in this clause.
+"""Maps the keyword of a clause to the way to write an English phrase in this clause.
 
-The key "" is for all other clauses.
+The key "" is for all clauses that are not listed.
 """
 
 CONDITION: Final = {"reach": Form("{a} and {b}"), "avoid": Form("{a} and {b}"), "": Form("{b} implies {a}")}
@@ -88,8 +89,8 @@ TIMES: Final[dict[str, Forms]] = {
 """Maps an English WORD to the ways to write `a WORD TIME` and `WORD TIME a` in the language.
 
 ``{b}`` is the time, ``{end}`` the time as the end of a bound in brackets, and ``{less}`` the time
-less one step. The key `then` is for `c then a WORD TIME`. If its text joins ``{c}`` by `and`, the
-time begins at the step that reaches ``c``.
+minus one step. The key `then` is for `c then a WORD TIME`. There, ``{c} and …`` makes the time begin
+at the step that reaches ``c``.
 """
 TIMED: Final = {form for forms in TIMES.values() for form in forms.values()}
 

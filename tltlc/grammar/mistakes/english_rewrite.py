@@ -1,4 +1,4 @@
-"""Suggest a form of the language for a phrase in plain English."""
+"""Suggest how to write an English phrase, such as `a while b`, in the language."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _ONCE: Final = "; to require it at every step, write a clause `keep {b} implies 
 
 
 def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: Form, parts: Parts | None) -> Diagnostic:
-    """Return the error for the English word at index ``at``; it suggests to write ``form`` instead.
+    """Return the error for the English word at index ``at``, which suggests to write ``form`` instead.
 
-    ``part`` is the range of token indices to be replaced, and ``parts`` are the parts that ``form``
-    needs. If ``parts`` is None, the text has several meanings; then the help describes the form
-    with letters.
+    ``part`` is the range of token indices to be replaced. ``parts`` are the texts that ``form`` needs;
+    None if the phrase may mean several things. Then the error has no fix, and its help shows the form
+    with the letters a, b and c.
     """
     word, kind = failure.tokens[at], clause_keyword(failure)
     title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
@@ -52,7 +52,7 @@ def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: F
 
 @record
 class Time:
-    """A time: a number as it stands in the text, and a unit of the language."""
+    """A time such as ``20 steps``: the number as it stands in the text, and a unit of the language."""
 
     number: str
     unit: str
@@ -82,9 +82,9 @@ class Parts:
     time: Time | None = None
 
     def fill(self, form: Form) -> str:
-        """Return the text of ``form``, with the parts in place of ``{a}``, ``{b}``, ``{c}``, ``{end}`` and ``{less}``.
+        """Return the text of ``form`` with the parts in place of ``{a}``, ``{b}`` and the other names in braces.
 
-        Returns "" if the form has ``{less}``, but the time is not in steps.
+        Return "" if the form has ``{less}``, the time minus one step, but the time is not in steps.
         """
         end, less = self.b, ""
         if self.time is not None and self.time.steps is not None:
@@ -96,7 +96,7 @@ class Parts:
 
 
 def _general_help(failure: ParseFailure, at: int, form: Form) -> str:
-    """Return a help text that shows ``form`` with the letters a, b and c in place of the parts of the text."""
+    """Return a help text that shows ``form`` with the letters a, b and c: "write `b implies a` for `a if b`"."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in TIMED, at == 0 or at < failure.stop.index
     time = Time("20", "steps") if is_timed else None
     parts = Parts("a", time.text if time else "b", "c", time)
@@ -127,17 +127,18 @@ def _general_help(failure: ParseFailure, at: int, form: Form) -> str:
 
 
 def clause_keyword(failure: ParseFailure) -> str:
-    """Return the keyword of the clause whose formula is broken, or "".
+    """Return the keyword of the clause in which parsing failed: ``"reach"``.
 
-    It is "" if parsing failed inside brackets, or outside a clause.
+    Return "" if parsing failed inside brackets, or outside a clause.
     """
     return failure.tokens[0].text if failure.start == "clause" and not failure.open_brackets else ""
 
 
 def goal_starts(failure: ParseFailure, at: int) -> list[int]:
-    """Return the indices at which the goals of a `reach` clause begin, as far as they are before index ``at``.
+    """Return the indices of the first tokens of the goals of a `reach` clause, up to index ``at``.
 
-    In other clauses, return only the index at which the formula begins.
+    The goals are the parts between `then`. In other clauses, return only the index at which the formula
+    begins.
     """
     start = formula_start(failure)
     if clause_keyword(failure) != "reach":
@@ -147,7 +148,10 @@ def goal_starts(failure: ParseFailure, at: int) -> list[int]:
 
 
 def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
-    """Whether the condition at index ``at`` is certainly about every step; if False, it may be about one step."""
+    """Whether the condition at index ``at`` must be about every step.
+
+    If False, it may also be about a single step.
+    """
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
 

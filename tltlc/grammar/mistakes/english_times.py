@@ -1,4 +1,4 @@
-"""Explain times in plain English, before or after their formula: `a within 20 steps`, `for 20 steps a`."""
+"""Explain times in plain English, after or before their formula: `a within 20 steps`, `for 20 steps a`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,11 @@ _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
 
 
 def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
-    """Return the error for a time after its formula, such as ``reach a within 20 steps``."""
+    """Return the error for a time after its formula, such as ``reach a within 20 steps``.
+
+    ``forms`` are the ways to write the phrase in the language. The error has a fix if the phrase has
+    only one possible meaning.
+    """
     at, kind = failure.stop.index, clause_keyword(failure)
     goals, stop = goal_starts(failure, at), formula_stop(failure)
     begin = goals[-1]
@@ -50,7 +54,11 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
 
 
 def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnostic:
-    """Return the error for a time before its formula, such as ``reach within 20 steps a``."""
+    """Return the error for a time before its formula, such as ``reach within 20 steps a``.
+
+    ``at`` is the index of the word before the time, and ``forms`` are the ways to write the phrase in
+    the language. The error has a fix if the phrase has only one possible meaning.
+    """
     stop, kind, first = formula_stop(failure), clause_keyword(failure), formula_start(failure)
     time, second, is_clear_unit = _read_time(failure, at + 1)
     before, start = "", at
@@ -74,7 +82,7 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
 
 
 def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
-    """Whether a time can apply only to the operand that begins at index ``begin``."""
+    """Whether a time, to be written as ``forms`` say, can apply only to the operand that begins at ``begin``."""
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     previous = failure.tokens[begin - 1].type if begin > formula_start(failure) else None
     if clause in ("reach", "avoid"):
@@ -90,13 +98,16 @@ def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
 
 
 def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether a time can apply to all tokens from index ``start`` up to ``stop`` together."""
+    """Whether the tokens from index ``start`` up to ``stop`` are a formula to which a time applies as a whole."""
     is_one = is_of_one_step(failure, start, stop) and not has_token(failure, start, stop, UNCLEAR)
     return is_one and failure.tokens[start].text not in OPERATORS
 
 
 def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:
-    """Return the time at index ``at``, the index after it, and whether its unit is certain."""
+    """Return the time that begins at index ``at``, the index after the time, and whether its unit is certain.
+
+    A time without a known unit counts in steps. This is certain unless the file declares a clock.
+    """
     unit = failure.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
     is_clear = bool(known) or not declares_clock(failure.source)

@@ -13,15 +13,17 @@ from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, sugge
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
-"""Fillers that can have a meaning of their own, as in `next to` and `not either`.
+"""Maps fillers that can have a meaning of their own, as in `not either`, to terminals of operators.
 
-Each is mapped to the terminals of the operators beside which it adds nothing: `either` adds nothing
-to `or`.
+Beside these operators, the filler adds nothing: `either` adds nothing to `or`.
 """
 
 
 def filler_word(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a filler word stands in a formula, else None: ``reach the exit``, ``avoid being seen``."""
+    """Return an error if a filler word stands in a formula, else None.
+
+    Examples are ``reach the exit`` and ``avoid being seen``.
+    """
     at = failure.stop.index
     for index in (at - 1, at):
         word = failure.tokens[index]

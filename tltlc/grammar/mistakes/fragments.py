@@ -1,8 +1,9 @@
 """Split the tokens of a text with errors into pieces: declarations, and the lines of a block.
 
-A piece begins at a keyword, with few exceptions. Within a line, a keyword begins a piece only after
-a token that can end one. So ``reach level`` is one clause, with the reserved word ``level`` in it.
-At the start of a line, a word that seems to be a misspelt keyword can begin a piece, too.
+A piece is a declaration, a clause of a spec, or a line of a test. It begins at a keyword, with few
+exceptions. Within a line, a keyword begins a piece only after a token that can end a piece. So
+``reach level`` is one clause, although ``level`` is a keyword, too. At the start of a line, a word that
+seems to be a misspelt keyword can begin a piece, too.
 """
 
 from __future__ import annotations
@@ -56,7 +57,11 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
 
 
 def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str]) -> Iterator[list[Token]]:
-    """Yield the tokens of each clause of a spec, or of each line of a test, given the tokens of its body."""
+    """Yield the tokens of each clause of a spec, or of each line of a test.
+
+    ``tokens`` are those between the braces. ``keywords`` are the words that begin clauses, or lines of
+    a test.
+    """
     piece: list[Token] = []
     for index, token in enumerate(tokens):
         if piece and _begins_piece(source, tokens, index, keywords, True):
@@ -68,9 +73,9 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
 
 
 def block_kind(piece: Sequence[Token]) -> str | None:
-    """Return ``spec`` or ``test`` if the piece is a spec or a test in braces, or None.
+    """Return ``"spec"`` or ``"test"`` if the piece is a spec or a test in braces, else None.
 
-    The keyword may be misspelt. A piece such as ``spec NAME = …`` has no braces.
+    The keyword may be misspelt. ``spec NAME = …`` has no braces, so the result is None.
     """
     head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
     return closest_word(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
@@ -86,8 +91,8 @@ def _begins_piece(
 ) -> bool:
     """Whether a declaration, clause or line of a test begins at the token with this index, which is not 0.
 
-    ``keywords`` are the words that begin such a piece of text. Unless ``within_lines``, they do so
-    only at the start of a line.
+    ``keywords`` are the words that can begin it. If ``within_lines`` is false, they can do so only at
+    the start of a line.
     """
     token, before = tokens[index], tokens[index - 1]
     first = is_first_on_line(source, tokens, index)

@@ -1,4 +1,8 @@
-"""Explain forms that people know from other languages or a word processor."""
+"""Explain forms that people know from other languages, such as ``a == b``.
+
+Each function of ``HABITS`` recognises one form. It returns the error, or None if parsing failed for
+another reason.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +36,7 @@ _EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>":
 
 
 def equality(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if parsing failed at a comparison of another language, else None.
+    """Return an error if parsing failed at a test for equality in the syntax of other languages, else None.
 
     Examples are ``a == b``, ``a != true``, ``a <> 3`` and ``a = b``.
     """
@@ -102,7 +106,7 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
 
 
 def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error for an arrow that is no operator, as in ``a => b`` and ``a =< b``, else None."""
+    """Return an error for the arrows ``=>`` and ``=<``, as in ``a => b`` and ``a =< b``, else None."""
     at = failure.stop.index
     after = failure.tokens[at + 1 :][:2]
     if (
@@ -128,7 +132,7 @@ def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
 def dash_comment(failure: ParseFailure) -> Diagnostic | None:
     """Return an error for a comment that begins with ``--``, else None.
 
-    It is found even if the parser has read the first words of the comment as part of a formula.
+    The comment is found even if the parser has read its first words as part of a formula.
     """
     tokens, at = failure.tokens, failure.stop.index
     for index in range(min(at, len(tokens) - 2), -1, -1):
@@ -208,10 +212,10 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
 
 
 def value_end(tokens: Sequence[Token], at: int, step: int) -> int:
-    """Return where a value beside the operator at index ``at`` begins or ends.
+    """Return where the value before or after the operator at index ``at`` begins or ends.
 
-    With ``step`` -1, return the index of the first token of the value before the operator; with
-    ``step`` 1, the index after the last token of the value behind it.
+    If ``step`` is -1, return the index of the first token of the value before the operator. If ``step``
+    is 1, return the index after the last token of the value after the operator.
     """
     index, depth = at + step, 0
     while 0 <= index < len(tokens):

@@ -11,9 +11,10 @@ from tltlc.grammar.tree import Comment, Import, Module
 
 
 def declaration_edit(module: Module, line: str) -> Edit:
-    """Return the edit that adds a line after the imports.
+    """Return the edit that adds ``line`` to a module, after its last import.
 
-    Without imports, it adds the line before the first declaration and its documentation.
+    If there are no imports, the edit adds the line before the first declaration and its documentation
+    comment.
     """
     source = module.source
     newline = "\r\n" if "\r\n" in source.text else "\n"
@@ -32,9 +33,9 @@ def declaration_edit(module: Module, line: str) -> Edit:
 
 
 def documentation_start(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
-    """Return the offset where the documentation comment before ``start`` begins, or ``start`` if there is none.
+    """Return the offset where the ``///`` comment of the declaration at ``start`` begins, or ``start`` without one.
 
-    Other comments may stand between the documentation comment and ``start``.
+    Other comments may stand between the ``///`` comment and the declaration.
     """
     first = start
     for index in reversed(range(bisect_right(comments, start, key=lambda comment: comment.span.end))):

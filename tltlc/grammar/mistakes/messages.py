@@ -1,4 +1,8 @@
-"""The message for a token that does not fit: what was expected, in plain words, and how to fix it."""
+"""Build the error for a token that does not fit: what was expected, in plain words, and how to fix it.
+
+Each function of ``_RULES`` recognises one mistake. It returns the error, or None if parsing failed for
+another reason. The first error counts.
+"""
 
 from __future__ import annotations
 
@@ -41,16 +45,16 @@ _BOUNDED_UNTILS: Final = {
     "RELEASE": "G[0,20] b | (b U (a & b)) & F[0,20] (a & b)",
     "STRONG_RELEASE": "(b U (a & b)) & F[0,20] (a & b)",
 }
-"""Maps the terminal of an operator of two operands to what the operator would mean with a bound, ``a U[0,20] b``."""
+"""Maps the terminal of an operator such as `U`, which takes no bound, to a formula for ``a U[0,20] b``."""
 
 
 def unexpected_token(
     source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str
 ) -> Diagnostic:
-    """Return the error for a token that does not fit.
+    """Return the diagnostic for a syntax error.
 
-    ``tokens`` are one declaration, clause, line of a test or formula, parsed as the nonterminal
-    ``start``.
+    ``tokens`` are one declaration, clause, line of a test or formula. The parser read them as the
+    nonterminal ``start`` and raised ``error``.
     """
     failure = ParseFailure(source, tokens, error, start)
     for rule in _RULES:
@@ -88,9 +92,10 @@ def _unmatched_bracket(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if the bound of an operator is wrong, else None.
+    """Return an error if the bound of a temporal operator is wrong, else None.
 
-    The bound may lack a unit, have a name for a number, or follow an operator that takes none.
+    The bound may lack a unit, have a name in place of a number, or follow an operator that takes no
+    bound.
     """
     before = failure.previous_token
     if failure.token.type == "NAME" and before and _is_bound(failure):
@@ -187,7 +192,7 @@ def _missing_type(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if the head of a quantifier is wrong, else None: ``all x in a: p``, ``all(p, q)``."""
+    """Return an error if a quantifier is wrong before its colon, else None: ``all x in a: p``, ``all(p, q)``."""
     heads = [token for token in failure.tokens[: failure.stop.index] if token.type in ("ALL", "ANY", "COLON")]
     if not heads or heads[-1].type == "COLON":
         return None
@@ -197,7 +202,7 @@ def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a name, such as a misspelt operator, stands where an operator is expected, else None."""
+    """Return an error for a misspelt operator, else None: ``a adn b``, ``alwyas a``, ``FG a``."""
     before, token = failure.previous_token, failure.token
     if before is None or not failure.wants_operator:
         return None
@@ -231,7 +236,7 @@ def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _is_before_operand(failure: ParseFailure) -> bool:
-    """Whether an operand or a prefix operator comes after the token that does not fit."""
+    """Whether an operand, or an operator before its operand, follows the token that does not fit."""
     after = failure.tokens[failure.stop.index + 1]
     return after.type in OPERAND | BEFORE_ONE
 

@@ -1,6 +1,6 @@
 """Decide whether an English word has only one meaning where it stands.
 
-Only then is a fix offered.
+An error gets a fix only in this case.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
 
 
 def has_token(failure: ParseFailure, start: int, stop: int, kinds: Collection[str]) -> bool:
-    """Whether a token of ``kinds`` stands outside brackets, from index ``start`` up to ``stop``."""
+    """Whether the tokens from index ``start`` up to ``stop`` include one of ``kinds`` outside brackets."""
     return any(failure.tokens[index].type in kinds for index in outer_indices(failure.tokens, start, stop))
 
 
@@ -81,9 +81,9 @@ def is_clear_word(failure: ParseFailure, word: str, left: tuple[int, int], right
 
 
 def is_clear_here(failure: ParseFailure, word: str) -> bool:
-    """Whether an English word has only one meaning where parsing failed, judged by what stands around it.
+    """Whether an English word has only one meaning where parsing failed, judged by the tokens around it.
 
-    The keyword of the clause and the tokens around the open brackets decide this.
+    These are the keyword of the clause and the operators around the open brackets.
     """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     if word in _STATES:
@@ -108,10 +108,10 @@ def is_clear_here(failure: ParseFailure, word: str) -> bool:
 
 
 def is_clear_time_here(failure: ParseFailure, *, may_be_negated: bool, may_be_kept: bool) -> bool:
-    """Whether a time can apply to the formula in the innermost open brackets.
+    """Whether a time inside the open brackets has only one meaning, judged by the operators around them.
 
-    The tokens around all open brackets decide this. ``may_be_negated`` allows `not` before a
-    bracket, and ``may_be_kept`` allows `always`.
+    ``may_be_negated`` allows `not` before a bracket, and ``may_be_kept`` allows `always`. Without open
+    brackets, the result is true outside a `let`.
     """
     if failure.tokens[0].type == "LET" or _is_in_call(failure):
         return False
@@ -125,10 +125,10 @@ def has_always_before(failure: ParseFailure) -> bool:
 
 
 def effective_clause(failure: ParseFailure, at: int) -> str:
-    """Return the clause keyword that means the same as the tokens before index ``at``.
+    """Return the clause keyword that says how a formula at index ``at`` is used.
 
-    An `always` among them means ``keep``, else an `eventually` means ``reach``, else the keyword of
-    the clause counts.
+    If an `always` stands before the index, return ``keep``; else, if an `eventually` does, ``reach``;
+    else the keyword of the clause, or "" outside a clause.
     """
     clause = failure.tokens[0].text if failure.start == "clause" else ""
     kinds = [token.type for token in failure.tokens[:at]]
@@ -136,7 +136,10 @@ def effective_clause(failure: ParseFailure, at: int) -> str:
 
 
 def _has_variable_of(failure: ParseFailure, left: tuple[int, int], right: tuple[int, int]) -> bool:
-    """Whether a variable that is quantified on the left is used on the right, outside the quantifier's scope."""
+    """Whether the tokens in ``right`` use a variable whose quantifier is in ``left``, as in ``all x in (a): p if x``.
+
+    Both are ranges of token indices.
+    """
     heads = (index + 1 for index in outer_indices(failure.tokens, *left) if failure.tokens[index].type in QUANTIFIERS)
     variables = {failure.tokens[index].text for index in heads}
     return any(token.text in variables for token in failure.tokens[slice(*right)])
@@ -163,7 +166,7 @@ def _surroundings_are(failure: ParseFailure, kinds: Collection[str]) -> bool:
 
 
 def _is_in_call(failure: ParseFailure) -> bool:
-    """Whether parsing failed inside brackets that do not enclose a formula, such as those of a call."""
+    """Whether an open bracket encloses something else than a formula, such as the arguments of a call."""
     brackets = any(token.type != "LPAR" for token in failure.open_brackets)
     return brackets or any(before is not None and before.type == "NAME" for before in _tokens_before_brackets(failure))
 

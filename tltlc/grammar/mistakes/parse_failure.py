@@ -1,4 +1,4 @@
-"""The failure of parsing a piece of text: where it happened, and what could stand there, in plain words."""
+"""Describe where parsing a piece of text failed, and what could stand there, in plain words."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
 NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
-"""Maps a nonterminal to the word by which messages call such a piece of text. Any other piece is a formula."""
+"""Maps a nonterminal to its name in messages. A nonterminal that is not listed is called a formula."""
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
 CLOSING: Final = frozenset(OPENING.values())
@@ -33,7 +33,7 @@ _FEW: Final = 4
 
 
 class ParseFailure:
-    """The place where parsing failed: the token that does not fit, the tokens around it, and what could stand there.
+    """A syntax error in one piece of text: the token that does not fit, and the tokens around it.
 
     ``tokens`` are the tokens of one piece: a declaration, a clause, a line of a test, or a formula.
     The parser read the piece as the nonterminal ``start``, and ended with the error ``stop``.
@@ -90,7 +90,7 @@ class ParseFailure:
         return stack
 
     def form(self) -> str | None:
-        """Return a help text with the syntax of the piece; None if its first word is no keyword for such a piece."""
+        """Return a help text such as "the form is `keep a`"; None if the piece does not begin with a known keyword."""
         form = KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
         return f"the form is {form}" if form else None
 
@@ -104,11 +104,11 @@ class ParseFailure:
         *,
         write: str | None = None,
     ) -> Diagnostic:
-        """Return an error at ``span``, with ``message`` as the text of its label.
+        """Return an error at ``span``, with ``message`` under its caret.
 
         Without ``span``, the error is at :attr:`token`, or at the last token if the piece ends too
-        early. ``write`` is the text that a fix writes in place of the span. There is no fix if
-        ``write`` is None or if the span contains a comment.
+        early. The error has a fix that replaces the span by ``write``, unless ``write`` is None or the
+        span contains a comment.
         """
         if span is None:
             span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
@@ -124,13 +124,13 @@ class ParseFailure:
         return any("//" in text[left.end : right.start] for left, right in pairwise(inside))
 
     def expectation(self) -> str:
-        """Return a title for the error, ``expected … after …, found …``."""
+        """Return a title for the error: "expected a formula after `keep`, found `)`"."""
         before = f" after {quote_token(self.previous_token)}" if self.previous_token else ""
         actual = "" if self.is_at_end else f", found {quote_token(self.token)}"
         return f"expected {self.alternatives()}{before}{actual}"
 
     def alternatives(self) -> str:
-        """Return what could stand in place of :attr:`token`, in plain words."""
+        """Return what could stand in place of :attr:`token`, in plain words: "a name or a number"."""
         if self.wants_operand:
             if self.previous_token and self.previous_token.type in ARITHMETIC:
                 return "a value"
@@ -154,9 +154,9 @@ class ParseFailure:
 
 
 def outer_indices(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
-    """Yield the indices of the tokens outside brackets, and of the outermost brackets.
+    """Yield the indices from ``start`` up to ``stop``, without those of tokens inside brackets.
 
-    The indices run from ``start`` up to ``stop``.
+    The outermost brackets themselves are included.
     """
     depth = 0
     for index in range(start, stop):
@@ -183,5 +183,5 @@ def _spellings(terminals: dict[str, str]) -> dict[str, str]:
 
 
 def declares_clock(source: SourceFile) -> bool:
-    """Whether the file seems to declare a clock, so that a time may be in steps or in seconds."""
+    """Whether the file seems to declare a clock. If so, a time without a unit may be in steps or in seconds."""
     return re.search(r"^[ \t]*clock[ \t]+[0-9.]", source.text, re.MULTILINE) is not None

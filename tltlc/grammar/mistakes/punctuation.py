@@ -1,4 +1,8 @@
-"""Explain commas, brackets, quotes and names in a form that other languages use."""
+"""Explain commas, brackets, quotes and names that are written as in other languages.
+
+Each function of ``PUNCTUATION`` recognises one mistake. It returns the error, or None if parsing failed
+for another reason.
+"""
 
 from __future__ import annotations
 
@@ -29,14 +33,17 @@ _COMMA: Final = {
 }
 """Maps a clause keyword to the operator that replaces a comma, and to the end of the help text.
 
-In other clauses, the operator is `and`.
+In clauses that are not listed, the operator is `and`.
 """
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
 
 
 def comma(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a comma stands where none can, else None: ``reach a, b``, ``keep a,``, ``3,5 m``."""
+    """Return an error for a comma outside brackets that does not fit, else None.
+
+    Examples are ``reach a, b``, ``keep a,`` and ``3,5 m``.
+    """
     before, at = failure.previous_token, failure.stop.index
     if failure.token.type != "COMMA" or before is None or not failure.wants_operator or failure.open_brackets:
         return None
@@ -72,7 +79,7 @@ def _comma_before_clause(failure: ParseFailure) -> Diagnostic:
 
 
 def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> bool:
-    """Whether all commas of a formula can mean the operator ``word``, judged by the operators beside them.
+    """Whether all commas of a formula can only mean the operator ``word``, judged by the other operators.
 
     In English, the operator before the last part applies to the whole list: `a, b or c` is `a or b
     or c`.
@@ -100,7 +107,7 @@ def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> b
 
 
 def _comma_in_number(failure: ParseFailure) -> Diagnostic:
-    """Return the error for a comma in a number: ``2,5``, and ``1,000``, which is 1 in some countries."""
+    """Return the error for a comma in a number: ``2,5`` means 2.5, but ``1,000`` may be a thousand or 1."""
     at = failure.stop.index
     stop = at + 2
     while (
@@ -150,10 +157,9 @@ def _joined_text(failure: ParseFailure, start: int, stop: int, word: str) -> str
 
 
 def _goal_text(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return the text of the tokens from ``start`` up to ``stop``, as a goal of a `then` sequence.
+    """Return the text of the tokens from ``start`` up to ``stop``, written so that `then` can follow.
 
-    It has brackets around a quantifier. Without them, the quantifier would extend over the next
-    `then`.
+    A quantifier gets brackets. Without brackets, it would extend over what follows `then`.
     """
     quantifiers = (
         index for index in outer_indices(failure.tokens, start, stop) if failure.tokens[index].type in QUANTIFIERS
@@ -250,9 +256,9 @@ def quoted_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str) -> str:
-    """Return ``text``, which stood between quotes, in brackets if it is only a part of the formula.
+    """Return ``text``, which stood in quotes, as a replacement for the tokens from ``start`` up to ``stop``.
 
-    A single operand needs no brackets.
+    The text gets brackets if it contains an operator and the tokens are only a part of the formula.
     """
     is_whole = (start, stop) == (formula_start(failure), formula_stop(failure))
     is_compound = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
@@ -260,7 +266,7 @@ def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str)
 
 
 def invalid_name(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a name has a form that no name may have, else None: ``my-door``, ``2nd_door``."""
+    """Return an error if a name contains `-` or begins with a digit, else None: ``my-door``, ``2nd_door``."""
     before, token, after = failure.previous_token, failure.token, failure.tokens[failure.stop.index + 1 :][:1]
     if before is None or not after:
         return None
@@ -299,7 +305,7 @@ def type_without_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 def several_names(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a declaration has several names, as in ``signal a, b: bool``, else None."""
+    """Return an error if a declaration that takes one name has several, as in ``signal a, b: bool``, else None."""
     word = failure.tokens[0].text
     if failure.token.type != "COMMA" or failure.start != "declaration" or failure.stop.index != 2:
         return None
@@ -319,7 +325,7 @@ def missing_in(failure: ParseFailure) -> Diagnostic | None:
 
 
 def leave_out_help(failure: ParseFailure) -> str:
-    """Return a help text that says to leave out a character, such as one that ends statements in other languages."""
+    """Return a help text that says to leave out a character, such as the ``;`` after a clause."""
     between = {"clause": "clauses", "declaration": "declarations"}.get(failure.start)
     return "leave it out" + (f": nothing is needed between {between}" if between else "")
 

@@ -1,4 +1,7 @@
-"""Parse a text with errors piece by piece: one error per broken declaration, clause or line of a test."""
+"""Parse a text with errors piece by piece, and report one error for each broken piece.
+
+A piece is a declaration, a clause of a spec, or a line of a test.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,10 @@ class _Reader:
         self._docs = lexed.docs
 
     def read_declaration(self, piece: list[Token]) -> None:
-        """Parse the tokens of one declaration; keep the good clauses of a broken block."""
+        """Parse the tokens of one declaration, and add the declaration and its errors to the results.
+
+        If only some clauses of a spec, or lines of a test, are broken, keep the others.
+        """
         before = len(self.diagnostics)
         kind = block_kind(piece)
         if kind:
@@ -81,9 +87,10 @@ class _Reader:
         return None
 
     def _read_line(self, line: list[Token], start: str) -> list[Any]:
-        """Read one line of a block: return its clause or test item, if any, and report its errors.
+        """Parse one clause of a spec or line of a test; return it in a list, which is empty if it is broken.
 
-        If an unknown word follows a complete clause, return the clause and report the word.
+        Errors are added to ``diagnostics``. If an unknown word begins a new line after a complete
+        clause, return the clause and report the word.
         """
         if self._refuse_deep(line):
             return []
@@ -103,7 +110,7 @@ class _Reader:
     def _read(self, start: str, piece: list[Token]) -> Any:
         """Parse a piece as the nonterminal ``start``, and return its syntax tree.
 
-        If the piece is broken, report the error and return None.
+        If the piece is broken, add the error to ``diagnostics`` and return None.
         """
         result = self._attempt(start, piece)
         if isinstance(result, lalr.UnexpectedTokenError):

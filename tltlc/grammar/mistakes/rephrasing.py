@@ -19,7 +19,7 @@ from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Clause
 
 LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
-"""Operators with which a text needs brackets to become an operand of another operator."""
+"""Operators that bind loosely: a text that contains one needs brackets to become an operand."""
 _LONGEST: Final = 90
 """The most characters of a rewrite; longer texts do not help."""
 
@@ -43,7 +43,7 @@ def span_of(tokens: Sequence[Token]) -> Span:
 
 
 def text_of(failure: ParseFailure, start: int, stop: int) -> str:
-    """Return the text of the tokens from ``start`` up to ``stop`` in one line, without comments."""
+    """Return the text of the tokens from ``start`` up to ``stop`` on one line, without comments."""
     tokens = failure.tokens[start:stop]
     # A comment would swallow the rest of the line.
     lines = failure.source.slice(span_of(tokens)).splitlines() if tokens else []
@@ -53,8 +53,9 @@ def text_of(failure: ParseFailure, start: int, stop: int) -> str:
 def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
     """Return the text of the tokens from ``start`` up to ``stop``, written so that it can be an operand.
 
-    A clause keyword at the start becomes the operator of the same meaning. The rest is put in
-    brackets if it has one of the operators :data:`LOOSE` outside brackets.
+    A clause keyword at the start becomes the operator of the same meaning: ``keep a or b`` gives
+    ``always (a or b)``. The rest gets brackets if it has one of the operators :data:`LOOSE` outside
+    brackets.
     """
     operator = ""
     if start < stop and failure.tokens[start].text in OPERATORS:
@@ -88,9 +89,9 @@ def formula_stop(failure: ParseFailure) -> int:
 
 
 def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> int | None:
-    """Return the last index of a token of ``kinds`` from ``start`` up to the failure, or None.
+    """Return the index of the last token of ``kinds`` between ``start`` and the place where parsing failed.
 
-    Tokens in brackets do not count.
+    Tokens in brackets do not count. Return None if there is no such token.
     """
     indices = [
         index

@@ -1,4 +1,4 @@
-"""Explain characters and words that the language does not know, often from word processors."""
+"""Explain characters and words that the language does not know, such as typographic quotes and ``café``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tltlc.grammar.tables import load
 
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
-"""Foreign characters with their equivalents in the language; Unicode normalization finds others."""
+"""Maps foreign characters to their equivalents in the language. Unicode normalization finds more of them."""
 _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
@@ -26,7 +26,7 @@ _HELPS: Final = {
 
 
 def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if the language does not know the character or word where parsing failed, else None."""
+    """Return an error if parsing failed at a character or word that the language does not know, else None."""
     token = failure.token
     if token.type != BAD:
         return None
@@ -100,7 +100,7 @@ def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
 
 
 def _quote_sign(text: str) -> str:
-    """Return a character in backticks; if it is invisible, its code point and name."""
+    """Return a character in backticks; for an invisible one, its code point and name: "`U+00A0` (no-break space)"."""
     if text.isprintable() and not text.isspace():
         return f"`{text}`"
     from unicodedata import name
