@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 class OldNames:
     """An import finder for old names of modules; insert it at the front of :data:`sys.meta_path`.
 
-    It must come before Python's own finders. An update may leave a folder with an old name that has
-    only compiled files in it, and Python's finders would import this folder as a package.
+    The finder must come before Python's own finders. An update may leave a folder with an old name
+    that has only compiled files in it, and Python's finders would import this folder as a package.
 
-    ``new_names`` maps old names to new names. The import of an old name imports the module with the
-    new name, and returns another module object with the same attributes.
+    ``new_names`` maps old names to new names. The import of an old name gives a new module object,
+    which looks up all its attributes in the module with the new name.
     """
 
     def __init__(self, new_names: Mapping[str, str]) -> None:

@@ -32,15 +32,15 @@ class ComparisonName(str):
 
 
 def full_name(base: str, arguments: tuple[str, ...]) -> str:
-    """Return the name as it is written in artefacts: ``near(s1, s2)``, or ``alive`` without arguments."""
+    """Join a base and its arguments to a name: ``near(s1, s2)``, or ``alive`` without arguments."""
     return f"{base}({', '.join(arguments)})" if arguments else base
 
 
 def split_name(name: str) -> tuple[str, tuple[str, ...]]:
-    """Split a full name into its base and its arguments.
+    """Split a full name into its base and its arguments: ``near(s1)`` into ``("near", ("s1",))``.
 
-    A name that is not a call, such as ``distance(s1) > 3``, is its own base and has no arguments.
-    The base of a comparison is a :class:`ComparisonName`.
+    A name that is not a call, such as ``distance(s1) > 3``, is returned whole, with no arguments;
+    that of a comparison is a :class:`ComparisonName`.
     """
     if comparison := _COMPARISON.fullmatch(name):
         return ComparisonName(*comparison.groups()), ()

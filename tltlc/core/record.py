@@ -30,13 +30,13 @@ else:
 
 @dataclass_transform(frozen_default=True)
 def record(cls: type[R]) -> type[R]:
-    """Turn the annotated fields of a class, in order, into slots and arguments of the constructor.
+    """Make a class an immutable record, whose annotated fields are slots and arguments of the constructor.
 
     A value assigned in the class is the field's default. Records of the same class with equal
-    fields are equal and have the same hash. Records are immutable, can be pickled, and can be
-    matched by position in ``case``. If the class has a method ``__post_init__``, it is called on
-    each new record. If it has ``hashed_once = True``, each record caches its hash, since the hash
-    of a deep tree is slow to compute.
+    fields are equal and have the same hash. Records can be pickled, and can be matched by position in
+    ``case``. If the class has a method ``__post_init__``, each new record calls it. If the class has
+    ``hashed_once = True``, each record caches its hash, since the hash of a deep tree is slow to
+    compute.
 
     Raises TypeError if a field without a default follows a field with a default.
     """
@@ -84,7 +84,7 @@ def record(cls: type[R]) -> type[R]:
 
 
 class MissingFieldsError(TypeError):
-    """Raised for a new record without values for some fields that have no default; ``names`` lists these fields."""
+    """Raised when a new record gets no value for a field without a default; ``names`` lists all such fields."""
 
     def __init__(self, owner: str, names: list[str]) -> None:
         super().__init__(f"{owner} lacks {', '.join(names)}")
@@ -127,7 +127,7 @@ def _field_values(
 ) -> tuple[Any, ...]:
     """Return the values of the fields of a new record, in order.
 
-    They are taken from positional arguments, keyword arguments and defaults. Raises TypeError if
+    The values come from positional arguments, keyword arguments and defaults. Raises TypeError if
     the arguments do not fit the fields.
     """
     if len(positional) > len(names):

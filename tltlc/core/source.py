@@ -1,4 +1,4 @@
-"""Source texts, and the spans in them that diagnostics point at."""
+"""Source texts, and spans of source texts that diagnostics point at."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class Span:
 class SourceFile:
     """A text and its name in messages: a path, or ``<stdin>``.
 
-    ``kind`` says where the text comes from: a file, a file of the standard library, or elsewhere.
-    ``location`` is the path of the file, or the URI of a text that is open in an editor; by default
-    it is the name.
+    ``kind`` says where the text comes from: a file, a file of the standard library, or elsewhere
+    (``"text"``). ``location`` is the path of the file, or the URI of a text that is open in an editor.
+    Without a ``location``, the name is used.
 
-    A carriage return without a newline after it is replaced by a newline, so that the lines are
-    those that an editor shows. Offsets do not change.
+    A lone carriage return is replaced by a newline, so that the lines are those that an editor shows.
+    Offsets do not change.
     """
 
     __slots__ = ("_line_starts", "kind", "location", "name", "text")
@@ -70,13 +70,13 @@ class SourceFile:
         return f"SourceFile(name={self.name!r})"
 
     def with_text(self, text: str) -> SourceFile:
-        """Return a source with another text, and with the name, kind and location of this one."""
+        """Return a source with another text, but the same name, kind and location."""
         return SourceFile(self.name, text, self.kind, self.location)
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Return the line and the column of a character offset, both from 1.
+        """Return the line and the column of a character offset, which counts from 0.
 
-        Columns count characters.
+        Lines and columns count from 1. Columns count characters.
         """
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1

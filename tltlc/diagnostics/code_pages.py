@@ -1,7 +1,7 @@
-"""The codes of diagnostics.
+"""Look up the codes of diagnostics, such as ``TLT0201``, and the pages that explain them.
 
-A code exists if it has a page, that is, a file in the folder ``pages``.
-The first line of a page is ``# TLTnnnn: title``.
+A code exists if it has a page: a Markdown file in the folder ``pages``, with the first line
+``# TLTnnnn: title``.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ def codes_with_prefix(prefix: str) -> tuple[str, ...]:
 def nearest_codes(code: str, most: int = 3) -> tuple[str, ...]:
     """Return at most ``most`` codes that resemble an unknown code, sorted.
 
-    These are codes that a typo may have turned into ``code``. If no code is so similar, they are the
-    codes with the nearest numbers.
+    The result has codes that a typo may have turned into ``code``. If there are none, it has the codes
+    with the nearest numbers.
     """
     from difflib import get_close_matches
 

@@ -15,7 +15,7 @@ Applicability = Literal["safe", "maybe"]
 
 @record
 class Label:
-    """A span of a source, with an optional short message that is printed under its caret."""
+    """A place in a source text that a diagnostic points at, and a short message to print under its caret."""
 
     source: SourceFile
     span: Span
@@ -24,7 +24,7 @@ class Label:
 
 @record
 class Edit:
-    """The replacement of a span by another text."""
+    """One change of a source text: ``text`` replaces the span."""
 
     span: Span
     text: str
@@ -41,10 +41,11 @@ class Fix:
 
 @record
 class Diagnostic:
-    """A message: what happened (``title``), where (``labels``, the main one first), and a suggestion (``help``).
+    """An error, warning or note: what happened (``title``), where (``labels``), and a suggestion (``help``).
 
-    ``code`` is one of the codes of :mod:`tltlc.diagnostics.code_pages`. ``fixes`` are edits that a
-    program can apply to the source of the first label, the likeliest fix first.
+    ``code`` is one of the codes of :mod:`tltlc.diagnostics.code_pages`. The first label is the main
+    one. ``fixes`` are alternatives, the likeliest first; a program can apply one of them to the source
+    of the first label.
     """
 
     code: str
@@ -76,9 +77,9 @@ def _is_word(character: str) -> bool:
 
 
 class TltlError(Exception):
-    """Raised for errors that a user can fix, such as a wrong source text.
+    """Raised for errors that a user can fix, such as a mistake in a source text.
 
-    ``diagnostics`` contains at least one error, and all warnings that were found before.
+    ``diagnostics`` contains at least one error, and the warnings that were found before it.
     """
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:

@@ -19,14 +19,14 @@ class RenderFunction(Protocol):
     def __call__(self, diagnostics: Sequence[Diagnostic], *, color: bool) -> str:
         """Return the diagnostics as one text, which is empty or ends with a newline.
 
-        ``color`` adds ANSI codes.
+        ``color`` asks for ANSI colours; formats for programs ignore it.
         """
 
 
 def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool = False) -> str:  # noqa: A002
     """Return the diagnostics in one of the :data:`FORMATS`; raise ValueError for any other format.
 
-    ``color`` affects only ``text``. All formats shorten very long names in messages.
+    ``color`` adds ANSI colours to the format ``text``. Very long names in messages are shortened.
     """
     if format not in FORMATS:
         raise ValueError(f"there is no format {format!r}: use one of {', '.join(FORMATS)}")

@@ -16,10 +16,10 @@ LONGEST_TEXT: Final = 4000
 
 
 def shorten(diagnostic: Diagnostic) -> Diagnostic:
-    """Return the diagnostic, with an ellipsis for the middle of each text or quote that is too long.
+    """Return the diagnostic with shortened texts: its title, help, labels, and the titles of its fixes.
 
-    A quote is a part of a text in backticks. The limits are :data:`LONGEST_TEXT` and
-    :data:`LONGEST_QUOTE`.
+    An ellipsis replaces the middle of a part in backticks longer than :data:`LONGEST_QUOTE`, and the
+    middle of a text longer than :data:`LONGEST_TEXT`.
     """
     labels = tuple(
         label if len(label.message) <= LONGEST_QUOTE else replace(label, message=short_text(label.message))
@@ -31,9 +31,10 @@ def shorten(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def short_text(text: str) -> str:
-    """Return a message, with an ellipsis for the middle of each quote in backticks that is too long.
+    """Return a message, with an ellipsis in place of the middle of each part in backticks that is too long.
 
-    If the message is still too long, an ellipsis replaces its own middle, too.
+    If the whole message is still too long, an ellipsis also replaces its middle. The limits are
+    :data:`LONGEST_QUOTE` and :data:`LONGEST_TEXT`.
     """
     if len(text) <= LONGEST_QUOTE:
         return text

@@ -1,6 +1,6 @@
-"""Evaluate an expression at one sample, in IEEE double precision.
+"""Evaluate an expression for the signal values of one moment, in IEEE double precision.
 
-The order of operations is fixed, since all monitors must give the same results to the last bit.
+The order of operations is fixed, since all programs that evaluate it must agree to the last bit.
 Operands are computed from left to right. ``x ^ 2`` is ``x * x``, ``x ^ 3`` is ``x * x * x``, and
 any other power is the C library's ``pow``. ``clamp(x, low, high)`` is ``min(max(x, low), high)``.
 If operands are equal, ``min`` and ``max`` return the first one. The value of a case of a ``when``
@@ -22,10 +22,10 @@ MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
 
 
 def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
-    """Return the value of an expression.
+    """Return the value of an expression, given the values of signals and params.
 
-    ``signals`` and ``params`` map names to finite numbers in SI units. The result is infinite or
-    NaN if a product or sum is too large.
+    ``signals`` and ``params`` map full names, such as ``distance(s1)``, to finite numbers in SI units.
+    The result is infinite or NaN if a product, quotient or sum is too large for a float.
 
     Raises:
         ZeroDivisionError: a divisor is 0.

@@ -1,4 +1,4 @@
-"""Convert expressions to the JSON of an artefact, and back."""
+"""Convert expressions to the JSON of an artefact (the file of a compiled automaton), and back."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ def to_json(expression: Expression | Condition) -> dict[str, Any]:
 
 
 def from_json(node: dict[str, Any]) -> Expression:
-    """Return the expression of a JSON object that matches the artefact's schema."""
+    """Return the expression that a JSON object from :func:`to_json` stands for.
+
+    The object must match the schema of artefacts: this function does not check it.
+    """
     if "const" in node:
         return Const(float(node["const"]))
     if "signal" in node:

@@ -26,10 +26,10 @@ _CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
 def compile_expressions(
     expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
 ) -> tuple[Callable[[Sequence[float]], float], ...]:
-    """Return, for each expression, a function that computes it from a sample.
+    """Return, for each expression, a function that computes its value from a sample.
 
-    A sample has the values of ``signals``, in order, as floats. ``params`` are the values of the
-    params, which cannot change later. Values and errors are those of
+    A sample is a sequence of floats: the values of ``signals``, in order. ``params`` maps names to
+    values, which are built into the functions. Values and errors are those of
     :func:`tltlc.expression.evaluate.evaluate`. A function reads only the signals of its expression,
     so that many signals do not make the source long.
     """
@@ -48,7 +48,11 @@ def compile_expressions(
 def _function(
     index: int, expression: Expression, positions: Mapping[str, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
-    """Yield the source lines of the function ``atomINDEX``, after those of the functions that it calls."""
+    """Yield the source lines of a function ``atomINDEX(sample)`` for an expression.
+
+    The functions that it calls come first. ``positions`` maps signals to their indices in a sample, and
+    ``constants`` maps params to Python variables.
+    """
     signals = {node.name: f"s{positions[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
     params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, ParamValue)}
     writer = PythonWriter(signals, params, f"_{index}_")
@@ -61,12 +65,12 @@ def _function(
 
 
 class PythonWriter:
-    """Writes expressions as Python.
+    """Writes expressions as Python source.
 
-    ``signals`` and ``params`` map names of signals and params to Python variables. ``helpers``
-    collects the source of functions ``PREFIXpart0``, … for parts that are nested too deep, where
-    PREFIX is the text ``prefix``. The bases of powers are stored in variables ``PREFIXbase``,
-    ``PREFIXbase2``, ….
+    ``signals`` and ``params`` map names of signals and params to Python variables. An expression that
+    is nested too deep for Python's parser is split: ``helpers`` collects the source of functions that
+    compute its parts. The names that the writer makes up begin with ``prefix``: ``PREFIXpart0``,
+    ``PREFIXpart1``, … for functions, and ``PREFIXbase``, ``PREFIXbase2``, … for the bases of powers.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -75,9 +79,9 @@ class PythonWriter:
         self.helpers: list[str] = []
 
     def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
-        """Return the lines that assign the value of an expression to a variable.
+        """Return the lines that assign the value of an expression to the variable ``name``.
 
-        A ``when`` becomes an ``if`` statement.
+        A ``when`` becomes an ``if`` statement. Each line begins with ``indent``.
         """
         return self._assignment(name, expression, indent, 0)
 
@@ -92,7 +96,10 @@ class PythonWriter:
         return lines + self._assignment(name, expression.otherwise, indent + INDENT, depth + 1)
 
     def _text(self, node: Expression, min_binding: int, depth: int) -> str:
-        """Return the text of an expression, in brackets if its binding strength is lower than ``min_binding``."""
+        """Return the text of an expression, in brackets if it binds more loosely than ``min_binding``.
+
+        ``depth`` is the number of operators around the expression.
+        """
         if isinstance(node, Const):
             return _with_brackets(
                 repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, min_binding
@@ -139,7 +146,7 @@ class PythonWriter:
         return " * ".join([first, *[name] * (factors - 1)]), _PRODUCT
 
     def _cases(self, node: When, depth: int) -> str:
-        """Return a ``when`` inside an expression as nested conditional expressions."""
+        """Return a ``when`` as a chain of conditional expressions: ``a if x > 3 else b if … else c``."""
         cases = [
             f"{self._text(value, _OR, depth)} if {self._condition(condition, _OR, depth)} else "
             for condition, value in node.cases
@@ -161,7 +168,7 @@ class PythonWriter:
         return _with_brackets(text, _COMPARISON, min_binding)
 
     def _helper_call(self, node: Expression | Condition) -> str:
-        """Return a call of a new function that computes an expression or condition, and add it to ``helpers``."""
+        """Add a function that computes an expression or condition to ``helpers``, and return a call of it."""
         name = f"{self._prefix}part{self._count}"
         self._count += 1
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)

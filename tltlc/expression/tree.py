@@ -1,8 +1,8 @@
-"""Expressions over signals and params, from which the value of an atom is computed.
+"""Arithmetic expressions over signals and params, from which the value of an atom is computed.
 
-Each kind of node is a kind of object in the JSON of an artefact (``expression`` of an atom). Nodes
-are immutable and do not depend on the syntax of the language. They have no units: every number is
-in SI units.
+An expression is a tree of immutable nodes. Each class of nodes is a kind of object in the JSON of an
+artefact (the file of a compiled automaton). Nodes do not depend on the syntax of the language, and
+have no units: every number is in SI units.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ class ParamValue:
 class Op:
     """An operator or function and its arguments.
 
-    ``clamp`` takes (x, low, high), ``min`` and ``max`` take two or more arguments.
+    ``neg`` and functions such as ``sqrt`` take one argument, ``clamp`` takes (x, low, high), and ``min``
+    and ``max`` take two or more.
     """
 
     hashed_once = True
@@ -68,9 +69,9 @@ class Condition:
 
 @record
 class When:
-    """The value of the first case whose condition is true, or ``otherwise`` if no condition is.
+    """A case distinction: the value of the first case whose condition is true, else ``otherwise``.
 
-    A case is a condition and a value.
+    A case is a pair of a condition and a value.
     """
 
     hashed_once = True
@@ -82,7 +83,7 @@ Expression = Union[Const, SignalValue, ParamValue, Op, When]
 
 
 def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
-    """Yield the expression and all its subexpressions and conditions, each before its parts, from left to right.
+    """Yield an expression and all expressions and conditions inside it, outer before inner, from left to right.
 
     Does not recurse, so that deep expressions cause no RecursionError.
     """
@@ -108,12 +109,15 @@ def depth(expression: Expression | Condition) -> int:
 
 
 def most_parts(expression: Expression | Condition) -> int:
-    """Return the greatest number of cases of a ``when``, or of arguments of an operator, in an expression."""
+    """Return the size of the widest node: the most cases of a ``when``, or the most arguments of an operator."""
     return max(len(node.cases) if isinstance(node, When) else len(parts(node)) for node in nodes(expression))
 
 
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
-    """Return the operands of a node, or the conditions and values of a ``when``; an empty tuple for other nodes."""
+    """Return the direct parts of a node: the arguments of an operator, or the conditions and values of a ``when``.
+
+    A number, signal or param has no parts.
+    """
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)
     return node.args if isinstance(node, (Op, Condition)) else ()

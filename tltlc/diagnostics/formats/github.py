@@ -10,7 +10,10 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return a command for each diagnostic, each on a line of its own."""
+    """Return a workflow command for each diagnostic, such as ``::error file=a.tltl,line=3…``, one on each line.
+
+    ``color`` has no effect.
+    """
     return "".join(_command(diagnostic) + "\n" for diagnostic in diagnostics)
 
 

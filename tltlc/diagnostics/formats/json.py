@@ -14,7 +14,7 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False, facts: Map
     """Return the diagnostics as the text of a JSON document, ``{"diagnostics": […]}``.
 
     Lines and columns count from 1, offsets from 0; columns and offsets are in characters. ``facts``
-    are JSON data for further keys of the document.
+    are further keys of the document, with JSON data as their values. ``color`` has no effect.
     """
     document = {"diagnostics": list(map(entry, diagnostics)), **facts}
     return json.dumps(document, ensure_ascii=False, indent=2) + "\n"
@@ -37,7 +37,7 @@ def _label(label: Label) -> dict[str, object]:
 
 
 def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
-    """Return the JSON of a fix, whose edits are in ``source``."""
+    """Return a fix as JSON data; its edits are in ``source``."""
     edits = [{**_range(source, edit.span), "text": edit.text} for edit in fix.edits]
     return {"title": fix.title, "applicability": fix.applicability, "edits": edits}
 

@@ -19,7 +19,7 @@ _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sari
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
     """Return the text of a SARIF log, with all diagnostics in one run.
 
-    The paths of files in the current folder are relative to this folder.
+    Paths of files inside the current folder are relative to the folder. ``color`` has no effect.
     """
     rules = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
@@ -78,9 +78,9 @@ def _region(source: SourceFile, span: Span) -> dict[str, object]:
 
 
 def _uri(source: SourceFile) -> str:
-    """Return the URI of a file, relative to the current folder if the file is inside.
+    """Return the URI of a source: a relative path for a file inside the current folder, else ``file://…``.
 
-    A text that is no file of the user has its name as its URI.
+    For a text that is no file of the user, such as ``<stdin>``, return its quoted name.
     """
     is_file = source.kind == "file" and source.name
     path = os.path.relpath(source.name) if is_file else source.name

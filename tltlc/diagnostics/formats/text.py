@@ -19,7 +19,7 @@ If a line is longer, only the part around the span is shown.
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
-    """Return the diagnostics one below the other, with an empty line between them."""
+    """Return the diagnostics one below the other, with an empty line between them; ``color`` adds ANSI colours."""
     return "\n".join(_diagnostic_text(diagnostic, color) for diagnostic in diagnostics)
 
 
@@ -39,9 +39,9 @@ def _diagnostic_text(diagnostic: Diagnostic, color: bool) -> str:
 
 
 def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
-    """Return the lines of a label: its place, the source line, and carets below it with the label's message.
+    """Return three lines for a label: its place, the source line, and carets with the label's message.
 
-    ``gutter`` is the width of the line number in characters.
+    ``gutter`` is the width of the column of line numbers, in characters.
     """
     source, span = label.source, label.span
     number, column = source.position(span.start)
@@ -65,7 +65,7 @@ def _label_lines(label: Label, gutter: int, colour: str, color: bool) -> list[st
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
     """Return the part of a line to show, the column of the first caret (from 0), and the number of carets.
 
-    ``start`` and ``length`` say which characters of the line to mark; ``start`` counts from 0.
+    Carets mark ``length`` characters of the line, beginning at the index ``start``.
     """
     # A line may be a megabyte long, so first cut each part to the most that can be shown.
     end = start + length
@@ -88,12 +88,12 @@ def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
 
 
 def _replace_except_tabs(text: str) -> str:
-    """Return a part of a line with U+FFFD for all unprintable characters except tabs."""
+    """Return a text with U+FFFD in place of all unprintable characters except tabs."""
     return "\t".join(replace_unprintable(piece) for piece in text.split("\t"))
 
 
 def _expand_tabs(text: str, column: int) -> str:
-    """Return a part of a line with spaces instead of tabs; ``column`` is the column at which the part begins."""
+    """Return a part of a line with spaces in place of tabs; ``column`` is where the part begins, from 0."""
     first, *rest = text.split("\t")
     expanded = first
     for piece in rest:
@@ -102,7 +102,7 @@ def _expand_tabs(text: str, column: int) -> str:
 
 
 def replace_unprintable(text: str) -> str:
-    """Replace the unprintable characters of a text, which could control the terminal, by U+FFFD."""
+    """Return a text with U+FFFD in place of its unprintable characters, which could control the terminal."""
     return (
         text
         if text.isprintable()
