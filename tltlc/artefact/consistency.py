@@ -17,13 +17,13 @@ Declared = Union[spec.Signal, spec.Param, spec.Atom]
 CYCLES_WORK: Final = 1_000_000
 """The most steps of work for the check of accepting states and verdicts over infinite traces.
 
-Large automata with many cycles need more. Their accepting states and verdicts are not checked.
+Large automata with many cycles need more steps. Their accepting states and verdicts are not checked.
 """
 
 
 @record
 class Problem:
-    """A contradiction in an artefact: the path of the wrong value in the document, and a message."""
+    """A contradiction in an artefact: the path of the wrong value in the JSON document, and a message."""
 
     path: JsonPath
     message: str
@@ -32,8 +32,9 @@ class Problem:
 def problems(fspa: Fspa) -> Iterator[Problem]:
     """Yield the contradictions in an automaton that was read from an artefact.
 
-    Stops after the first check that fails, because later checks rely on it. Two checks have a limit
-    on their work, so large automata are checked only in part:
+    There are seven checks. Later checks rely on earlier ones, so all contradictions come from the first
+    check that finds any. Two checks have a limit on their work, so large automata are checked only in
+    part:
 
     - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
     - over infinite traces, the check of accepting states and verdicts (:data:`CYCLES_WORK`).
@@ -108,10 +109,11 @@ def _only(count: int, noun: str) -> str:
 
 
 def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
-    """Check that edges with the same source and target differ in the sets of Rabin pairs that contain them.
+    """Check that no edge occurs twice.
 
-    Over finite traces there are no Rabin pairs, so there is at most one edge for each source and
-    target.
+    Two edges with the same source and target may differ only in the ``fin`` and ``inf`` sets of the
+    Rabin pairs that contain them. Over finite traces there are no Rabin pairs, so at most one edge may
+    lead from one state to another.
     """
     marks = fspa.marks()
     seen: set[tuple[object, ...]] = set()
@@ -146,7 +148,8 @@ def _numbering(fspa: Fspa) -> Iterator[Problem]:
 def _distances(fspa: Fspa) -> Iterator[Problem]:
     """Check that distances, verdicts and ``spec_size`` follow from the accepting states and the edges.
 
-    Over infinite traces, also checks that the accepting states are those on accepted cycles.
+    Over infinite traces, also check that the accepting states are those on accepted cycles: cycles that
+    satisfy a Rabin pair.
     """
     goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
     to_goal = _steps_to(fspa, goals)
@@ -173,7 +176,7 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
-    """Return the accepting states and the verdict of each state, for an automaton over finite traces."""
+    """Return the accepting states, and the right verdict of each state, for an automaton over finite traces."""
     goals = [state.id for state in fspa.states if state.accepting]
     to_goal = _steps_to(fspa, goals)
     to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
@@ -181,9 +184,10 @@ def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
 
 
 def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
-    """Return the states on accepted cycles and the verdict of each state, for an automaton over infinite traces.
+    """Return the states on accepted cycles, and the right verdict of each state, for infinite traces.
 
-    Returns the values in the artefact, unchecked, if the analysis takes too much work.
+    If the analysis takes too much work, return the accepting states and verdicts of the artefact
+    instead, unchecked.
     """
     from tltlc.automaton.infinite.analysis import analysis_of_fspa
     from tltlc.automaton.work import OutOfWork, Work

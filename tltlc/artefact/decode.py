@@ -1,4 +1,4 @@
-"""Decode artefacts to automata: from their text, or from their JSON document."""
+"""Decode artefacts (files of compiled automata) to automata, from their text or from parsed JSON."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from tltlc.resolve.spec import Atom, Param, Signal
 def decode(document: object, name: str) -> Fspa:
     """Return the automaton of an artefact whose JSON is already parsed.
 
-    ``name`` is the name of the artefact in messages. Whole numbers may be floats such as ``3.0``,
-    and unknown fields are ignored. Errors point into the text that :func:`json.dumps` writes for
-    the document.
+    ``name`` is the name of the artefact in messages. Whole numbers may be floats such as ``3.0``.
+    Unknown fields are ignored, except in the expressions of atoms. Errors point into the text that
+    :func:`json.dumps` writes for the document.
 
     Raises:
         TltlError: TLT0006 the document nests too deep, or its arithmetic is too large; TLT0601 it
@@ -75,7 +75,7 @@ def _not_finite(name: str, constant: str) -> TltlError:
 
 
 def _label_message(message: str) -> str:
-    """Return a message of Python's JSON parser as the message of a label, e.g. "expecting value"."""
+    """Return a message of Python's JSON parser in the style of tltlc: "Expecting value" as "expecting value"."""
     return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
@@ -128,10 +128,11 @@ _FormulaReader = Callable[[dict[str, str]], Formula | Text]
 
 
 def _formula_reader(atoms: Iterable[Atom]) -> _FormulaReader:
-    """Return a function that converts the texts of a formula, one for each notation, to a formula.
+    """Return a function that reads a formula from its texts.
 
-    If tltlc cannot parse the ASCII text, or would print the formula differently, the function
-    returns the texts as a :class:`Text` instead.
+    The function takes the texts by notation: ``{"ascii": …, "unicode": …, "english": …}``. It parses the
+    ASCII text to a formula. If tltlc cannot parse this text, or would print the formula differently,
+    the function returns the texts as a :class:`Text` instead.
     """
     parser = FormulaParser(atom.name for atom in atoms)
 

@@ -24,10 +24,10 @@ RECOMPILE: Final = "compile the spec again"
 
 
 class Origin:
-    """Where a document comes from, for messages that point into it.
+    """Where a JSON document comes from, for messages that point into its text.
 
-    ``name`` is the name of the document in messages. ``source`` returns its text; it is called at
-    the first error that points into the document.
+    ``name`` is the name of the document in messages. ``source`` is a function that returns the text. It
+    is called only when an error first needs the text.
     """
 
     def __init__(self, name: str, source: Callable[[], SourceFile]) -> None:
@@ -68,10 +68,11 @@ def check_format(document: object, origin: Origin) -> dict[str, Any]:
 
 
 def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
-    """Check that no atom has a larger expression than a spec can have.
+    """Check that the expression of each atom is within the limits that also apply to specs.
 
     Raises:
-        TltlError: TLT0006 the expression of an atom is too large.
+        TltlError: TLT0006 an expression has too many operators inside each other, or a part with too
+            many cases or arguments.
     """
     for index, atom in enumerate(fspa.atoms):
         path = ("atoms", index, "expression")

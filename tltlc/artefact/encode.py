@@ -1,4 +1,4 @@
-"""Encode an automaton as the JSON document of its artefact."""
+"""Encode an automaton as the JSON document of an artefact, the file of a compiled automaton."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ VERSION: Final = 1
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
-    """Return the JSON document of an automaton, with its keys in the order of the file.
+    """Return an automaton as JSON data, with the keys in the order of the file.
 
-    Signals, params and atoms without documentation have no ``doc``.
+    Signals, params and atoms without documentation have no key ``doc``.
     """
     return {
         "format": "fspa",

@@ -11,9 +11,10 @@ from tltlc.artefact.locations import JsonPath
 class JsonSchemaValueException(ValueError):
     """Raised when a value does not match the schema.
 
-    ``path`` leads to the value. ``rule`` is the keyword of the schema that the value violates, such
-    as ``type``, and ``definition`` what the schema requires under this keyword. ``fields`` are the
-    names of the fields that are missing or not allowed.
+    ``path`` leads to the value in the document. ``rule`` is the keyword of the schema that the value
+    violates, such as ``type``. ``definition`` is what the schema says under this keyword, such as
+    ``"string"``. ``fields`` are the names of the fields that are missing or not allowed; it is empty
+    for other rules.
     """
 
     def __init__(self, path: JsonPath, rule: str, definition: Any, fields: Sequence[str] = ()) -> None:

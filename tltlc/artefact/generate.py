@@ -25,9 +25,9 @@ PLAIN_HEAD = "(data, custom_formats={}, name_prefix=None):"
 TYPED_HEAD = "(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:"
 
 PLACE = re.compile(r'(?:"" \+ )?\(name_prefix or "data"\) \+ "([^"]*)"(?:\.format\(\*\*locals\(\)\))?(?: \+ "")?')
-"""The text of a value's place, as fastjsonschema writes it; the group is the part after the prefix."""
+"""Python code for the place of a value, as fastjsonschema generates it; the group is the part after the prefix."""
 STEP = re.compile(r"\.(\w+)|\[\{(\w+)\}\]|\[(\d+)\]")
-"""A step of a place: a key, the variable of an index, or an index."""
+"""A step of a place: a key, the name of a variable that holds an index, or an index."""
 RAISE = re.compile(r"Exception\((.*?), value=.*?, name=(.*?), definition=(.*), rule='(\w+)'\)$")
 """The arguments of an exception: its message, the place, the schema of the value, and the keyword."""
 
@@ -48,10 +48,10 @@ def validator_source() -> str:
 
 
 def _inline(node: Any, definitions: dict[str, Any]) -> Any:
-    """Return the schema with every reference replaced by its definition, except recursive references.
+    """Return the schema with the definition in place of each reference, except for recursive references.
 
     This makes the validator faster. A reference would become a function call, and each call builds
-    the text of the value's path.
+    the path of the value.
     """
     if isinstance(node, list):
         return [_inline(item, definitions) for item in node]
@@ -64,11 +64,11 @@ def _inline(node: Any, definitions: dict[str, Any]) -> Any:
 
 
 def _shorten_line(line: str) -> str:
-    """Return a line of the code that fastjsonschema generates, with the changes that the project needs.
+    """Adapt a line of the code that fastjsonschema generates.
 
-    Gives exceptions the broken rule as data instead of a message. Passes the path of a value as a
-    tuple instead of a text. Removes the class ``Decimal`` and the exception for several errors, and
-    adds types to the heads of functions.
+    Exceptions get the violated rule as data instead of a message. The path of a value becomes a tuple
+    instead of a text. The class ``Decimal`` and the exception for several errors are removed, and the
+    heads of functions get types.
     """
     line = RAISE.sub(_exception_arguments, line)
     line = PLACE.sub(_path, line)
@@ -77,7 +77,11 @@ def _shorten_line(line: str) -> str:
 
 
 def _exception_arguments(match: re.Match[str]) -> str:
-    """Return the arguments of an exception: place, rule, the rule's part of the schema, and fields."""
+    """Return the code of an exception for a match of ``RAISE``, with new arguments.
+
+    The arguments are those of :class:`~tltlc.artefact.errors.JsonSchemaValueException`: the path, the
+    rule, what the schema says under the rule, and perhaps fields.
+    """
     message, place, schema, rule = match.groups()
     definition = ast.literal_eval(schema)[rule]
     if rule == "dependencies":
@@ -91,7 +95,7 @@ def _exception_arguments(match: re.Match[str]) -> str:
 
 
 def _path(match: re.Match[str]) -> str:
-    """Return the code of the tuple for a place, such as ``(*path, 'states', i, 'id')``."""
+    """Return the code of a tuple for a match of ``PLACE``, such as ``(*path, 'states', i, 'id')``."""
     steps = [repr(key) if key else index for key, *indices in STEP.findall(match[1]) for index in ["".join(indices)]]
     return f"({', '.join(['*path', *steps])})" if steps else "path"
 

@@ -1,11 +1,11 @@
 """Check the guards of an artefact.
 
-A guard must be the list of all its prime implicants, and at each sample exactly one guard of each
-state must be true.
+A guard must be the list of all its prime implicants. At each sample, exactly one guard of each state
+must be true. Only samples at which no two atoms of an exclusive group hold count
+(``docs/semantics.md``, "Guards and their robustness").
 
 A cube is a conjunction of literals. It is stored as two bit sets: the atoms that must be true, and
-the atoms that must be false. ``D`` is the set of samples on which no two atoms of an exclusive
-group hold together (``docs/semantics.md``, "Guards and their robustness").
+the atoms that must be false.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from tltlc.automaton.fspa import Fspa, Implicant
 MaskCube = tuple[int, int]
 
 WORK_LIMIT = 200_000
-"""The most operations on cubes in one check, which take about a fifth of a second.
+"""The most operations on cubes in one check. They take about a fifth of a second.
 
-A check that needs more stops without a result.
+A check that needs more operations stops without a result.
 """
 
 _BITS_OF_A_STEP = 512
@@ -33,7 +33,7 @@ class _TooManyCubesError(Exception):
 
 
 class _CubeBudget:
-    """Counts operations on cubes, and stops the check when they are too many.
+    """Counts operations on cubes, and raises _TooManyCubesError when there are too many.
 
     The limit is not in seconds, because then the result would depend on the machine.
     """
@@ -48,11 +48,11 @@ class _CubeBudget:
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[JsonPath, str]]:
-    """Yield the first problem of the guards, as a path in the document and a message.
+    """Yield the first problem of the guards, as a path in the document and a message; nothing without a problem.
 
-    Yields nothing if there is no problem. A problem is a guard that is not the complete list of its
-    prime implicants, or a state in which several guards, or no guard, are true at some sample. The
-    check stops after :data:`WORK_LIMIT` operations. The indices in ``fspa`` must be in range.
+    There are two kinds of problems. A guard may not be the complete list of its prime implicants. In a
+    state, several guards, or none, may be true at some sample. The check stops without a result after
+    :data:`WORK_LIMIT` operations. The indices in ``fspa`` must be in range.
     """
     work = _CubeBudget()
     leaving: list[list[int]] = [[] for _ in fspa.states]
@@ -95,12 +95,12 @@ def _cube(prime: Implicant) -> MaskCube:
 def _guard_problem(
     primes: Sequence[Implicant], cubes: Sequence[MaskCube], pairs: Sequence[MaskCube], work: _CubeBudget
 ) -> str | None:
-    """Return in words why ``cubes`` are not all prime implicants of a guard, or None if they are.
+    """Return in words why a list of implicants is not the list of all prime implicants of a guard.
 
-    ``cubes`` are the implicants ``primes`` as bit sets. ``pairs`` has a cube for each pair of
-    exclusive atoms, which is true if both hold. A set of cubes has all prime implicants of its
-    disjunction if and only if no cube implies another one, and the consensus of every two cubes
-    implies a cube of the set (Quine 1955).
+    Return None if it is. ``cubes`` are the implicants ``primes`` as bit sets. ``pairs`` has the cube
+    ``a & b`` for each two exclusive atoms a and b. The check uses a theorem of Quine (1955): a set of
+    cubes has all prime implicants of its disjunction if and only if no cube implies another cube, and
+    the consensus of every two cubes implies a cube of the set.
     """
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
@@ -140,9 +140,9 @@ def _consensus(one: MaskCube, other: MaskCube) -> MaskCube | None:
 
 
 def _intersect(one: MaskCube, other: MaskCube, pairs: Sequence[MaskCube], work: _CubeBudget) -> bool:
-    """Whether some sample satisfies both cubes, and no two exclusive atoms hold at it.
+    """Whether both cubes are true at some sample at which no two exclusive atoms hold.
 
-    ``pairs`` has a cube for each pair of exclusive atoms, which is true if both hold.
+    ``pairs`` has the cube ``a & b`` for each two exclusive atoms a and b.
     """
     work.spend()
     if one[0] & other[1] or one[1] & other[0]:
@@ -153,7 +153,7 @@ def _intersect(one: MaskCube, other: MaskCube, pairs: Sequence[MaskCube], work: 
 
 
 def _covers_all(cubes: Sequence[MaskCube], work: _CubeBudget) -> bool:
-    """Whether every sample satisfies at least one of the cubes."""
+    """Whether at least one of the cubes is true at every sample."""
     work.spend(1 + len(cubes))
     if (0, 0) in cubes:
         return True

@@ -22,12 +22,12 @@ _unsafe = re.compile(
 
 
 def layout(document: Any) -> Iterator[str]:
-    """Yield the JSON text of a document in pieces.
+    """Yield the JSON text of a document in pieces, to be written one after the other.
 
-    A value that fits on a line is written on one line, except the document itself. Keys keep their
-    order. Characters that are invisible or change the direction of text are escaped. ``<`` is
-    escaped in ``</`` and ``<!``, so that the text can be put into a script element of an HTML page.
-    Numbers have their shortest form.
+    A value that fits on a line of :data:`WIDTH` characters is written on one line, except the document
+    itself. Keys keep their order. Characters that are invisible or change the direction of text are
+    escaped. ``<`` is escaped in ``</`` and ``<!``, so that the text can be put into a script element of
+    an HTML page. Numbers have their shortest form.
 
     Raises:
         ValueError: a number is not finite.

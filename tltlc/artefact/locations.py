@@ -31,9 +31,9 @@ def span_of(text: str, path: JsonPath) -> Span:
 
 
 def _value_start(decoder: JSONDecoder, text: str, start: int, step: str | int) -> int | None:
-    """Return where the value of a key or an index begins in the object or array at ``start``.
+    """Return the offset of the value of a key or an index in the object or array that begins at ``start``.
 
-    Returns None if the object or array has no such value.
+    Return None if the object or array has no such value.
     """
     is_object = text[start] == "{"
     if text[start] not in "{[" or is_object != isinstance(step, str):

@@ -62,6 +62,6 @@ def _path_text(path: JsonPath) -> str:
 
 
 def _item_list(values: Sequence[object], last: str) -> str:
-    """Return values in backquotes, separated by commas, with ``last`` before the last one."""
+    """Return values in backquotes: "`a`, `b` or `c`" if ``last`` is " or "."""
     items = [f"`{value}`" for value in values]
     return last.join([", ".join(items[:-1]), items[-1]]) if len(items) > 1 else items[0]

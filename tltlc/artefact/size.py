@@ -15,12 +15,12 @@ _SHORTEST_EDGE: Final = '    {"source": 0, "target": 0, "guard": {"text": "", "p
 def check_size(subject: str, size: int, commas: int = 0) -> None:
     """Raise an error if a file would be too large to be read again.
 
-    ``subject`` is the name of the file in messages, and ``size`` its size in bytes. ``commas`` is
-    the number of commas in it, from which the number of its values is estimated.
+    ``subject`` is the name of the file in messages, and ``size`` its size in bytes. ``commas`` is the
+    number of commas in the file, which stands for the number of its values.
 
     Raises:
         TltlError: TLT0004 the file is larger than :data:`tltlc.io.limits.ARTEFACT` allows; TLT0006
-            it has more values.
+            it has more values than this limit allows.
     """
     if size > ARTEFACT.size:
         raise _too_large("TLT0004", f"{subject} would be larger than {ARTEFACT.size >> 20} MiB")
@@ -29,9 +29,9 @@ def check_size(subject: str, size: int, commas: int = 0) -> None:
 
 
 def least_size(fspa: Fspa) -> tuple[int, int]:
-    """Return lower bounds of the size of an artefact in bytes, and of its number of commas.
+    """Return a lower bound for the size of an automaton's artefact in bytes, and one for its number of commas.
 
-    Only its edges are counted, since they are most of a large artefact.
+    Only edges are counted, since they are most of a large artefact.
     """
     literals = sum(len(prime) for edge in fspa.edges for prime in edge.guard.primes)
     size = len(_SHORTEST_EDGE) * len(fspa.edges) + len("[0, true], ") * literals
