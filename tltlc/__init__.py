@@ -75,7 +75,7 @@ _MOVED = {
 
 
 class _OldNames:
-    """An import finder that finds modules that have moved by their old, documented names."""
+    """An import finder that lets programs import moved modules by their old, documented names."""
 
     @staticmethod
     def find_spec(

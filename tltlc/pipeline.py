@@ -55,7 +55,7 @@ class CompileOptions:
 class Compiled:
     """A compiled source text: its ``program`` (specs and tests), its ``automata``, and its ``diagnostics``.
 
-    ``automata`` are in the order of the specs. ``diagnostics`` has no errors, and none that a
+    ``automata`` are in the order of the specs. ``diagnostics`` has the warnings and notes that no
     comment in the text silences.
     """
 
@@ -69,9 +69,10 @@ class Session:
 
     A stage runs when its result is first needed, and only once. ``module``, ``syntax_errors``,
     ``resolution`` and ``source_diagnostics`` work for any text: they leave out the parts with
-    errors. All other properties raise a :class:`TltlError` if a stage that they need has errors.
-    If ``proofs`` is false, the session does not prove that the values of predicates are in [-1, 1]:
-    the proof takes longer than everything else.
+    errors. All other properties raise a :class:`TltlError` if parsing or resolving has errors, and
+    ``automata`` also if an automaton cannot be built. If ``proofs`` is false, the session does not
+    prove that the values of predicates stay in their ranges: the proofs take longer than everything
+    else.
 
     >>> session = Session(SourceFile("hide.tltl", "signal seen: bool  spec hide = G !seen"))
     >>> [spec.name for spec in session.specs], [len(fspa.states) for fspa in session.automata]
@@ -85,7 +86,7 @@ class Session:
 
     @property
     def module(self) -> Module:
-        """The declarations of the text, without those that have syntax errors."""
+        """The syntax tree of the text, without the declarations and clauses that have syntax errors."""
         return self._parsed[0]
 
     @property
@@ -108,8 +109,8 @@ class Session:
     def program(self) -> ResolvedFile:
         """The specs and tests of the source text, with all names resolved.
 
-        Errors: :class:`TltlError` with the diagnostics of parsing if the text has syntax errors;
-        with those of parsing and resolving if it has other errors.
+        Errors: :class:`TltlError` with the diagnostics of parsing if the text has syntax errors; with
+        the diagnostics of parsing and resolving if the text has other errors.
         """
         stop_at_errors(self.syntax_errors)
         stop_at_errors(self._unsilenced(self.source_diagnostics))
@@ -117,31 +118,33 @@ class Session:
 
     @cached_property
     def specs(self) -> tuple[Spec, ...]:
-        """The specs in :attr:`CompileOptions.specs`, or all specs, in the order of the text.
+        """The specs that :attr:`CompileOptions.specs` names, or all specs, in the order of the text.
 
-        Errors: as for :attr:`program`; TLT0720 if the options have the name of a spec that does not
-        exist.
+        Errors: as for :attr:`program`; TLT0720 if the options name a spec that does not exist.
         """
         return pick_specs(self.program.specs, self.options.specs, self.source.name)
 
     @cached_property
     def reported(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of all stages, including those that comments silence. Errors: as for :attr:`specs`."""
+        """The diagnostics of all stages, including those that comments silence.
+
+        They include the errors of automata that cannot be built. Errors: as for :attr:`specs`.
+        """
         # Raise the errors of parsing and resolving before automata are built.
         built = self._built
         return self.source_diagnostics + tuple(diagnostic for _, warnings in built for diagnostic in warnings)
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of all stages that no comment silences. Errors: as for :attr:`specs`."""
+        """The diagnostics in :attr:`reported`, without those that comments silence. Errors: as for :attr:`specs`."""
         return self._unsilenced(self.reported)
 
     @property
     def automata(self) -> tuple[Fspa, ...]:
-        """The automata of :attr:`specs`, in their order.
+        """The automata of :attr:`specs`, in the same order.
 
-        Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed;
-        TLT0720 if the options have the name of a spec that does not exist.
+        Errors: :class:`TltlError` with the diagnostics of all stages up to the one that failed; TLT0720
+        if the options name a spec that does not exist.
         """
         stop_at_errors(self.diagnostics)
         return tuple(fspa for fspa, _ in self._built if fspa is not None)
@@ -158,7 +161,7 @@ class Session:
 
     @cached_property
     def _built(self) -> tuple[tuple[Fspa | None, tuple[Diagnostic, ...]], ...]:
-        """For each spec, its automaton and warnings; or None and errors if it cannot be built."""
+        """For each spec, its automaton and the warnings; or None and the errors if it cannot be built."""
         return tuple(build_spec(spec, self.options) for spec in self.specs)
 
     def _unsilenced(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
@@ -166,16 +169,16 @@ class Session:
 
 
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
-    """Compile all specs of a source text, or those in :attr:`CompileOptions.specs`.
+    """Compile all specs of a source text, or those that :attr:`CompileOptions.specs` names.
 
-    Errors: :class:`TltlError` with all diagnostics up to the end of the stage that failed; TLT0720
-    if the options have the name of a spec that does not exist.
+    Errors: :class:`TltlError` with the diagnostics of all stages up to the one that failed; TLT0720 if
+    the options name a spec that does not exist.
     """
     return Session(source, options).compiled()
 
 
 def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
-    """Return the automaton of a spec and its warnings; or None and errors if it cannot be built."""
+    """Return the automaton of a spec and the warnings; or None and the errors if it cannot be built."""
     try:
         if spec.semantics == "infinite":
             from tltlc.automaton.infinite.build import build_infinite
@@ -216,8 +219,8 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
 def compile_text(text: str, name: str = _TEXT_NAME, options: CompileOptions | None = None) -> tuple[Fspa, ...]:
     """Return the automata of the specs of a text, in order.
 
-    ``name`` is the name of the text in messages. If it is a path, imported files are searched for
-    in its folder, too. Errors: :class:`TltlError`.
+    ``name`` is the name of the text in messages. If ``name`` is a path, the text can import files from
+    the folder of the path. Errors: :class:`TltlError`.
 
     >>> import tltlc
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
@@ -239,7 +242,8 @@ def compile_text(text: str, name: str = _TEXT_NAME, options: CompileOptions | No
 def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = None) -> tuple[Fspa, ...]:
     """Return the automata of the specs of a file, in order.
 
-    Errors: :class:`TltlError`, with code TLT0001 to TLT0004 if the file is not readable text.
+    Errors: :class:`TltlError`, with one of the codes TLT0001 to TLT0004 if the file cannot be read as
+    text.
 
     >>> import tltlc
     >>> fspa, = tltlc.compile_file("examples/cover_and_hide.tltl")
@@ -251,7 +255,7 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
 
 @resource_limits()
 def load(path: str | os.PathLike[str]) -> Fspa:
-    """Return the automaton in an artefact ``NAME.fspa.json``.
+    """Return the automaton in an artefact, a file ``NAME.fspa.json`` that ``tltlc compile`` wrote.
 
     Errors: :class:`TltlError` if the file cannot be read, is not an artefact, or contradicts
     itself.
@@ -290,9 +294,9 @@ def decode_artefact(document: object, name: str) -> Fspa:
 
 
 def encode_artefact(fspa: Fspa) -> dict[str, Any]:
-    """Return the artefact of an automaton as JSON data, for a file that contains more than the artefact.
+    """Return the artefact of an automaton as JSON data, for a file that also contains other things.
 
-    Errors: TLT0004 and TLT0006 if the artefact would be too large for a file.
+    Errors: TLT0004 and TLT0006 if the artefact would be too large to be read again.
     """
     from tltlc.backends.json import document_and_text
 
@@ -305,8 +309,8 @@ def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     ``values`` maps names of params to values as the language writes them, such as
     ``{"level_size": "30 m"}``.
 
-    Errors: TLT0307 if a value is out of range; TLT0308 if a param does not exist or a text is not a
-    value for it.
+    Errors: TLT0307 if a value lies outside the range of its param; TLT0308 if there is no param with
+    this name, or if a text is no value for the param.
     """
     if not values:
         return fspa

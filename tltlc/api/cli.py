@@ -1,8 +1,9 @@
 """How does a command take options, show diagnostics and choose its exit status?
 
-``OutputPath``, ``WholeRange`` and ``FiniteRange`` are click types for options. ``open_input`` reads
-and compiles an argument such as ``SPEC.tltl:NAME``. ``Report`` collects diagnostics, shows them in
-the format that the user chose, and returns the exit status. ``exits`` has all exit statuses.
+``OutputPath``, ``WholeRange`` and ``FiniteRange`` are types for the options of click commands.
+``open_input`` reads and compiles an argument such as ``SPEC.tltl:NAME``. ``Report`` collects
+diagnostics, shows them in the format that the user chose, and returns the exit status. ``exits`` has
+all exit statuses.
 """
 
 from tltlc.interfaces.cli import exits

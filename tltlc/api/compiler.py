@@ -1,9 +1,10 @@
-"""How do I get an automaton, and a monitor or picture of it?
+"""How do I get an automaton, and then a monitor or a picture of the automaton?
 
 ``compile_source`` compiles a source text. ``read_artefact`` and ``decode_artefact`` read an
-automaton that was compiled before. ``emit`` returns the files of a target, such as ``python`` or
-``svg``. ``encode_artefact`` returns an artefact as JSON data. ``imported_files`` yields the files
-that a source text imports, even if it does not compile.
+automaton that was compiled before. ``emit`` returns the files for an automaton in some format: a
+monitor in ``python``, a picture as ``svg``. ``encode_artefact`` returns the artefact of an automaton as
+JSON data. ``imported_files`` yields the files that a source text imports, even if the text does not
+compile.
 """
 
 from tltlc.backends import Options as BackendOptions

@@ -2,8 +2,8 @@
 
 The functions that read raise ``TltlError`` for files that are missing, too large or malformed;
 ``limits`` has the greatest sizes. The functions that write replace a file as a whole or not at all.
-The lock of ``try_lock`` ends with the process, even if it is killed, and a folder of
-``temporary_folder`` that a killed process left is removed later.
+``try_lock`` locks a file until the process ends, even if the process is killed. ``temporary_folder``
+makes a folder and removes it at the end; if the process is killed, a later process removes the folder.
 """
 
 from tltlc.io import limits

@@ -1,9 +1,10 @@
 """What are the values of the atoms, the progress and the reward of a step?
 
 ``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
-the robustness of a guard, and ``nearest_edge`` finds the step that came nearest to an edge towards
-acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the names of the reward
-modes; ``mode_function`` returns the function of a mode, which rewards a ``Transition``.
+the robustness of a guard. ``nearest_edge`` finds, among some steps, the step that came nearest to
+taking an edge towards acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the
+names of the reward modes; ``mode_function`` returns the function that computes the reward of a
+``Transition`` in a mode.
 ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 

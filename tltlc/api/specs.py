@@ -1,6 +1,7 @@
 """What types do signals have, how is a clock read, and where is the standard library?
 
-``TYPES`` has the dimension of each type. ``clock_from_text`` reads a clock such as ``20 Hz``.
+``TYPES`` maps each type to its dimension, such as metres per second. ``clock_from_text`` reads a clock
+such as ``20 Hz``.
 ``full_name`` returns the name of a signal or predicate with its arguments, as it is written in
 artefacts. ``standard_library`` returns the folder of the library.
 """
