@@ -1,1 +1,1 @@
-"""Artefacts as JSON: write them, check them and read them. Begin with `encode` and `decode`."""
+"""Convert automata to artefacts (JSON files) and back, and check artefacts. Begin with `encode` and `decode`."""

@@ -138,7 +138,7 @@ def _formula_reader(atoms: Iterable[Atom]) -> _FormulaReader:
 
     def read(text: dict[str, str]) -> Formula | Text:
         formula = parser.formula(text["ascii"])
-        # A text of another tool may mean something else here, since its operators may have other precedences.
+        # Another tool may have written the text with other precedences of operators. Then it means something else here.
         if formula is not None and is_ascii_text(formula, text["ascii"]):
             return formula
         return Text(text["ascii"], text["unicode"], text["english"])

@@ -1,4 +1,4 @@
-"""Frozen records with slots, like ``dataclass(frozen=True, slots=True)`` but twenty times faster to define.
+"""Immutable records with slots, like ``dataclass(frozen=True, slots=True)`` but twenty times faster to define.
 
 The compiler defines about ninety small classes. ``dataclasses`` would generate and compile the
 source of several methods for each, in 0.4 ms. For all classes, this would take a quarter of the

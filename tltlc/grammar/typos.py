@@ -52,7 +52,10 @@ def likely_name(name: str, known: Iterable[str]) -> str | None:
 
 
 def count_typos(word: str, known: str) -> int | None:
-    """Return how many typos turn ``known`` into ``word``; None if they are different words."""
+    """Return how many typos turn ``known`` into ``word``: 0 if they are equal, None if they are different words.
+
+    The docstring of this module says what counts as a typo.
+    """
     most = 0 if len(known) < 2 else 2 if len(known) >= _LONG else 1
     if abs(len(word) - len(known)) > most or not _begin_alike(word, known):
         return None

@@ -1,4 +1,4 @@
-"""The time from one sample to the next, as a frequency or a period."""
+"""Read a clock: the time from one sample to the next, written as a frequency or as a time."""
 
 from __future__ import annotations
 

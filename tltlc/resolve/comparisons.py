@@ -58,7 +58,7 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
 
 
 def _check_size(side: Quantity, expr: BinaryExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0319) if a side can overflow for values in the declared finite ranges."""
+    """Raise ResolutionError (TLT0319) if the arithmetic of a side can overflow within its declared ranges."""
     if not side.overflows:
         return
     raise problem(

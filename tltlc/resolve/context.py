@@ -199,7 +199,7 @@ class Context:
         )
 
     def names_in(self, expr: Expr) -> tuple[str, ...]:
-        """Return the distinct names in an expression, in order of appearance."""
+        """Return the distinct names of signals, predicates, lets and parameters in an expression, in order."""
         names = self._names.get(id(expr))
         if names is None:
             unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (NameExpr, CallExpr)))

@@ -18,7 +18,7 @@ _ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None,
 
 
 def check_arguments(call: CallExpr, env: Env) -> None:
-    """Raise ResolutionError (TLT0210) if a built-in function gets a named argument, or too few or too many."""
+    """Raise ResolutionError (TLT0210) if a built-in function gets a wrong number of arguments, or one by name."""
     name, source, count = call.name, env.scope.source, len(call.arguments)
     named = next((argument for argument in call.arguments if argument.name is not None), None)
     if named is not None:

@@ -16,10 +16,10 @@ from tltlc.resolve.values import number_text, range_text
 def apply_overrides(
     params: Mapping[str, Param], values: Mapping[str, str]
 ) -> tuple[dict[str, Param], list[Diagnostic]]:
-    """Return the params with the given values (``{"level_size": "25 m"}``) and the problems found.
+    """Return a copy of ``params`` with new values, such as ``{"level_size": "25 m"}``, and the errors found.
 
-    Diagnostics: TLT0308 for a name that is not a param and for a text that is not a value for it,
-    TLT0307 for a value outside the param's range.
+    Values in error are left out. The errors are TLT0308 for a name that is no param, and for a text
+    that is no value for the param, and TLT0307 for a value outside the param's range.
     """
     result = dict(params)
     diagnostics = []

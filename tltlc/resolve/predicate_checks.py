@@ -116,7 +116,7 @@ def _diagnostic(instance: Instance, finding: RangeProblem, negative: bool = Fals
     title, advice = title.format(name=instance.name, low=low, high=high), advice.format(low=low, high=high)
     labels: tuple[Label, ...] = (Label(instance.source, instance.span, finding.message),)
     if instance.use and instance.use.source is not instance.source:
-        # The predicate of a library is correct. The numbers passed to it here are the problem.
+        # The predicate comes from a library and is correct. The numbers that this use passes are the problem.
         labels = (replace(instance.use, message=finding.message), replace(labels[0], message="declared here"))
         advice = f"choose other numbers here, or {advice}"
     return Diagnostic(code, title, labels, advice, severity)

@@ -1,6 +1,6 @@
-"""The exception of resolution, and the log of its diagnostics.
+"""The exception that stops the resolution of one clause or declaration, and the log of all diagnostics.
 
-The exception ends the current clause or declaration, never the whole run.
+The exception never stops the whole run: the next clause or declaration is resolved.
 """
 
 from __future__ import annotations

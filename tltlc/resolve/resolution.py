@@ -154,7 +154,7 @@ def _declare_names(
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:
-    """Return, for each ``exclusive`` declaration of a module, the names of its atoms. Log those in error."""
+    """Return, for each ``exclusive`` declaration of a module, the names of its atoms; log errors."""
     env = Env(context, scope)
     groups = []
     for declaration in scope.module.declarations:

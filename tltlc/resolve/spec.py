@@ -154,8 +154,9 @@ class RepeatedSample:
 class Expect:
     """An ``expect`` of a test: what must be true after the steps before it.
 
-    ``kind`` is ``verdict``, ``progress`` or ``state``. ``value`` is the verdict, the number or the
-    label. ``comparison`` is one of ``< <= > >=`` for progress, else None.
+    ``kind`` says what is compared with ``value``: the ``verdict`` (``"pending"``), the ``progress`` (a
+    number from 0 to 1), or the label of the ``state`` (``"F a"``). ``comparison`` is one of
+    ``< <= > >=`` for progress, else None.
     """
 
     kind: Literal["verdict", "progress", "state"]

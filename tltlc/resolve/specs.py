@@ -80,8 +80,8 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
 def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Context) -> Vocabulary:
     """Return the atoms with the names ``used``, and the signals, params and groups that belong to them.
 
-    A group of ``exclusive`` atoms belongs to them if it contains at least two of them. Then its other
-    atoms are returned, too.
+    ``groups`` has the names of the atoms of each ``exclusive`` declaration. A group belongs to the atoms
+    if ``used`` names at least two of its atoms; then the others are returned, too.
     """
     used = list(used)
     exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]

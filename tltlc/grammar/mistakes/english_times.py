@@ -88,7 +88,7 @@ def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
     if clause in ("reach", "avoid"):
         return False
     is_kept = clause == "keep" or has_always_before(failure)
-    # These forms require a step to exist, which would turn what is kept into a goal.
+    # These forms require that some step exists. Inside `keep` or `always`, this would add a goal.
     if is_kept and (forms is AFTER_TIME or (previous is None and (clause == "keep" or forms is FOR_TIME))):
         return False
     may_be_negated = forms is IN_TIME

@@ -151,7 +151,7 @@ def dash_comment(failure: ParseFailure) -> Diagnostic | None:
 
 
 def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if the language does not know a unit, else None: ``20 seconds``, ``3 feet``."""
+    """Return an error for a unit that the language does not know, as in ``20 seconds`` or ``3 feet``, else None."""
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
@@ -179,7 +179,7 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
 
 
 def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if two operators stand side by side, else None: ``a and then b``, ``a then then b``."""
+    """Return an error if two operators stand side by side, as in ``a and then b`` or ``a then then b``, else None."""
     before, token = failure.previous_token, failure.token
     if before is None or before.type not in INFIX or token.type not in INFIX or not failure.wants_operand:
         return None
@@ -194,7 +194,10 @@ def doubled_operator(failure: ParseFailure) -> Diagnostic | None:
 
 
 def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if an operator for one formula stands between two, as in ``reach a next b``, else None."""
+    """Return an error if an operator that takes one formula stands between two formulas, else None.
+
+    An example is ``reach a next b``.
+    """
     token, keyword, following = failure.token, failure.tokens[0].text, failure.stop.index + 1
     is_last = following + 1 >= len(failure.tokens) or is_first_on_line(failure.source, failure.tokens, following)
     if is_last and (keyword, token.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):

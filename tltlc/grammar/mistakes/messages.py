@@ -192,7 +192,10 @@ def _missing_type(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a quantifier is wrong before its colon, else None: ``all x in a: p``, ``all(p, q)``."""
+    """Return an error if a quantifier is wrong before its colon, else None.
+
+    Examples are ``all x in a: p`` and ``all(p, q)``.
+    """
     heads = [token for token in failure.tokens[: failure.stop.index] if token.type in ("ALL", "ANY", "COLON")]
     if not heads or heads[-1].type == "COLON":
         return None
@@ -202,7 +205,7 @@ def _quantifier_head(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _misspelt_operator(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error for a misspelt operator, else None: ``a adn b``, ``alwyas a``, ``FG a``."""
+    """Return an error for a misspelt operator, as in ``a adn b``, ``alwyas a`` or ``FG a``, else None."""
     before, token = failure.previous_token, failure.token
     if before is None or not failure.wants_operator:
         return None
@@ -242,7 +245,7 @@ def _is_before_operand(failure: ParseFailure) -> bool:
 
 
 def _verb_is(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error for the verb `is`, else None: ``seen is true``, ``seen is not true``."""
+    """Return an error for the verb `is`, as in ``seen is true`` or ``seen is not true``, else None."""
     at, after = failure.stop.index, [token.text for token in failure.tokens[failure.stop.index + 1 :]]
     if (
         failure.token.text not in ("is", "are")

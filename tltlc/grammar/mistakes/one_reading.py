@@ -44,7 +44,7 @@ def has_token(failure: ParseFailure, start: int, stop: int, kinds: Collection[st
 
 
 def is_of_one_step(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether the formula from index ``start`` up to ``stop`` is about one step: it has no temporal operator."""
+    """Whether the formula from index ``start`` up to ``stop`` is about one step, without a temporal operator."""
     return not any(token.type in TEMPORAL | UNTILS | {"THEN"} for token in failure.tokens[start:stop])
 
 
@@ -120,7 +120,7 @@ def is_clear_time_here(failure: ParseFailure, *, may_be_negated: bool, may_be_ke
 
 
 def has_always_before(failure: ParseFailure) -> bool:
-    """Whether an open bracket directly follows `always`."""
+    """Whether one of the brackets that are open where parsing failed directly follows `always`."""
     return any(before is not None and before.type == "ALWAYS" for before in _tokens_before_brackets(failure))
 
 

@@ -92,7 +92,7 @@ def _is_clear_list(failure: ParseFailure, start: int, stop: int, word: str) -> b
     if operator == "THEN":
         after_last = [kind for index, kind in kinds if index > commas[-1] and kind in INFIX]
         after_commas = [tokens[index + 1].type for index in commas if tokens[index + 1].type in INFIX]
-        # A negated part may be a condition on a goal instead of a goal: `reach a, not b`.
+        # In `reach a, not b`, the negated part may be a condition on the goal `a`, and no goal itself.
         if any(kind == "NOT" for _, kind in kinds):
             return False
         return (
@@ -238,7 +238,10 @@ def wrong_brackets(failure: ParseFailure) -> Diagnostic | None:
 
 
 def quoted_name(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a name or formula is in quotes, else None: ``near("door")``, ``reach "near(door)"``."""
+    """Return an error if a name or formula is in quotes, else None.
+
+    Examples are ``near("door")`` and ``reach "near(door)"``.
+    """
     text, at = failure.token.text.strip('"'), failure.stop.index
     if failure.token.type != "STRING" or not ("NAME" in failure.allowed_terminals or failure.wants_operand):
         return None
@@ -266,7 +269,7 @@ def text_without_quotes(failure: ParseFailure, start: int, stop: int, text: str)
 
 
 def invalid_name(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if a name contains `-` or begins with a digit, else None: ``my-door``, ``2nd_door``."""
+    """Return an error if a name contains `-` or begins with a digit, as ``my-door`` and ``2nd_door`` do, else None."""
     before, token, after = failure.previous_token, failure.token, failure.tokens[failure.stop.index + 1 :][:1]
     if before is None or not after:
         return None

@@ -67,7 +67,7 @@ def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
 
 
 def _invalid_word(failure: ParseFailure) -> Diagnostic:
-    """Return the error for a word with characters that no name has: ``café``, ``coins²``."""
+    """Return the error for a word with characters that no name has, such as ``café`` and ``coins²``."""
     from unicodedata import normalize
 
     text = failure.token.text
@@ -83,7 +83,7 @@ def _invalid_word(failure: ParseFailure) -> Diagnostic:
 
 
 def _foreign_quotes(failure: ParseFailure) -> Diagnostic:
-    """Return the error for quotes other than ``"``: ``near('door')``, typographic quotes."""
+    """Return the error for quotes other than ``"``, as in ``near('door')``."""
     at, tokens = failure.stop.index, failure.tokens
     last = next((index for index in range(at + 1, len(tokens)) if tokens[index].text in _QUOTES), None)
     title = f"{_quote_sign(failure.token.text)} means nothing here"

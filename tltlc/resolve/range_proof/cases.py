@@ -35,7 +35,7 @@ Constraints = tuple[Constraint, ...]
 
 @record
 class ConstrainedValue:
-    """A case of an expression: the value that it has where all constraints hold."""
+    """A case of an expression: the expression equals ``value`` where all constraints hold."""
 
     constraints: Constraints
     value: Expression

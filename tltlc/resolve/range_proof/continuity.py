@@ -57,7 +57,7 @@ def meetings(
             for constraint in dict.fromkeys((*first.constraints, *second.constraints))
             if holds_at_once(
                 constraint.difference, whole, -inf, inf
-            )  # if it may be undefined, its border may not show where the case ends
+            )  # where a difference may be undefined, its zeros may not show where the case ends
         )
         region = whole.constrain(constraints)
         if region is not None:

@@ -32,7 +32,7 @@ def proves_all(goals: Iterable[ProofGoal], whole: ConstrainedBox) -> bool:
             if goal_region is None:
                 continue
             if len(parts) > 1 and not proves_defined(goal.value, goal_region):
-                return False  # splitting compares values, which would hide that one is undefined
+                return False  # splitting compares the arguments of `max`, which would hide that one is undefined
             for case in parts:
                 constraints = (*goal.constraints, *case.constraints)
                 region = whole.constrain(constraints)

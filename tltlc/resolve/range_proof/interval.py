@@ -57,7 +57,7 @@ def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
 def power(a: Interval, b: Interval) -> Interval:
     """Return an interval that contains ``x ^ y`` for all x in a and y in b.
 
-    Raises UndefinedError if this includes the root of a negative number, or 0 to a negative power.
+    Raises UndefinedError if some ``x ^ y`` is the root of a negative number, or 0 to a negative power.
     """
     if b[0] == b[1] and b[0] == int(b[0]) and abs(b[0]) <= _LARGEST_POWER:
         return _integer_power(a, int(b[0]))
@@ -72,7 +72,7 @@ def power(a: Interval, b: Interval) -> Interval:
 def root(a: Interval) -> Interval:
     """Return an interval that contains the square root of each x in a.
 
-    Raises UndefinedError if x may be negative.
+    Raises UndefinedError if a contains a negative number.
     """
     if a[0] < 0:
         raise UndefinedError("takes the root of a negative number")

@@ -34,7 +34,7 @@ _MOST_STEPS = WORK["check of a predicate"]
 class Answer:
     """The result of an attempted proof: whether it succeeded, and how many steps it took.
 
-    The steps count again each time that the cached answer is used.
+    The steps count against the limit of the check each time that the cached answer is used.
     """
 
     proved: bool

@@ -115,8 +115,8 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
     """Yield the points of a grid, at most _LARGEST_GRID.
 
-    The grid has all combinations of the first n values of each axis. From 2 to 12, n is as large as
-    the number of points allows. If n = 2 gives too many points, only the first are yielded.
+    The grid has all combinations of the first n values of each axis. The number n is the largest from 2
+    to 12 that gives few enough points. If even n = 2 gives too many, only the first are yielded.
     """
     depth = 2
     while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
