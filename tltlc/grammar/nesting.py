@@ -57,8 +57,8 @@ def drop_deep_declarations(
 ) -> tuple[tuple[Declaration, ...], list[Diagnostic]]:
     """Drop the declarations, and the clauses of specs, with an expression that nests too deep.
 
-    Return the other declarations, and an error for each declaration or clause that was dropped. A spec
-    whose clauses are all dropped is dropped, too.
+    Return the other declarations, and an error for each declaration or clause that was dropped. If all
+    clauses of a spec are dropped, so is the spec.
     """
     kept: list[Declaration] = []
     diagnostics: list[Diagnostic] = []

@@ -179,10 +179,10 @@ class Context:
         return size
 
     def recursion_error(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
-        """Return the error for a let or predicate that uses itself; mark all definitions of the cycle as reported.
+        """Return the error for a ``let`` or predicate whose definition uses itself, directly or through others.
 
-        ``declaration`` is the identity of the let or predicate, a key of ``expanding``. The error has
-        no diagnostic if the cycle was already reported.
+        Mark all definitions of the cycle as reported. ``declaration`` is the identity of the ``let`` or
+        predicate, a key of ``expanding``. The error has no diagnostic if the cycle was already reported.
         """
         active = list(self.expanding)
         cycle = active[active.index(declaration) :]
@@ -199,7 +199,7 @@ class Context:
         )
 
     def names_in(self, expr: Expr) -> tuple[str, ...]:
-        """Return the distinct names of signals, predicates, lets and parameters in an expression, in order."""
+        """Return the distinct names in an expression, such as those of signals and parameters, in order."""
         names = self._names.get(id(expr))
         if names is None:
             unique = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (NameExpr, CallExpr)))
@@ -242,7 +242,7 @@ _FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nes
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:
     """Return the error for a formula that is too large after expansion.
 
-    ``subject`` names the bound, let, quantifier or parameter that was expanded. If ``is_bound``, the
+    ``subject`` names the bound, ``let``, quantifier or parameter that was expanded. If ``is_bound``, the
     advice of the error is about the bound of a temporal operator.
     """
     return problem(
@@ -255,7 +255,7 @@ def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: b
 
 
 def too_many_expansions_error(source: SourceFile, span: Span) -> ResolutionError:
-    """Return the error for a program with more than MOST_EXPANSIONS uses of lets and quantifiers."""
+    """Return the error for a program with more than MOST_EXPANSIONS uses of ``let`` definitions and quantifiers."""
     return problem(
         "TLT0315",
         f"the uses of `let`, `all` and `any` expand more than {MOST_EXPANSIONS:,} times",

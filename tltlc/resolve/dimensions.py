@@ -48,8 +48,8 @@ def _keeps_value(written_unit: str | None, expected_unit: SiUnit | None, actual:
 def _has_other_units(dimension: Dimension, unit: SiUnit, env: Env) -> bool:
     """Whether some visible declaration of this dimension is written in units other than the SI unit.
 
-    An example is ``signal depth: length in [0 cm, 50 cm]``. Looks at signals and params, and at lets
-    and predicates with a parameter of this dimension.
+    An example is ``signal depth: length in [0 cm, 50 cm]``. Looks at signals and params, and at
+    predicates and ``let`` definitions with a parameter of this dimension.
     """
     usual = {unit.numerator, unit.denominator}
     for binding in env.scope.names.values():

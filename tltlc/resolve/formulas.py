@@ -67,9 +67,9 @@ def formula(expr: Expr, env: Env) -> Formula:
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Check the body of a let, with placeholders as its arguments.
+    """Check the body of a ``let`` definition, with placeholders as its arguments.
 
-    This finds errors in a let that nothing uses. Raises ResolutionError for the first error.
+    This finds errors in a definition that nothing uses. Raises ResolutionError for the first error.
     """
     declaration = binding.declaration
     assert isinstance(declaration, LetDecl)
@@ -196,10 +196,11 @@ def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGe
 
 
 def _expand_let(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> FormulaGenerator:
-    """Return the formula of a let, whose parameters have the values in ``inside.local``.
+    """Return the formula that a use of a ``let`` definition stands for.
 
-    The formula is cached for each combination of values. ``span`` is the place of the use, in the
-    source of ``user``. Raises ResolutionError if the let uses itself, or if the formula is too large.
+    The parameters have the values in ``inside.local``. The formula is cached for each combination of
+    values. ``span`` is the place of the use, in the source of ``user``. Raises ResolutionError if the
+    definition uses itself, or if the formula is too large.
     """
     context, source = inside.context, user.scope.source
     key = id(declaration)

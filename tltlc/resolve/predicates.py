@@ -104,7 +104,7 @@ def check_unused(binding: Binding, env: Env) -> None:
 
 
 def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> ResolvedValue:
-    """Return the value of an argument of a predicate, or of an argument of a ``let`` that is no formula.
+    """Return the value of an argument of a predicate, or of an argument of a ``let`` definition that is no formula.
 
     The value is an entity or a quantity. ``depth`` is the number of operators around the use. Raises
     ResolutionError if the argument does not fit the parameter.

@@ -215,7 +215,7 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
 
 
 def _check_unused(scope: Scope, env: Env) -> None:
-    """Check the bodies of the module's own predicates and lets, also of those that nothing uses; log errors."""
+    """Check the bodies of the module's own predicates and ``let`` definitions, used or not; log errors."""
     for binding in scope.names.values():
         if binding.scope is not scope:
             continue
