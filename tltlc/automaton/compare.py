@@ -39,10 +39,11 @@ class Trace:
 def separating(
     one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[NamedLiterals] = ()
 ) -> Trace | None:
-    """Return a trace that ``one`` accepts and ``other`` rejects; None if ``other`` accepts all traces of ``one``.
+    """Return a trace that ``one`` accepts and ``other`` rejects; None if there is no such trace.
 
-    Over finite traces, the trace is a shortest one. ``impossible`` lists conjunctions of literals
-    that no letter of the trace may satisfy.
+    Over finite traces, no shorter trace separates the automata. ``impossible`` excludes samples
+    from the trace: with ``(("a", True), ("b", False))`` in it, no sample has ``a`` true and ``b``
+    false. Samples on which two ``exclusive`` atoms hold are excluded too.
 
     Raises:
         ValueError: one automaton is over finite traces, and the other over infinite traces.
@@ -144,13 +145,13 @@ class _Product:
     def _lasso_through(
         self, part: MarkedEdges, accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause]
     ) -> Trace:
-        """Return a lasso (a prefix and a cycle) whose cycle takes only edges of ``part``.
+        """Return a trace whose cycle takes only edges of ``part``, a strongly connected set of edges of the product.
 
-        ``part`` is a strongly connected set of edges of the product. ``accepting`` and
-        ``rejecting`` are the clauses with which the first and the second automaton accept. The
-        marks of ``part`` meet a clause of ``accepting``, but none of ``rejecting``. The same must
-        be true of the marks of the cycle. So the cycle takes every ``inf`` mark of the clause that
-        is met, and each ``fin`` mark of the clauses in ``rejecting`` that occurs in ``part``.
+        An automaton accepts a run if the marks of the edges that are taken infinitely often meet
+        one of its clauses: ``accepting`` for the first automaton, ``rejecting`` for the second. The
+        marks of ``part`` meet a clause of ``accepting`` and no clause of ``rejecting``. The cycle
+        must keep both. So it takes every ``inf`` mark of the clause that is met. It also takes
+        each mark of ``part`` that is a ``fin`` mark of a clause of ``rejecting``.
         """
         marks_in_part = marks_of(part)
         clause = next(clause for clause in accepting if clause.accepts(marks_in_part))
@@ -189,9 +190,9 @@ class _Product:
         return next(letter for target, marks, letter in self._step(edge[0]) if (target, marks) == edge[1:])
 
     def _step(self, both: StatePair) -> list[tuple[StatePair, Marks, Letter]]:
-        """Return the successors of a pair of states.
+        """Return the successors of a pair of states, each with the marks of both edges and a letter that leads to it.
 
-        Each comes with the marks of both edges and a letter that leads to it.
+        Results are cached.
         """
         successors = self._known.get(both)
         if successors is None:
@@ -211,9 +212,9 @@ class _Product:
         return (one.edges[left].target, other.edges[right].target), marks
 
     def _edges_by_letter(self, which: int, state: int) -> int:
-        """Return a diagram that maps each letter to the index of the edge taken from a state.
+        """Return a diagram that maps each letter to the index of the edge that leaves ``state`` on this letter.
 
-        ``which`` is 0 for a state of the first automaton, 1 for the second.
+        ``which`` is 0 for a state of the first automaton, 1 for a state of the second.
         """
         edge_taken = self._steps.get((which, state))
         if edge_taken is None:
@@ -227,10 +228,9 @@ class _Product:
         return edge_taken
 
     def _edge_function(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
-        """Return a diagram that is ``index`` where a prime implicant is true, ``_NO_EDGE``
-        elsewhere.
+        """Return a diagram that is ``index`` where one of ``primes`` is true, and ``_NO_EDGE`` elsewhere.
 
-        ``place`` maps each atom of the automaton to its number in the product.
+        ``place[i]`` is the number, in the product, of atom ``i`` of the automaton.
         """
         return self._maximum(
             [self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE) for prime in primes]
@@ -258,10 +258,9 @@ class _Product:
         return cube
 
     def _values_with_letters(self, step: int) -> dict[Any, list[str]]:
-        """Map each value of the diagram ``step`` to a letter at which it has this value.
+        """Map each value of the diagram ``step`` to a letter on which the diagram has this value.
 
-        A letter is the list of the names of the atoms that hold. Atoms that do not matter for the
-        value are not in the list.
+        The letter is a list of the names of the atoms that hold. The other atoms are false.
         """
         letters = self._letters
         letter_of: dict[Any, list[str]] = {}
@@ -281,8 +280,7 @@ class _Product:
 
 
 def _group_related(names: Iterable[str], impossible: Iterable[NamedLiterals]) -> tuple[str, ...]:
-    """Return the names without duplicates, with the atoms of each ``impossible`` conjunction
-    together.
+    """Return the names without duplicates, and move names of the same ``impossible`` conjunction next to each other.
 
     If the atoms of a conjunction were far apart, diagrams would become very large.
     """
@@ -297,7 +295,7 @@ def _group_related(names: Iterable[str], impossible: Iterable[NamedLiterals]) ->
 
 
 def _edges_by_source(fspa: Fspa) -> list[list[int]]:
-    """Return for each state the indices of the edges that leave it."""
+    """Return, for each state, the indices of the edges that leave the state."""
     leaving: list[list[int]] = [[] for _ in fspa.states]
     for index, edge in enumerate(fspa.edges):
         leaving[edge.source].append(index)
@@ -318,9 +316,10 @@ def _shortest_path(
     is_goal: Callable[[ProductNode], bool],
     at_least: int = 0,
 ) -> tuple[Letter, ...] | None:
-    """Return the letters of a shortest path from ``starts`` to a goal, or None if no path exists.
+    """Return the letters on a shortest path from one of ``starts`` to a goal; None if no path exists.
 
-    The path has at least ``at_least`` steps, which is 0 or 1.
+    ``moves`` returns the successors of a node, each with a letter that leads to it. The path has at
+    least ``at_least`` steps, which is 0 or 1.
     """
     before: dict[tuple[ProductNode, int], tuple[tuple[ProductNode, int], Letter] | None] = {
         (start, 0): None for start in starts

@@ -1,5 +1,8 @@
 """Decide whether a spec without a ``judge`` clause is judged at its goal or at its limit.
 
+An episode that is judged at its goal ends as soon as it enters an accepting state or a trap. An
+episode that is judged at its limit goes on to the limit of steps, or until its verdict is final.
+
 The rule is in ``docs/semantics.md``, "When a spec is judged"; the reasons are in ``docs/adr/0009``.
 """
 
@@ -14,17 +17,20 @@ from tltlc.resolve.spec import Conjunct, JudgeMode
 
 
 def judge_of(parts: Iterable[Conjunct]) -> JudgeMode:
-    """Return the judge (``goal`` or ``limit``) of a spec over finite traces that has these clauses and no ``judge``."""
+    """Return when a spec with these clauses, but without a ``judge`` clause, is judged: at its ``goal`` or ``limit``.
+
+    The spec is over finite traces.
+    """
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> JudgeMode:
-    """Return how a spec without a ``judge`` clause is judged: at its ``limit`` or at its ``goal``.
+    """Return when a spec with this formula, but without a ``judge`` clause, is judged: at its ``limit`` or ``goal``.
 
-    It is judged at its limit if its formula is true on the empty trace. The formula is taken in
-    negation normal form. By convention, literals (``p`` and ``!p`` alike) and formulas with the
-    outermost operator ``G``, ``R``, ``W`` or ``N`` are true on the empty trace; formulas with ``F``,
-    ``U``, ``M`` or ``X`` are false.
+    The result is ``limit`` if the formula, in negation normal form, is true on the empty trace. By
+    convention, literals (``p`` and ``!p`` alike) and formulas with the outermost operator ``G``,
+    ``R``, ``W`` or ``N`` are true on the empty trace; formulas with ``F``, ``U``, ``M`` or ``X``
+    are false. So ``G p`` is judged at the limit, and ``F q & G p`` at the goal.
     """
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
@@ -40,9 +46,10 @@ def default_judge(formula: Formula) -> JudgeMode:
 
 
 def _boolean_operands(node: Formula) -> list[Formula]:
-    """Return the operands of an ``and`` or ``or``; none for any other operator and for ``F[0,n] p``.
+    """Return the operands of an ``and`` or ``or``; an empty list for any other operator.
 
-    ``F[0,n] p`` is stored as ``p | X(p | …)``, but counts as one temporal operator here.
+    ``F[0,n] p`` also gives an empty list: it is stored as ``p | X(p | …)``, but counts as one
+    temporal operator here.
     """
     if node.op == "or":
         return [] if bounded_operator(node) else operands_with_bounds(node)

@@ -61,9 +61,9 @@ class StepLimit:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Inside the ``with`` block, limit each operation to ``steps`` more steps than the busiest one has taken.
+        """Inside the ``with`` block, lower the limit to ``steps`` more than the busiest operation has taken so far.
 
-        If the limit is lower already, it does not change.
+        A limit that is lower already does not change.
         """
         before = self.steps
         self.steps = min(before, max(map(len, self._memos)) + steps)
@@ -80,8 +80,9 @@ class Diagrams(Generic[DiagramLeaf]):
     true, and ``low[n]`` where it is false. Variables are ints and are tested in ascending order.
     Leaf ``n`` has the value ``value[n]``, and its ``variable`` is :data:`LEAF`.
 
-    If a budget ``work`` is given, each new inner node and each step of :meth:`apply` takes one step
-    of it, and raises :class:`~tltlc.automaton.work.OutOfWork` if none is left.
+    If a budget ``work`` is given, each new inner node costs one step, and so does each pair of
+    nodes that :meth:`apply` combines. If no step is left, the methods raise
+    :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     __slots__ = ("_leaves", "_nodes", "_work", "high", "low", "node", "value", "variable")
@@ -106,7 +107,7 @@ class Diagrams(Generic[DiagramLeaf]):
     # --- making nodes -------------------------------------------------------------------------
 
     def leaf(self, value: DiagramLeaf) -> int:
-        """Return the function with the same value on every assignment."""
+        """Return the constant function ``value``."""
         number = self._leaves.get(value)
         if number is None:
             number = self._leaves[value] = self._add(LEAF, _NO_NODE, _NO_NODE, value)
@@ -115,7 +116,7 @@ class Diagrams(Generic[DiagramLeaf]):
     def _add_inner(self, key: tuple[int, int, int]) -> int:
         """Add an inner node that is not in the table yet, and return its number.
 
-        ``key`` has its variable, its low node and its high node.
+        ``key`` is the variable that the node tests, its low node and its high node.
         """
         if self._work is not None:
             self._work.spend()
@@ -136,7 +137,7 @@ class Diagrams(Generic[DiagramLeaf]):
         nodes, inner = self._nodes, self._add_inner
 
         def node(variable: int, low: int, high: int) -> int:
-            """Return the function that is ``high`` where the variable is true, ``low`` where it is false."""
+            """Return the function that is ``high`` where ``variable`` is true, and ``low`` elsewhere."""
             if low == high:
                 return low
             key = (variable, low, high)
@@ -156,10 +157,11 @@ class Diagrams(Generic[DiagramLeaf]):
     ) -> Callable[[int, int], int]:
         """Return an operation that combines two functions by applying ``combine`` to their values.
 
-        ``combine`` must be commutative and idempotent. ``absorbing`` and ``neutral`` are the leaves
-        of its absorbing and its neutral value. The leaf ``undefined``, combined with any function
-        except ``absorbing``, gives ``undefined``. The operation raises :class:`OutOfSteps` after
-        ``limit.steps`` steps in total.
+        ``combine`` must be commutative, associative and idempotent. ``absorbing`` and ``neutral``
+        are the leaves of its absorbing and its neutral value: for ``and``, the leaves of False and
+        True. The leaf ``undefined``, combined with any function except ``absorbing``, gives
+        ``undefined``. The operation raises :class:`OutOfSteps` after ``limit.steps`` steps in
+        total.
         """
         variable, low, high, value = self.variable, self.low, self.high, self.value
         nodes, inner, leaf = self._nodes, self._add_inner, self.leaf
@@ -206,10 +208,11 @@ class Diagrams(Generic[DiagramLeaf]):
     def apply(
         self, combine: Callable[[Any, Any], DiagramLeaf], x: int, y: int, memo: dict[tuple[int, int], int]
     ) -> int:
-        """Return the function whose value is ``combine`` applied to the values of ``x`` and ``y``.
+        """Return the function that applies ``combine`` to the values of the functions ``x`` and ``y``.
 
         ``combine`` may be any function of two values. ``memo`` caches results; pass the same dict
-        only to calls with the same ``combine``. Raises :class:`~tltlc.automaton.work.OutOfWork`.
+        only to calls with the same ``combine``. Raises :class:`~tltlc.automaton.work.OutOfWork` if
+        the work budget of the table is used up.
         """
         result = memo.get((x, y))
         if result is not None:
@@ -229,7 +232,7 @@ class Diagrams(Generic[DiagramLeaf]):
         return result
 
     def map_leaves(self, change: Callable[[Any], DiagramLeaf], x: int, memo: dict[int, int]) -> int:
-        """Return the function with ``change`` applied to every value.
+        """Return the function ``x`` with ``change`` applied to each of its values.
 
         ``memo`` maps nodes to their results; pass the same dict only to calls with the same
         ``change``. To give a leaf another result, put it into ``memo`` before the first call.
@@ -249,9 +252,7 @@ class Diagrams(Generic[DiagramLeaf]):
     # --- reading ------------------------------------------------------------------------------
 
     def leaves(self, *functions: int) -> list[int]:
-        """Return the distinct leaves of the functions, in an order that depends only on the
-        functions.
-        """
+        """Return the distinct leaves of the functions; equal functions give the same order."""
         variable, low, high = self.variable, self.low, self.high
         leaves: list[int] = []
         stack = list(dict.fromkeys(reversed(functions)))
@@ -268,13 +269,13 @@ class Diagrams(Generic[DiagramLeaf]):
         return leaves
 
     def values(self, x: int) -> list[Any]:
-        """Return the distinct values of a function, in the order of :meth:`leaves`."""
+        """Return the distinct values of function ``x``, in the order of :meth:`leaves`."""
         return [self.value[leaf] for leaf in self.leaves(x)]
 
     def assignment_with(self, x: int, value: DiagramLeaf) -> frozenset[int]:
-        """Return an assignment on which function ``x`` has this value, as the set of its true variables.
+        """Return the true variables of an assignment on which function ``x`` has the given value.
 
-        Raises ValueError if the function has this value nowhere.
+        Raises ValueError if the function has this value on no assignment.
         """
         stack: list[tuple[int, tuple[int, ...]]] = [(x, ())]
         seen = {x}
@@ -291,10 +292,7 @@ class Diagrams(Generic[DiagramLeaf]):
         raise ValueError(f"no assignment has the value {value!r}")
 
     def at(self, x: int, holds: Callable[[int], bool]) -> Any:
-        """Return the value of a function on an assignment.
-
-        ``holds`` returns whether a variable is true.
-        """
+        """Return the value of function ``x`` on the assignment in which variable ``v`` is ``holds(v)``."""
         while self.variable[x] != LEAF:
             x = self.high[x] if holds(self.variable[x]) else self.low[x]
         return self.value[x]
@@ -309,8 +307,9 @@ def at_most_one(
 ) -> int:
     """Return the function that is ``yes`` where at most one variable of each group is true, ``no`` elsewhere.
 
-    ``conjoin`` returns the conjunction of two functions with the values ``yes`` and ``no``. Pass an
-    operation of ``diagrams`` to use its cache. By default, this function makes its own.
+    ``conjoin`` must return the conjunction of two functions whose values are ``yes`` and ``no``.
+    Pass an existing operation of ``diagrams`` to reuse its cache; by default, this function makes
+    an operation of its own.
     """
 
     def conjunction(x: int, y: int) -> int:

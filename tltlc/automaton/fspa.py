@@ -14,7 +14,7 @@ from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
-"""A conjunction of literals. Each is an index into ``Fspa.atoms``, and whether this atom is true."""
+"""A conjunction of literals. A literal is an index into ``Fspa.atoms``, and the truth value of this atom."""
 Mark = tuple[int, Literal["fin", "inf"]]
 """One of the two sets of edges of a Rabin pair: the pair's index in ``Fspa.acceptance``, and the set's name."""
 
@@ -26,9 +26,9 @@ NOTATIONS: Final[tuple[Notation, ...]] = ("ascii", "unicode", "english")
 
 @record
 class Text:
-    """A formula, label or guard from an automaton of another tool, as text in three notations.
+    """A formula, label or guard of an automaton that another tool made, as text in three notations.
 
-    The text need not follow the grammar of tltl.
+    The text need not be a formula of the spec language.
     """
 
     ascii: str
@@ -44,10 +44,10 @@ class State:
     """A state of the automaton.
 
     ``label`` is the formula that remains to be satisfied; ``str(label)`` is its ASCII notation. In
-    an automaton of another tool, the label may be a name. ``accepting`` is true if a trace that
-    ends here is accepted (over infinite traces: if the state lies on an accepted cycle).
-    ``verdict`` is the verdict of a trace that ends here. ``distance`` is the least number of
-    transitions to an accepting state, None for traps.
+    an automaton that another tool made, the label may be a name. ``accepting`` is true if a trace
+    that ends in this state is accepted; over infinite traces, if the state lies on an accepted
+    cycle. ``verdict`` is the verdict of the trace so far. ``distance`` is the least number of
+    transitions to an accepting state; None if no accepting state can be reached (a trap).
     """
 
     id: int
@@ -61,7 +61,7 @@ class State:
 class Guard:
     """The condition under which an edge is taken.
 
-    ``formula`` states the condition as a short formula. In an automaton of another tool,
+    ``formula`` states the condition as a short formula. In an automaton that another tool made,
     ``formula`` may be a :class:`Text`. ``primes`` are all prime implicants of the guard; a guard
     that is always true has ``((),)``. If atoms are declared ``exclusive``, let D be the condition
     that no two of these atoms hold together. Then ``primes`` are the prime implicants of ``guard or
@@ -73,7 +73,7 @@ class Guard:
 
     @property
     def text(self) -> str:
-        """The formula in the ASCII notation, as artefacts have it."""
+        """The formula in the ASCII notation, as in the JSON file of a compiled automaton."""
         return str(self.formula)
 
 
@@ -81,8 +81,9 @@ class Guard:
 class Edge:
     """An edge of the automaton.
 
-    On each letter, exactly one of the edges that leave a state has a true guard. No two edges have
-    the same source, the same target and the same marks (:meth:`Fspa.marks`).
+    At each sample that the ``exclusive`` declarations allow, exactly one of the edges that leave a
+    state has a true guard. No two edges have the same source, the same target and the same marks
+    (:meth:`Fspa.marks`).
     """
 
     source: int
@@ -107,7 +108,8 @@ class Fspa:
     """A deterministic, complete automaton. Over finite traces it is minimal, and its states decide acceptance.
 
     ``states[i].id == i``; states are numbered breadth-first, and state 0 is initial. ``edges`` are
-    sorted by (source, target). ``spec_size`` is the greatest finite distance, at least 0.
+    sorted by (source, target). ``spec_size`` is the greatest ``distance`` of a state; 0 if all
+    states are traps.
 
     Over infinite traces, a run is accepted if it meets one of the pairs of ``acceptance``, and a
     state is accepting if it lies on an accepted cycle. Edges with the same source and target then
@@ -137,10 +139,10 @@ class Fspa:
         return tuple(edge for edge in self.edges if edge.source == state)
 
     def marks(self) -> tuple[tuple[Mark, ...], ...]:
-        """Return the marks of each edge: the sets of Rabin pairs that contain it.
+        """Return, for each edge, its marks: which sets of Rabin pairs contain the edge.
 
-        The marks of an edge have the order of ``acceptance``. Over finite traces, no edge has
-        marks.
+        An edge in the sets ``fin`` of pair 0 and ``inf`` of pair 1 has the marks
+        ``((0, "fin"), (1, "inf"))``. Over finite traces, no edge has marks.
         """
         marks: list[list[Mark]] = [[] for _ in self.edges]
         for number, pair in enumerate(self.acceptance):
@@ -169,11 +171,12 @@ class Fspa:
 def _unpickle(
     nodes: FlatNodes, table: list[int | Text], primes: list[tuple[Implicant, ...]], fields: dict[str, Any]
 ) -> Fspa:
-    """Return the automaton that :meth:`Fspa.__reduce__` took apart.
+    """Return the automaton whose parts :meth:`Fspa.__reduce__` pickled.
 
-    ``table`` has the formula of the spec, then the labels of the states and the formulas of the
-    guards, each as a text or as an index into ``nodes``. ``primes`` has the prime implicants of
-    each guard.
+    ``table`` has the formula of the spec, then the labels of the states, then the formulas of the
+    guards, each as a :class:`Text` or as an index into ``nodes``. ``primes`` has the prime
+    implicants of each guard. ``fields`` has the fields of the automaton, without these formulas and
+    prime implicants.
     """
     subformulas = unflatten(nodes)
     formulas = iter([entry if isinstance(entry, Text) else subformulas[entry] for entry in table])

@@ -26,7 +26,7 @@ TOTAL_PRIME_LIMIT = 1_500_000
 _MOST_REMEMBERED = 200_000
 """The caches of covers and prime implicants are emptied when they have more entries than this."""
 _MOST_PRODUCTS_REMEMBERED = 1_000_000
-"""The caches are also emptied when their entries have more cubes than this in all."""
+"""The caches are also emptied when more cubes than this were computed since they were last emptied."""
 
 _PRIMES_OF_CONSTANTS: dict[int, tuple[LiteralCube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
@@ -34,8 +34,8 @@ _PRIMES_OF_CONSTANTS: dict[int, tuple[LiteralCube, ...]] = {REJECT: (), ACCEPT: 
 class TooManyPrimes(Exception):
     """Raised when the guards of an automaton are too large.
 
-    ``subject`` says what is too large: a guard, all guards, or the automaton. It has more than
-    ``limit`` of what ``unit`` names, such as prime implicants. The limits are:
+    The message is "``subject``: more than ``limit`` ``unit``", such as "a guard: more than 10000
+    prime implicants". ``subject`` is "a guard", "all guards" or "the automaton". The limits are:
 
     - :data:`PRIME_LIMIT`, for the prime implicants or conjunctions of one guard;
     - :data:`TOTAL_PRIME_LIMIT`, for the prime implicants of all guards;
@@ -53,10 +53,11 @@ class TooManyPrimes(Exception):
 
 
 class Guards:
-    """Computes the prime implicants and the short formulas of guards, which are nodes of one decision diagram table.
+    """Computes the prime implicants and the short formulas of guards.
 
-    ``names`` are the names of the atoms. ``allowed`` is a guard that is true on exactly the letters
-    that ``exclusive`` declarations allow.
+    A guard is a node of the decision diagrams ``diagrams``. ``names`` are the names of the atoms.
+    ``allowed`` is a guard that is true on exactly the letters that ``exclusive`` declarations
+    allow; a letter is the set of the atoms that hold at a sample.
     """
 
     __slots__ = (
@@ -89,7 +90,11 @@ class Guards:
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
     def by_leaf(self, transition: int) -> dict[int, int]:
-        """Map each leaf of a transition, except ``IMPOSSIBLE``, to the guard of the letters that lead to it."""
+        """Map each leaf of a transition to a guard, which is true on the letters that lead to this leaf.
+
+        A transition is a decision diagram that maps each letter to a leaf. Leaves out the leaf
+        ``IMPOSSIBLE``, to which letters lead that cannot occur.
+        """
         guards = self._split(transition)
         return {leaf: guard for leaf, guard in guards.items() if leaf != IMPOSSIBLE}
 
@@ -113,9 +118,9 @@ class Guards:
         """Return all prime implicants of a guard, sorted by length, then by atom.
 
         ``docs/semantics.md``, "Guards and their robustness", says why an automaton has all of them.
-        If ``exclusive`` declarations allow only the letters D, returns the prime implicants of
-        ``guard or not D``, without those that no letter in D satisfies. Raises
-        :class:`TooManyPrimes`.
+        If atoms are declared ``exclusive``, let D be true on the letters that the declarations
+        allow. Then the result has the prime implicants of ``guard or not D``, without those that no
+        letter in D satisfies. Raises :class:`TooManyPrimes`.
         """
         if self._allowed == ACCEPT:
             cubes = self._all_primes(guard)
@@ -133,8 +138,8 @@ class Guards:
         """Return a short formula of the guard.
 
         The formula is a disjunction of conjunctions without redundant parts, or a conjunction of
-        disjunctions if that is shorter. On letters that ``exclusive`` rules out it may have any
-        value. Raises :class:`TooManyPrimes`.
+        disjunctions if that is shorter. On letters that ``exclusive`` rules out, the formula may
+        have any value. Raises :class:`TooManyPrimes`.
         """
         if (
             len(self._covers) + len(self._primes) > _MOST_REMEMBERED
@@ -154,11 +159,10 @@ class Guards:
         return build.or_(*[build.and_(*[literals[literal] for literal in cube]) for cube in sorted(products)])
 
     def _negated_sums(self, guard: int) -> tuple[LiteralCube, ...]:
-        """Return the guard as a conjunction of disjunctions, and each disjunction as the cube of
-        its negation.
+        """Write the guard as a conjunction of disjunctions, and return the negation of each disjunction.
 
-        For example, ``(a | b) & c`` has the cubes ``!a & !b`` and ``!c``. Returns an empty tuple if
-        the conjunction is too large (:class:`TooManyPrimes`).
+        The negation of a disjunction is a cube: ``(a | b) & c`` gives the cubes ``!a & !b`` and
+        ``!c``. Returns an empty tuple if there are too many cubes (:class:`TooManyPrimes`).
         """
         try:
             return self._cover(self._negation(self._upper(guard)), self._negation(guard))
@@ -168,10 +172,9 @@ class Guards:
     # --- Boolean functions --------------------------------------------------------------------
 
     def _cover(self, lower: int, upper: int) -> tuple[LiteralCube, ...]:
-        """Return irredundant cubes whose disjunction lies between two functions.
+        """Return cubes whose disjunction lies between two functions; no cube can be left out.
 
-        ``lower`` implies the disjunction, and the disjunction implies ``upper``. None of the cubes
-        can be left out.
+        ``lower`` implies the disjunction, and the disjunction implies ``upper``.
         """
         if lower == upper:
             primes = self._all_primes(lower)
@@ -192,7 +195,10 @@ class Guards:
         return self._diagrams.map_leaves(_negate_leaf, guard, negations) if negation is None else negation
 
     def _is_possible(self, cube: LiteralCube) -> bool:
-        """Whether some allowed letter satisfies the cube; results are cached, since guards share many cubes."""
+        """Whether a letter that ``exclusive`` allows satisfies the cube.
+
+        Results are cached, since guards share many cubes.
+        """
         known = self._possible_cubes.get(cube)
         if known is None:
             known = self._possible_cubes[cube] = self._is_met(cube)
@@ -219,9 +225,9 @@ class Guards:
     def _all_primes(self, function: int) -> tuple[LiteralCube, ...]:
         """Return every prime implicant of a function.
 
-        Splits by the first atom: ``low`` is the function where the atom is false, ``high`` where it
-        is true. A prime implicant of "low and high" is one of the function. Every other prime
-        implicant of ``low`` or of ``high`` becomes one when the literal of the atom is added.
+        Splits the function by its first atom ``a``: ``low`` is the function with ``a`` false,
+        ``high`` with ``a`` true. The prime implicants are those of ``low & high``; the other ones
+        of ``high``, with ``a`` added; and the other ones of ``low``, with ``!a`` added.
         """
         known = self._primes.get(function)
         if known is None:
@@ -239,7 +245,7 @@ class Guards:
         return known
 
     def _irredundant(self, lower: int, upper: int) -> tuple[tuple[LiteralCube, ...], int]:
-        """Return irredundant cubes as in :meth:`_cover`, and the function of their disjunction (Minato 1993)."""
+        """Return cubes as :meth:`_cover` does, and their disjunction as a function (Minato 1993)."""
         if lower == REJECT:
             return (), REJECT
         if upper == ACCEPT:
@@ -268,7 +274,7 @@ class Guards:
         return cover
 
     def _count(self, products: int) -> None:
-        """Add a number of cubes to the count of all cubes that were computed so far.
+        """Add ``products``, a number of new cubes, to the count of all cubes computed so far.
 
         Raises :class:`TooManyPrimes` if this number or the count is too large.
         """
@@ -280,7 +286,7 @@ class Guards:
 
 
 def _negate_leaf(leaf: tuple[int, int]) -> tuple[int, int]:
-    """Return the leaf for the opposite value of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``, and the other way round."""
+    """Return the opposite leaf of a guard: ``(TRUE, 1)`` for ``(FALSE, 0)``, and the other way round."""
     return 1 - leaf[0], 1 - leaf[1]
 
 

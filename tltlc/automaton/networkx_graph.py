@@ -16,10 +16,10 @@ def to_networkx(fspa: Fspa) -> networkx.DiGraph:
 
     Nodes have the attributes ``label`` (ASCII), ``accepting``, ``verdict`` and ``distance`` (None
     for traps). Edges have ``guard`` (ASCII), ``primes`` (the prime implicants of the guard) and
-    ``indices`` into ``fspa.edges``. The graph has ``name``, ``initial`` and ``spec_size``. Over
-    infinite traces, several edges of the automaton may join the same two states. The graph then has
-    one edge for all of them: ``indices`` lists them, and ``guard`` and ``primes`` are the
-    disjunction of their guards.
+    ``indices`` into ``fspa.edges``. The graph itself has the attributes ``name``, ``initial`` (the
+    id of the initial state) and ``spec_size``. Over infinite traces, several edges of the automaton
+    may join the same two states. The graph then has one edge for all of them: ``indices`` lists
+    them, and ``guard`` and ``primes`` are the disjunction of their guards.
 
     >>> import networkx, tltlc
     >>> (fspa,) = tltlc.compile_text("signal a: bool signal b: bool spec s { reach a then b }")

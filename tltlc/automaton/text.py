@@ -24,9 +24,9 @@ def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
     """Return the label of a state in a notation: what remains to be satisfied.
 
-    ``state`` is the state's id. Over finite traces, two kinds of states have an English sentence of
-    their own: a rejecting state with the label ``true``, as after ``X true``, says that the trace
-    must go on; an accepting state with the label ``false``, as after ``N false``, says that it must
+    ``state`` is the state's id. Over finite traces, two kinds of states get a special English
+    sentence. A rejecting state with the label ``true``, as in ``X true``, says that the trace must
+    go on. An accepting state with the label ``false``, as in ``N false``, says that the trace must
     end.
     """
     label, accepting, endless = fspa.states[state].label, fspa.states[state].accepting, fspa.semantics == "infinite"
@@ -61,7 +61,7 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
     """Return the short formula of a guard in a notation.
 
-    ``english`` writes the operators as words.
+    The notation ``english`` writes the operators as words: ``a and not b``.
     """
     if isinstance(guard.formula, Formula) and notation == "english":
         return words_text(guard.formula)
@@ -69,10 +69,7 @@ def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
 
 
 def guard_texts(fspa: Fspa) -> tuple[str, ...]:
-    """Return the guard of each edge in the ASCII notation.
-
-    Edges with the same guard share one text.
-    """
+    """Return the guard of each edge in the ASCII notation, in the order of ``fspa.edges``."""
     guards = {edge.guard.formula: edge.guard for edge in fspa.edges}
     texts = {formula: guard_text(guard) for formula, guard in guards.items()}
     return tuple(texts[edge.guard.formula] for edge in fspa.edges)
@@ -80,7 +77,7 @@ def guard_texts(fspa: Fspa) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def _text(formula: Formula | Text, notation: Notation, *, endless: bool) -> str:
-    """Return a formula in a notation. The texts are cached: a game shows the label of its state in each frame."""
+    """Return a formula in a notation. The texts are cached, since a game may show a label in each frame."""
     if isinstance(formula, Text):
         return {"ascii": formula.ascii, "unicode": formula.unicode, "english": formula.english}[notation]
     return _write(formula, notation, NUMBERS, endless=endless)

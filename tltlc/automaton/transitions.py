@@ -31,11 +31,11 @@ _NO_OBLIGATION: Final = -1
 
 
 class ObligationDiagrams(Diagrams[bool]):
-    """A table of obligations. Each variable is the number of an atom or of a temporal subformula.
+    """A table of obligations: Boolean functions that say what remains to be done.
 
-    ``both`` returns the conjunction of two obligations, ``either`` the disjunction. Each of these
-    two operations raises :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps
-    in total.
+    Each variable is the number of an atom or of a temporal subformula. ``both`` returns the
+    conjunction of two obligations, ``either`` the disjunction. Each of these two operations raises
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` after ``limit.steps`` steps in total.
     """
 
     __slots__ = ("both", "either", "limit")
@@ -54,10 +54,12 @@ class ObligationDiagrams(Diagrams[bool]):
 
 
 class TransitionDiagrams(Diagrams[tuple[int, int]]):
-    """A table of transitions, and the table of the obligations that they lead to.
+    """A table of transitions, and a table of the obligations in their leaves.
 
-    Each variable is an atom's index. ``conjoin`` returns the conjunction of two transitions,
-    ``disjoin`` the disjunction. Both have the same step limit as the operations on obligations.
+    A transition maps each letter (the set of the atoms that hold at a sample) to the obligation
+    that remains, and to 1 if a trace that ends with this letter is accepted, 0 otherwise. Each
+    variable is an atom's index. ``conjoin`` returns the conjunction of two transitions, ``disjoin``
+    the disjunction. Both have the same step limit as the operations on obligations.
     """
 
     __slots__ = ("conjoin", "disjoin", "limit", "obligations")
@@ -86,13 +88,14 @@ class TransitionDiagrams(Diagrams[tuple[int, int]]):
         )
 
     def allowed_letters(self, exclusive: Iterable[Sequence[int]]) -> int:
-        """Return a guard that is true on the letters with at most one atom of each group of ``exclusive``."""
+        """Return a guard that is true where at most one atom of each group of ``exclusive`` holds.
+
+        A group lists indices of atoms.
+        """
         return at_most_one(self, exclusive, (TRUE, 1), (FALSE, 0), self.conjoin)
 
     def constrain(self, transition: int, allowed: int) -> int:
-        """Return the transition, with ``IMPOSSIBLE`` on all letters that make the guard ``allowed``
-        false.
-        """
+        """Return the transition, but with the leaf ``IMPOSSIBLE`` wherever the guard ``allowed`` is false."""
         variable, low, high, node = self.variable, self.low, self.high, self.node
         memo: dict[tuple[int, int], int] = {}
 

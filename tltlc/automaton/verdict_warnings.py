@@ -18,7 +18,7 @@ _MOST_LABELS: Final = 4
 
 
 def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
-    """Return a tuple with a warning if every trace or no trace satisfies the spec, an empty tuple otherwise."""
+    """Return one warning if every trace or no trace satisfies the spec, no warning otherwise."""
     verdict = fspa.states[0].verdict
     if verdict == "violated":
         return (_unsatisfiable_warning(spec),)
@@ -35,15 +35,12 @@ def verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
 
 
 def _recurs(formula: Formula) -> bool:
-    """Whether the formula is ``G F p``. A finite trace satisfies it if p holds at its last sample."""
+    """Whether the formula is ``G F p``, which a finite trace satisfies if ``p`` holds at its last sample."""
     return formula.op == "G" and formula.args[0].op == "F"
 
 
 def _unsatisfiable_warning(spec: Spec) -> Diagnostic:
-    """Return the warning that no trace satisfies a spec.
-
-    Its labels mark the clauses that contradict each other.
-    """
+    """Return the warning that no trace satisfies a spec, with labels on the clauses that contradict each other."""
     from tltlc.automaton.finite.contradiction import contradiction, unsatisfiable
 
     is_infinite = spec.semantics == "infinite"

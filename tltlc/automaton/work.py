@@ -37,10 +37,10 @@ class Work:
 
     @contextmanager
     def at_most(self, steps: int) -> Iterator[None]:
-        """Limit the work inside a ``with`` block to ``steps`` steps; this is a context manager.
+        """Limit the work inside a ``with`` block to ``steps`` steps of the budget.
 
-        Raises :class:`OutOfWork` in the block after these steps. The steps taken are also
-        subtracted from the whole budget.
+        Within the block, :meth:`spend` raises :class:`OutOfWork` after these steps. The steps taken
+        are subtracted from the budget as usual.
         """
         aside = max(0, self.left - steps)
         self.left -= aside

@@ -25,7 +25,10 @@ _PART_BUDGET = 2_000
 
 
 class ClauseSize(NamedTuple):
-    """The size of the automaton of one clause alone: a number for comparing clauses, and its text in messages."""
+    """The size of the automaton of one clause alone: ``number`` to compare clauses, ``words`` for messages.
+
+    ``words`` is a text such as "12 states".
+    """
 
     number: int
     words: str
@@ -48,7 +51,8 @@ def recursion_room() -> Iterator[None]:
 def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """Return the error for a spec whose automaton is too large.
 
-    It is TLT0502 if there are too many edges or prime implicants, and TLT0501 otherwise.
+    ``reason`` is the exception that stopped the construction. The error is TLT0502 if there are too
+    many edges or prime implicants, and TLT0501 otherwise.
     """
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else failure_text(reason)
     remaining = WORK["states of blamed parts"]
@@ -67,10 +71,10 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 
 
 def failure_text(reason: Exception) -> str:
-    """Return in words why the automaton could not be built.
+    """Return in words what the automaton needs too much of, such as "needs too much memory".
 
-    Handles labels that are too long and formulas that are too deep. Any other reason is reported as
-    too much memory.
+    A LabelsTooLong is reported as labels that are too long, a RecursionError as formulas that nest
+    too deeply, and any other ``reason`` as too much memory.
     """
     if isinstance(reason, LabelsTooLong):
         return f"needs labels with more than {WORK['label nodes']} operators and atoms"
@@ -84,14 +88,13 @@ def error_with_clauses(
     size: Callable[[Conjunct, Spec], ClauseSize | None],
     advice: str = ADVICE,
 ) -> TltlError:
-    """Return the error for a spec whose automaton is too large, with labels on at most three clauses.
+    """Return the error for a spec whose automaton is too large, with labels on the clauses that make it large.
 
-    The labels mark the clauses that make the automaton large.
-
-    ``too_large`` says in the title why the automaton could not be built, for example
-    ``needs too much memory``; it is not used if ``reason`` is TooManyPrimes. ``size`` returns the
-    size of the automaton of one clause alone, or None if it is too large to build. ``advice`` is
-    the suggestion of the message.
+    At most three clauses get a label. ``size`` returns the size of the automaton of one clause
+    alone, or None if this automaton is too large to build. ``too_large`` says in the title why the
+    automaton of the spec could not be built, for example ``needs too much memory``. ``advice`` is
+    the suggestion of the message. If ``reason`` is TooManyPrimes, the error has a title and an
+    advice of its own, which replace these two.
     """
     sizes: dict[Conjunct, ClauseSize | None] = {}
     alone: list[Conjunct] = []
@@ -132,7 +135,7 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
 
 
 def _cause_label(part: Conjunct) -> Label:
-    """Return a label, which marks the clause's longest bound, or the clause if it has no bound.
+    """Return a label on the longest bound of a clause, such as ``within 100 steps``, or on the clause without bounds.
 
     Long bounds make automata large: a bound of n samples may have to be counted from n different
     starts at once.
@@ -144,10 +147,10 @@ def _cause_label(part: Conjunct) -> Label:
 
 
 def _size(part: Conjunct, spec: Spec) -> ClauseSize | None:
-    """Return the number of states of the automaton of one clause; None if it is too large to build.
+    """Return the number of states of the automaton of one clause; None if this automaton is too large to build.
 
-    It is too large if it has :data:`_PART_BUDGET` states or more, or if its diagrams take too many
-    steps or are too deep.
+    It is too large if it has :data:`_PART_BUDGET` states or more, or if its decision diagrams take
+    too many steps or are too deep.
     """
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], TransitionDiagrams(steps=100_000))

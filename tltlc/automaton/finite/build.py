@@ -53,11 +53,12 @@ def minimal_machine(
     exclusive: Iterable[Sequence[int]] = (),
     diagrams: TransitionDiagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
-    """Return three things: the :class:`Successors` of a formula, its minimal machine, and a guard.
+    """Return the minimal machine of a formula, as the second of three results.
 
-    The :class:`Successors` has the obligations and transitions of the machine. The guard is true on
-    the letters with at most one atom of each group in ``exclusive``. A group lists indices into
-    ``atoms``.
+    A machine is an automaton whose transitions, not states, decide acceptance. The first result is
+    the :class:`Successors` in whose tables the states and transitions of the machine are numbered.
+    The third is a guard that is true on the letters (sets of atoms) with at most one atom of each
+    group in ``exclusive``. A group lists indices into ``atoms``.
     """
     normal = negation_normal_form(formula)
     diagrams = TransitionDiagrams() if diagrams is None else diagrams
@@ -68,9 +69,9 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
-    """Build the automaton, with its atoms in another order if the order of the spec takes too many steps.
+    """Build the automaton; if this takes too many steps, build it again with the atoms in another order.
 
-    In the result, the atoms have the order of the spec again.
+    In the result, the atoms always have the order of the spec.
     """
     order = better_order(spec.formula, [atom.name for atom in spec.atoms])
     if order is None:
@@ -139,12 +140,13 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 
 
 def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
-    """Return the states of the automaton, as leaves of ``diagrams``, the initial one first.
+    """Return the states of the automaton, the initial state first.
 
-    A leaf has an obligation, and says whether the state accepts. No trace is empty, so the initial
-    state may accept or reject. It accepts if some transition leads back to its obligation and all
-    transitions that do so accept: then these transitions lead to the initial state, and no second
-    state with its obligation is needed. Otherwise it rejects.
+    Each state is a leaf of ``diagrams``: an obligation (what remains to be done), and whether the
+    state accepts. Since no trace is empty, the initial state may accept or reject. It accepts if
+    transitions lead back to the initial obligation, and all of them accept. These transitions then
+    lead to the initial state, which saves a second state with the same obligation. Otherwise the
+    initial state rejects.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
@@ -153,9 +155,9 @@ def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
 
 
 def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[int]]:
-    """Map each state, the initial one first, to its successors.
+    """Map each state to its successors; the initial state comes first.
 
-    Raises :class:`TooManyPrimes` if there are more edges than the row "edges" of ``WORK`` allows.
+    Raises :class:`TooManyPrimes` if there are more edges than ``WORK["edges"]``.
     """
     targets: dict[int, list[int]] = {}
     remaining = WORK["edges"]
@@ -169,7 +171,10 @@ def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[i
 
 
 def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
-    """Return the least number of transitions from each state to an accepting state, None for traps."""
+    """Return the least number of transitions from each state to an accepting state, None for traps.
+
+    ``targets`` maps each state to its successors.
+    """
     sources: dict[int, list[int]] = {state: [] for state in targets}
     for state, successors in targets.items():
         for target in successors:
@@ -189,8 +194,9 @@ def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]
 def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
     """Return the states that ``initial`` can reach, in breadth-first order.
 
-    The successors of a state are sorted by their distance to an accepting state, with traps last.
-    Successors with the same distance have the order of ``targets``.
+    ``targets`` maps each state to its successors. They are visited in order of their distance to an
+    accepting state, traps last. Successors with the same distance are visited in the order of the
+    keys of ``targets``.
     """
     position = {state: index for index, state in enumerate(targets)}
 
@@ -213,9 +219,9 @@ def verdicts(
 ) -> dict[int, Verdict]:
     """Return the verdict of each state.
 
-    It is ``satisfied`` if no rejecting state can be reached, and ``violated`` if no accepting state
-    can be reached. Otherwise it is ``holding`` for accepting states, ``pending`` for rejecting
-    ones.
+    The verdict is ``satisfied`` if no rejecting state can be reached, and ``violated`` if no
+    accepting state can be reached. Otherwise it is ``holding`` for accepting states, and
+    ``pending`` for rejecting states.
     """
     to_rejection = distances(targets, lambda state: not accepting(state))
 
@@ -249,8 +255,8 @@ def _labels(
 ) -> dict[int, Formula]:
     """Return the label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
 
-    Raises :class:`LabelsTooLong` if all labels together have more operators and atoms than the row
-    "label nodes" of ``WORK`` allows.
+    Raises :class:`LabelsTooLong` if all labels together have more operators and atoms than
+    ``WORK["label nodes"]``.
     """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
@@ -269,11 +275,12 @@ def _labels(
 
 
 def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
-    """Map the negation normal form of each ``->`` and ``<->`` in the source to the formula as written.
+    """Map the negation normal form of each ``->`` and ``<->`` in the source to the subformula as written.
 
-    Leaves out subformulas of more than :data:`~tltlc.automaton.finite.labels.LONGEST_SIMPLIFIED`
-    operators and atoms. If the rest together have more operators and atoms than the row "arrow
-    nodes" of ``WORK`` allows, leaves out the largest of them too.
+    For example, ``!a | b`` is mapped to ``a -> b``. Subformulas of more than
+    :data:`~tltlc.automaton.finite.labels.LONGEST_SIMPLIFIED` operators and atoms are left out. The
+    largest others are left out too, until all together have at most ``WORK["arrow nodes"]``
+    operators and atoms.
     """
     parts = [part for part in source.walk() if part.op in ("implies", "iff")]
     remaining = WORK["arrow nodes"]
@@ -289,7 +296,8 @@ def _arrow_forms(source: Formula, labels: Labels) -> dict[Formula, Formula]:
 def _restore_arrows(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     """Return the formula with ``->`` and ``<->`` wherever the source has them.
 
-    ``restored`` is the result of :func:`_arrow_forms`. This function adds its own results to it.
+    ``restored`` is the result of :func:`_arrow_forms`. This function caches its own results in the
+    same dict.
     """
     for node in formula.bottom_up(known=restored):
         restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
@@ -302,8 +310,8 @@ def _restore_arrows(formula: Formula, restored: dict[Formula, Formula]) -> Formu
 def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[Iterable[str]] = ()) -> Spec:
     """Return a spec over finite traces with this formula.
 
-    Each atom is a signal of the same name with range [-1, 1]; the value of the signal is the value
-    of the atom. ``exclusive`` has groups of names of atoms that never hold together.
+    The value of each atom is the value of a signal with the same name and the range [-1, 1].
+    ``exclusive`` has groups of names of atoms that never hold together.
     """
     groups = [tuple(group) for group in exclusive]
     names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))

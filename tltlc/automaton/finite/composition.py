@@ -30,21 +30,23 @@ A formula that takes more steps is built part by part.
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
     """Return the minimal machine of a formula in negation normal form.
 
-    Explores the formula as a whole if that takes few steps, and builds it part by part otherwise.
-    ``allowed`` is a guard: only letters on which it is true can occur.
+    A machine is an automaton whose transitions, not states, decide acceptance. If the formula is an
+    ``and`` or ``or`` that takes many steps to explore as a whole, its operands get machines of
+    their own, which are then combined. ``allowed`` is a guard: only letters on which the guard is
+    true can occur.
 
     Raises:
-        OutOfStates: more than ``state_budget`` obligations are reachable in the machine or in the
-            machine of a part; or the machines on the way have too many obligations together (the
-            limit is the larger of the row "states of parts" of :data:`~tltlc.io.limits.WORK` and
-            three times ``state_budget``).
+        OutOfStates: the machine, or the machine of a part, has more than ``state_budget``
+            obligations before it is minimised; or all these machines together have too many (the
+            limit is ``WORK["states of parts"]`` or three times ``state_budget``, whichever is
+            larger).
         OutOfSteps: the transitions take too many steps.
     """
     return _Composition(successors, state_budget, allowed).minimal(formula)
 
 
 class _Composition:
-    """Builds the machine of one formula, and counts the states of all machines built on the way."""
+    """Builds the machine of one formula, and counts the states of all machines that are built for its parts."""
 
     def __init__(self, successors: Successors, state_budget: int, allowed: int) -> None:
         self._successors = successors
@@ -89,11 +91,11 @@ class _Composition:
 
 
 def _embed(successors: Successors, minimal: Machine) -> int:
-    """Return an obligation with the language of a machine.
+    """Return an obligation that is satisfied by exactly the traces that a machine accepts.
 
     A state that accepts whatever follows becomes TRUE, and a state that rejects whatever follows
-    becomes FALSE. Each other state becomes a new variable of obligations, with the transition of
-    the state.
+    becomes FALSE. Each other state becomes a new variable of obligations, which gets the transition
+    of the state.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
@@ -113,8 +115,7 @@ def _embed(successors: Successors, minimal: Machine) -> int:
 def _constant_obligation(diagrams: TransitionDiagrams, state: int, transition: int) -> int | None:
     """Return TRUE if a state accepts whatever follows, FALSE if it rejects whatever follows, None otherwise.
 
-    On every letter that can occur, a constant state leads back to itself. TRUE accepts each of
-    these letters, FALSE none.
+    In the first two cases, every letter that can occur leads from the state back to itself.
     """
     # The letter in which no atom holds can always occur. If it leads to another state, the result is None.
     leaf = transition

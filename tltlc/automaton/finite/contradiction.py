@@ -26,11 +26,11 @@ Decision = Callable[[Sequence[Conjunct], Spec], bool]
 
 
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
-    """Return clauses of an unsatisfiable spec that contradict each other, and no more than needed.
+    """Return clauses of an unsatisfiable spec that contradict each other, as few as possible.
 
-    ``decision`` decides whether clauses contradict each other, by default over finite traces. Some
-    of the returned clauses may not be needed if a decision takes too much work. If the spec has
-    more than :data:`_MOST_PARTS` clauses, returns all of them.
+    ``decision`` decides whether clauses contradict each other; by default :func:`unsatisfiable`,
+    over finite traces. If a decision takes too much work, the result may have more clauses than
+    needed. If the spec has more than :data:`_MOST_PARTS` clauses, returns all of them.
     """
     decision = decision or unsatisfiable
     needed = list(spec.parts)
@@ -42,9 +42,9 @@ def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunc
 
 
 def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether no finite trace satisfies all of these clauses.
+    """Whether it is certain that no finite trace satisfies all of these clauses.
 
-    Returns False as well if a proof would exceed the limits of the search.
+    Returns False if some trace does, or if a proof would take too many states or steps.
     """
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

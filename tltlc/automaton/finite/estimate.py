@@ -23,11 +23,11 @@ from tltlc.automaton.finite.machine import Machine
 from tltlc.automaton.transitions import IMPOSSIBLE, TransitionDiagrams
 
 _NONE: Final = -1
-"""The letter in which no atom holds; any other letter is the index of the one atom that holds."""
+"""The letter in which no atom holds. Any other letter is an int: the index of the only atom that holds."""
 _FEW: Final = 500
-"""The count does not give up because of few answers before it has visited this many states.
+"""The number of states that a count visits before it may give up.
 
-After that, it gives up when it has found less than half as many different answers as states.
+After that, a count gives up when it has found less than half as many different answers as states.
 """
 
 Word = list[int]
@@ -40,9 +40,9 @@ class _EstimateStopped(Exception):
 
 
 class Estimate:
-    """Counts the states of products of machines.
+    """Decides whether products of machines certainly have too many states.
 
-    All counts together take at most ``steps`` steps.
+    All decisions together take at most ``steps`` steps; after that, the answer is always False.
     """
 
     def __init__(self, diagrams: TransitionDiagrams, steps: int) -> None:
@@ -51,11 +51,11 @@ class Estimate:
         self._leaf_without_atoms: dict[int, int] = {}
 
     def exceeds(self, machines: Sequence[Machine], conjunction: bool, budget: int) -> bool:
-        """Return True if the product of the machines certainly needs more than ``budget`` states.
+        """Whether the conjunction or disjunction of the machines certainly needs more than ``budget`` states.
 
-        The product is the minimal machine of their conjunction, or of their disjunction if
-        ``conjunction`` is False. False may also mean that the answer is unknown, because no steps
-        are left or too few states have different answers.
+        ``conjunction`` is True for the conjunction of the machines, False for their disjunction.
+        The result False may also mean "unknown": no steps are left, or the search found too few
+        states with different languages.
         """
         if prod(len(machine.transitions) for machine in machines) <= budget:
             return False
@@ -92,8 +92,8 @@ class Estimate:
     def _table(self, machine: Machine) -> _Table:
         """Return the transitions of a machine as a table (see :data:`_Table`).
 
-        Its letters have at most one atom, which is an atom that some transition tests. Letters that
-        cannot occur are left out.
+        The table has the letter without atoms, and a letter for each atom that some transition
+        tests, in which only this atom holds. Letters that cannot occur are left out.
         """
         value = self._diagrams.value
         leaves = {state: self._leaves(transition) for state, transition in machine.transitions.items()}
@@ -108,10 +108,9 @@ class Estimate:
         return table
 
     def _leaves(self, node: int) -> dict[int, int]:
-        """Map letters with at most one atom to the leaves that they reach from ``node``.
+        """Map each letter with at most one atom to the leaf that it reaches from ``node``, a transition of a state.
 
-        ``node`` is the transition of a state. A letter that is not a key reaches the leaf of
-        ``_NONE``, the letter without atoms.
+        If a letter is missing, it reaches the same leaf as ``_NONE``, the letter without atoms.
         """
         atom, low, high = self._diagrams.variable, self._diagrams.low, self._diagrams.high
         leaves = {}
@@ -122,7 +121,7 @@ class Estimate:
         return {_NONE: node, **leaves}
 
     def _without_atoms(self, node: int) -> int:
-        """Return the leaf that a letter reaches from ``node`` if none of the atoms below holds."""
+        """Return the leaf that is reached from ``node`` if no atom that is tested from there on holds."""
         atom, low, known = self._diagrams.variable, self._diagrams.low, self._leaf_without_atoms
         path = []
         while node not in known and atom[node] != LEAF:
@@ -134,10 +133,7 @@ class Estimate:
         return leaf
 
     def _reachable_states(self, initial: Sequence[int], tables: Sequence[_Table]) -> Iterator[tuple[int, ...]]:
-        """Yield the reachable states of the product, breadth-first.
-
-        Each is a tuple with a state of each machine.
-        """
+        """Yield the reachable states of the product, breadth-first: tuples with one state of each machine."""
         letters = sorted({letter for table in tables for letter in table} - {_NONE})
         # For each letter: the machines for which it differs from the letter without atoms, with their next states.
         seeing = {
@@ -166,7 +162,7 @@ class Estimate:
 
 
 def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | None:
-    """Return a shortest word that a machine accepts (if ``accepting``) or rejects (if not).
+    """Return a shortest word that a machine accepts; if ``accepting`` is False, a shortest word that it rejects.
 
     Returns None if there is no such word over the letters of ``table``.
     """
@@ -186,10 +182,11 @@ def _settling_word(machine: Machine, table: _Table, accepting: bool) -> Word | N
 def _words(settling: Sequence[Word | None]) -> list[Word]:
     """Return words that distinguish the states of one machine at a time.
 
-    ``settling`` has one word for each machine: for a conjunction one that the machine accepts, for
-    a disjunction one that it rejects. Each word of the result belongs to one machine: it consists
-    of the words of all other machines, and then a suffix of the machine's own word. All suffixes
-    occur, except the whole word. If a machine has no word (None), the result is empty.
+    ``settling`` has one word for each machine: for a conjunction, a word that the machine accepts;
+    for a disjunction, a word that it rejects. Each word of the result is made for one machine: the
+    words of all other machines, followed by a proper suffix of this machine's word. For the words
+    ``ab`` and ``cd``, the result is ``cdb``, ``cd``, ``abd`` and ``ab``. If a machine has no word
+    (None), the result is empty.
     """
     if None in settling:
         return []
@@ -202,7 +199,7 @@ def _words(settling: Sequence[Word | None]) -> list[Word]:
 
 
 def _answers(table: _Table, words: Sequence[Word]) -> dict[int, int]:
-    """Return, for each state of a machine, the words accepted from it: bit ``i`` is set for ``words[i]``."""
+    """Return, for each state of a machine, which words it accepts: bit ``i`` is set if it accepts ``words[i]``."""
     answers = {}
     for start in table[_NONE]:
         bits = 0

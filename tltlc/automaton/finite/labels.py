@@ -1,10 +1,10 @@
 """Label each state with a short formula that says what remains to be done there.
 
-First, each temporal subformula is removed from the state's obligation if the language stays the
-same without it. What is left is written as a formula, and the rules of :mod:`tltlc.logic.rewrite`
-simplify it. Then each operand of an ``and`` or ``or`` is removed if the language stays the same
-without it. A comparison with the machine, called a proof here, decides whether the language stays
-the same.
+First, temporal subformulas are removed from the state's obligation, as long as its language stays
+the same. The rest of the obligation is written as a formula, and the rules of
+:mod:`tltlc.logic.rewrite` simplify it. Then operands of ``and`` and ``or`` are removed, as long as
+the language stays the same. A comparison with the machine, called a proof here, decides whether the
+language stays the same.
 """
 
 from __future__ import annotations
@@ -42,16 +42,15 @@ _COST_OF_GIVING_UP = 30
 
 
 class LabelsTooLong(Exception):
-    """Raised when all labels together have more operators and atoms than the row "label nodes" of ``WORK`` allows."""
+    """Raised when all labels together have more operators and atoms than ``WORK["label nodes"]``."""
 
 
 class Labels:
-    """Computes the labels of the states of a machine.
+    """Computes the labels of the states of a machine: formulas that say what remains to be done.
 
     ``work`` is the largest number of proofs (comparisons of languages) for all labels together; a
-    proof that gives up counts as several. When the number is used up, the remaining labels are not
-    shortened. The limit is a number and not a time, so that the same spec always gets the same
-    labels.
+    proof that gives up counts as several. After that, the remaining labels are not shortened. The
+    limit is not a time, so that the same spec always gets the same labels.
     """
 
     __slots__ = (
@@ -103,8 +102,9 @@ class Labels:
     def _drop_needless_variables(self, obligation: int, state: int) -> int:
         """Return the obligation without the variables that make no difference to its language.
 
-        Most variables of an obligation are temporal subformulas. The variables with the largest
-        formulas are tried first. ``state`` is the state with the language of the obligation.
+        An obligation is a Boolean function, and most of its variables are temporal subformulas. The
+        variables with the largest formulas are tried first. ``state`` is the state of the machine
+        with the same language as the obligation.
         """
         if obligation in (FALSE, TRUE):
             return obligation
@@ -144,9 +144,9 @@ class Labels:
         return formula
 
     def _prove(self, label: Formula | int, state: int) -> bool:
-        """Whether a formula or obligation has the language of a state.
+        """Whether a formula or obligation certainly has the same language as a state.
 
-        Returns False as well if the proof gives up or no work is left.
+        Returns False if the languages differ, if the proof gives up, or if no work is left.
         """
         if self._work <= 0:
             return False

@@ -1,10 +1,8 @@
-"""Build the minimal machine of an obligation: find all reachable obligations and merge equal ones.
-
-Obligations are equal if they have the same language.
+"""Build the minimal machine of an obligation: find all reachable obligations, and merge those of the same language.
 
 A machine is a deterministic automaton whose transitions, not states, decide acceptance. Its states
-are obligations (what remains after the samples so far). A letter leads to a leaf, which has the
-next obligation and says whether a trace that ends with this letter is accepted.
+are obligations (what remains to be done after the samples so far). A letter leads to a leaf, which
+has the next obligation and says whether a trace that ends with this letter is accepted.
 :mod:`tltlc.automaton.finite.build` then makes an automaton with accepting states from the machine.
 """
 
@@ -24,12 +22,12 @@ class OutOfStates(Exception):
 
 @record
 class Machine:
-    """The minimal machine of an obligation.
+    """The minimal machine of an obligation: a deterministic automaton whose transitions decide acceptance.
 
-    Its states are obligations. Of all reachable obligations with the same language, one is the
-    state, and ``representative`` maps all of them to it. ``transitions`` maps each state to its
-    transition, whose leaves contain only obligations that are states. Its first key is ``initial``,
-    the initial state.
+    Its states are obligations (what remains to be done). Of all reachable obligations with the same
+    language, only one is a state; ``representative`` maps each reachable obligation to this state.
+    ``transitions`` maps each state to its transition, a node of a decision diagram whose leaves
+    have the next states. The first key of ``transitions`` is ``initial``, the initial state.
     """
 
     initial: int
@@ -38,9 +36,9 @@ class Machine:
 
 
 def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
-    """Return the minimal machine of an obligation.
+    """Return the minimal machine of an obligation (what remains to be done).
 
-    ``allowed`` is a guard: only letters on which it is true can occur. Raises
+    ``allowed`` is a guard: only letters on which the guard is true can occur. Raises
     :class:`OutOfStates` if there are more than ``state_budget`` reachable obligations, and
     :class:`OutOfSteps` if their transitions take too many steps.
     """
@@ -48,7 +46,7 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
 
 
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
-    """Map every reachable obligation to its transition, in breadth-first order from ``initial``.
+    """Map every obligation that can be reached from ``initial`` to its transition, in breadth-first order.
 
     Only letters on which the guard ``allowed`` is true can occur. Raises :class:`OutOfStates` if
     there are more than ``state_budget`` obligations, and :class:`OutOfSteps` if their transitions
@@ -85,7 +83,7 @@ def explore(successors: Successors, initial: int, state_budget: int, allowed: in
 
 
 def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
-    """Merge the obligations with the same language.
+    """Return the machine in which obligations with the same language are merged into one state.
 
     ``transitions`` is the result of :func:`explore`. The method is partition refinement: start
     with all obligations in one block, and split a block while its members have transitions to
@@ -144,10 +142,7 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
 
 
 def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
-    """Return the given nodes and all their ancestors.
-
-    ``parents`` maps each node to its parents.
-    """
+    """Return the given nodes and all their ancestors; ``parents`` maps each node to its parents."""
     ancestors = set(nodes)
     stack = list(ancestors)
     while stack:
@@ -159,9 +154,7 @@ def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
 
 
 def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
-    """Map every node below ``roots`` to its parents, and every state to the leaves that lead to
-    it.
-    """
+    """Return two dicts: the parents of each node that ``roots`` can reach, and the leaves that lead to each state."""
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
     parents: dict[int, list[int]] = {root: [] for root in roots}
     leaves_of: dict[int, list[int]] = {}
@@ -182,7 +175,7 @@ def _links(diagrams: TransitionDiagrams, roots: Iterable[int]) -> tuple[dict[int
 
 
 def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[list[int]]) -> Machine:
-    """Return the machine with one state for each block: the block's member that comes first in ``transitions``."""
+    """Return the machine with one state for each block: the member that comes first in ``transitions``."""
     initial = next(iter(transitions))
     if len(blocks) == len(transitions):
         return Machine(initial, transitions, {state: state for state in transitions})
@@ -219,11 +212,12 @@ def matches_state(
 ) -> bool:
     """Whether an obligation has the same language as a state of a minimal machine.
 
-    ``known`` maps some obligations to the states with the same language. If the result is True,
-    this function adds the obligations that it compared. The comparison follows all letters from the
-    obligation and from the state together. States of a minimal machine have different languages, so
-    each obligation must meet only one state. Raises :class:`OutOfSteps` after ``pair_limit``
-    obligations.
+    Explores the obligation and the machine together, letter by letter. If the languages are equal,
+    each obligation meets only one state, since states of a minimal machine have different
+    languages. ``known`` maps obligations to the states with the same language; if the result is
+    True, this function adds the obligations that it has compared. ``allowed`` is a guard: only
+    letters on which the guard is true can occur. Raises :class:`OutOfSteps` if there are more than
+    ``pair_limit`` obligations to compare.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value

@@ -26,10 +26,11 @@ _Group = frozenset[int]
 
 
 def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
-    """Return an order of the atoms, as indices, in which atoms of the same subformula are closer together.
+    """Return an order of the atoms in which atoms of the same subformula are closer together.
 
-    The order at least halves the sum of the widths. The width of a subformula is the distance
-    between its first and its last atom. Returns None if the heuristic finds no such order.
+    The order is a list of indices into ``names``. The width of a subformula is the distance between
+    its first and its last atom. The order at least halves the sum of all widths. Returns None if
+    the heuristic finds no such order.
     """
     groups = _groups(formula, {name: index for index, name in enumerate(names)})
     best = order = list(range(len(names)))
@@ -43,14 +44,14 @@ def better_order(formula: Formula, names: Sequence[str]) -> list[int] | None:
 
 
 def reorder(spec: Spec, order: Sequence[int]) -> Spec:
-    """Return the spec with its atoms in another order: first the atom with the index ``order[0]``, and so on."""
+    """Return the spec with its atoms in another order: atom ``order[0]`` comes first, then ``order[1]``, and so on."""
     place = {index: number for number, index in enumerate(order)}
     atoms = tuple(spec.atoms[index] for index in order)
     return replace(spec, atoms=atoms, exclusive=tuple(tuple(place[atom] for atom in group) for group in spec.exclusive))
 
 
 def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
-    """Return the automaton of a reordered spec with its atoms back in the order of ``spec``."""
+    """Return the automaton of ``reorder(spec, order)`` with its atoms back in the order of ``spec``."""
     restored_guards: dict[Guard, Guard] = {}
     edges = []
     for edge in fspa.edges:
@@ -63,14 +64,14 @@ def restore_order(fspa: Fspa, spec: Spec, order: Sequence[int]) -> Fspa:
 def _primes(primes: Iterable[Implicant], order: Sequence[int]) -> tuple[Implicant, ...]:
     """Return the prime implicants with atom ``i`` replaced by ``order[i]``.
 
-    They are sorted by length, then by atom, as by :meth:`~tltlc.automaton.guards.Guards.primes`.
+    Sorts them by length, then by atom, as :meth:`~tltlc.automaton.guards.Guards.primes` does.
     """
     renumbered = (tuple(sorted((order[atom], polarity) for atom, polarity in prime)) for prime in primes)
     return tuple(sorted(renumbered, key=lambda prime: (len(prime), [(atom, not polarity) for atom, polarity in prime])))
 
 
 def _groups(formula: Formula, index: dict[str, int]) -> list[_Group]:
-    """Return the sets of atoms of the subformulas that have 2 to :data:`_LARGEST_GROUP` atoms."""
+    """Return the set of atoms of each subformula that has 2 to :data:`_LARGEST_GROUP` atoms, without duplicates."""
     group_of: dict[Formula, _Group | None] = {}
     for node in formula.bottom_up(known=group_of):
         if node.op == "atom":
@@ -90,7 +91,11 @@ def _width(order: Sequence[int], groups: Iterable[_Group]) -> int:
 
 
 def _move_to_middles(order: Sequence[int], groups: Iterable[_Group]) -> list[int]:
-    """Return the atoms, sorted by the mean of the middle positions of their groups."""
+    """Return a new order, which moves each atom to the middle of its groups.
+
+    The middle of a group is the mean position of its atoms. An atom in several groups moves to the
+    mean of their middles.
+    """
     place = {index: number for number, index in enumerate(order)}
     middles: dict[int, list[float]] = {index: [] for index in order}
     for group in groups:

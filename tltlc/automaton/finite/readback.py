@@ -1,4 +1,4 @@
-"""Convert obligations to formulas, with common factors in front and operands in the order of the source."""
+"""Convert obligations to formulas, with common factors taken out and operands in the order of the source."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _Positioned = tuple[int, Formula]
 
 
 class ObligationWriter:
-    """Converts obligations to formulas, with operands in the order of ``source``."""
+    """Converts obligations (Boolean functions of temporal subformulas) to formulas.
+
+    The operands have the order of ``source``, the formula of the spec.
+    """
 
     __slots__ = ("_formulas", "_long_bounds", "_position", "_successors", "_sums", "_without_shorter")
 
@@ -45,16 +48,16 @@ class ObligationWriter:
         return self._with_position(obligation)[1]
 
     def long_bound(self, obligation: int) -> Formula | None:
-        """Return the source's subformula with a long bound that has this obligation; None without one.
+        """Return the subformula ``F[0,n] p`` or ``G[0,n] p`` of the source with this obligation, if ``n`` is large.
 
-        A bound of more than :data:`_MOST_FACTORED` samples is long. Callers use this subformula as
-        it is: no shorter formula has its obligation, and a search for one takes n² steps for n
-        samples.
+        Returns None if there is no such subformula, or if ``n`` is at most
+        :data:`_MOST_FACTORED`. Callers use the subformula unchanged: no shorter formula has the
+        same obligation, and a search for one takes n² steps.
         """
         return self._long_bounds.get(obligation)
 
     def support(self, obligation: int) -> list[int]:
-        """Return the variables (such as temporal subformulas) that the obligation depends on, ascending."""
+        """Return the variables (such as temporal subformulas) on which the obligation depends, in ascending order."""
         obligations = self._successors.diagrams.obligations
         seen, stack = {FALSE, TRUE, obligation}, [obligation]
         variables: set[int] = set()
@@ -92,8 +95,9 @@ class ObligationWriter:
     def without_shorter_bounds(self, obligation: int) -> int:
         """Return the obligation without the variables of bounds that a longer bound makes redundant.
 
-        The obligation of ``F[0,n] p`` also has the variables of ``F[0,n-1] p`` and so on. Without
-        this method, the search for short labels would need a proof for each of these variables.
+        The obligation of ``F[0,3] p`` also has variables for ``F[0,2] p`` and ``F[0,1] p``, which
+        are redundant beside ``F[0,3] p``. Without this method, the search for short labels would
+        need a proof for each of them.
         """
         known = self._without_shorter.get(obligation)
         if known is None:
@@ -163,8 +167,9 @@ class ObligationWriter:
     def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
         """Return the common factors of the obligation, and the obligation without them.
 
-        If ``absorbing`` is FALSE, the factors are the literals whose negation makes the obligation
-        false. If it is TRUE, they are the literals that make the obligation true.
+        If ``absorbing`` is FALSE, the obligation is the conjunction of its factors and the rest:
+        ``a`` is a factor of ``a & (b | c)``. If ``absorbing`` is TRUE, it is their disjunction:
+        ``a`` is a factor of ``a | b & c``.
         """
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE
@@ -178,9 +183,10 @@ class ObligationWriter:
         return factors, obligation
 
     def _drop_redundant(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
-        """Return the literals of an ``and`` (``absorbing`` is FALSE) or an ``or``, without the redundant ones.
+        """Return the literals without those that are redundant beside another literal.
 
-        For example, ``F b`` is redundant in ``F(a & X F b) & F b``.
+        The literals are operands of an ``and`` if ``absorbing`` is FALSE, of an ``or`` if it is
+        TRUE. For example, ``F b`` is redundant in ``F(a & X F b) & F b``.
         """
         successors = self._successors
         variables = {variable for variable, _ in literals}
@@ -197,9 +203,9 @@ class ObligationWriter:
         return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in redundant)]
 
     def _terms(self, obligation: int) -> list[_Term] | None:
-        """Return the obligation as a disjunction of conjunctions of literals.
+        """Return the obligation as a disjunction of terms, which are conjunctions of literals.
 
-        Returns None if there are too many terms.
+        Returns None if there are more than :data:`_TERM_LIMIT` terms.
         """
         if obligation in self._sums:
             return self._sums[obligation]

@@ -49,11 +49,11 @@ class Successors:
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
 
     def number_variables(self, formula: Formula) -> None:
-        """Give the temporal subformulas of a formula the next free variables, in the order of the formula.
+        """Give each temporal subformula of a formula the next free variable, in the order of the formula.
 
         The variables of a subformula are then next to each other, which keeps the decision diagrams
-        small. With this order, the diagrams of a conjunction of six formulas ``G(a -> F b)`` take a
-        third of the steps that they take without it.
+        small: for a conjunction of six formulas ``G(a -> F b)``, their operations take a third of
+        the steps.
         """
         for part in formula.walk():
             if part.is_temporal:
@@ -94,7 +94,7 @@ class Successors:
         return result
 
     def variable(self, formula: Formula) -> int:
-        """Return the variable that stands for an atom or a temporal formula; a new formula gets the next free one."""
+        """Return the variable of an atom or a temporal formula; a formula without a variable gets the next free one."""
         number = self._variables.get(formula)
         if number is None:
             number = self._variables[formula] = len(self.formulas)
@@ -102,11 +102,11 @@ class Successors:
         return number
 
     def new_state(self, stands_for: int) -> int:
-        """Return a new obligation that represents a state of a smaller automaton.
+        """Return a new obligation, a single variable, that represents a state of a smaller automaton.
 
-        The smaller automaton was built for a part of the formula. ``stands_for`` is an obligation
-        that means the same as the state, and is written with the formula's own variables. Call
-        :meth:`define_state` next to set the transition of the new obligation.
+        The smaller automaton was built for a part of the formula. ``stands_for`` is the obligation
+        that remains in the state. Call :meth:`define_state` next to set the transition of the new
+        obligation.
         """
         variable = len(self.formulas)
         self.formulas.append(None)
@@ -118,9 +118,9 @@ class Successors:
         self._of_state[self.diagrams.obligations.variable[state]] = transition
 
     def of_obligation(self, obligation: int) -> int:
-        """Return the transition of an obligation.
+        """Return the transition of an obligation: a decision diagram that maps each letter to what remains after it.
 
-        It is a node of a decision diagram that says, for each letter, what remains to be done.
+        Each leaf also says whether a trace that ends with the letter is accepted.
         """
         known = self._of_obligation
         if obligation in known:
@@ -158,10 +158,7 @@ class Successors:
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the transition of a formula in negation normal form.
-
-        It is a node of a decision diagram that says, for each letter, what remains to be done.
-        """
+        """Return the transition of a formula in negation normal form, as :meth:`of_obligation` of its obligation."""
         known = self._of_formula
         result = known.get(formula)
         if result is not None:

@@ -20,7 +20,7 @@ from tltlc.logic.bounded_operators import count_down, count_down_from
 from tltlc.logic.formula import Formula
 
 STEPS_PER_OBLIGATION: Final = 100
-"""The fewest steps of work that each successor of an obligation takes.
+"""The steps of work that each successor of an obligation takes at least.
 
 If an obligation has more successors than the work budget can pay for, the construction fails before
 it lists them.
@@ -30,13 +30,17 @@ _TEMPORAL: Final = ("U", "W", "X")
 
 
 class ObligationAutomaton:
-    """Computes obligations over ``atoms``, and functions from the letter to what remains of an obligation after it.
+    """Computes obligations (what remains to be done), and what remains of them after a letter.
 
-    These functions are decision diagrams in the table ``letters``. ``formulas[v]`` is the formula
-    of variable ``v`` of the obligations: an atom, a formula with the outermost operator ``X``,
-    ``U`` or ``W``, or a rigid formula. Methods that build obligations raise
-    :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large. Methods that
-    build functions of letters raise :class:`~tltlc.automaton.work.OutOfWork`.
+    A letter is the set of the atoms that hold at a sample. A function from the letter to the
+    obligation that remains after the letter is a decision diagram in the table ``letters``. An
+    obligation is a Boolean function in the table ``obligations``, and ``formulas[v]`` is the
+    formula of its variable ``v``: an atom, a formula with the outermost operator ``X``, ``U`` or
+    ``W``, or a rigid formula (``G F p`` or ``F G p``).
+
+    Methods that build obligations raise :class:`~tltlc.automaton.diagrams.OutOfSteps` if an
+    obligation becomes too large. Methods that build functions of letters also raise
+    :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, atoms: Sequence[str], letters: Diagrams[Any]) -> None:
@@ -55,7 +59,7 @@ class ObligationAutomaton:
         self._sources: dict[int, Formula] = {FALSE: build.FALSE, TRUE: build.TRUE}
 
     def obligation(self, formula: Formula) -> int:
-        """Return the obligation of a formula in normal form."""
+        """Return the obligation of a formula in the normal form of :mod:`tltlc.automaton.infinite.normal_form`."""
         obligation = self._obligations.get(formula)
         if obligation is not None:
             return obligation
@@ -101,7 +105,7 @@ class ObligationAutomaton:
         return number
 
     def after(self, obligation: int) -> int:
-        """Return a decision diagram that maps each letter to what remains of an obligation after the letter."""
+        """Return a decision diagram that maps each letter to the obligation that remains after the letter."""
         known = self._of_obligation
         if obligation in known:
             return known[obligation]
@@ -122,8 +126,8 @@ class ObligationAutomaton:
     def _by_variable(self, obligation: int, absent: int, present: int) -> int:
         """Return the result of :meth:`after` for an obligation, given the results for its two cofactors.
 
-        ``absent`` is the result for the obligation with its first variable false, ``present`` with
-        it true.
+        ``absent`` is the result for the obligation with its first variable set to false,
+        ``present`` with this variable set to true.
         """
         formula, letters = self.formulas[self.obligations.variable[obligation]], self.letters
         if formula.op == "atom":
@@ -135,15 +139,15 @@ class ObligationAutomaton:
         return self.either(absent, self.both(self.of_formula(formula), present))
 
     def both(self, x: int, y: int) -> int:
-        """Return the function whose value on each letter is the conjunction of the values of two functions."""
+        """Return the function whose value on each letter is the conjunction of the values of ``x`` and ``y``."""
         return self.letters.apply(self._with_counter(self.obligations.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
-        """Return the function whose value on each letter is the disjunction of the values of two functions."""
+        """Return the function whose value on each letter is the disjunction of the values of ``x`` and ``y``."""
         return self.letters.apply(self._with_counter(self.obligations.either), x, y, self._either)
 
     def _with_counter(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
-        """Return a function that calls ``combine`` and counts its different results.
+        """Return a function that calls ``combine`` and counts its distinct results.
 
         The function raises OutOfWork if there are more results than the work budget can pay for.
         """
@@ -160,7 +164,7 @@ class ObligationAutomaton:
         return counted
 
     def of_formula(self, formula: Formula) -> int:
-        """Return a decision diagram that maps each letter to the obligation that remains of a formula after it."""
+        """Return a decision diagram that maps each letter to what remains of a formula after the letter."""
         step = self._of_formula.get(formula)
         if step is None:
             step = self._of_formula[formula] = self._expand(formula)
@@ -194,9 +198,8 @@ class ObligationAutomaton:
     def formula(self, obligation: int) -> Formula:
         """Return a formula that is equivalent to an obligation.
 
-        :meth:`obligation` may have converted several formulas to this obligation: the smallest of
-        them is returned. If there is none, the formula is made from the decision diagram of the
-        obligation.
+        If :meth:`obligation` has converted formulas to this obligation, returns the smallest of
+        them. Otherwise makes a formula from the decision diagram of the obligation.
         """
         known = self._sources.get(obligation)
         if known is None:
@@ -235,7 +238,7 @@ class ObligationAutomaton:
 
 
 def _weaker_subformulas(formula: Formula) -> Iterator[Formula]:
-    """Yield temporal subformulas that a temporal formula implies: ``F b`` for ``F(a & X F b)``."""
+    """Yield some temporal subformulas that a temporal formula implies, such as ``F b`` for ``F(a & X F b)``."""
     if formula.op == "X" and formula.args[0].op == "and" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
@@ -247,7 +250,7 @@ def _weaker_subformulas(formula: Formula) -> Iterator[Formula]:
 
 
 def _stronger_subformulas(formula: Formula) -> Iterator[Formula]:
-    """Yield temporal subformulas that imply a temporal formula: ``G b`` for ``a U G b``."""
+    """Yield some temporal subformulas that imply a temporal formula, such as ``b U c`` for ``a U (b U c)``."""
     if formula.op == "X" and formula.args[0].op == "or" and (shorter := count_down(formula)):
         yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
-    """Return the goals, traps and verdicts of a Rabin automaton."""
+    """Return the analysis (goals, verdicts, …) of a Rabin automaton."""
     edges = [
         (state, target, pair_marks(marks))
         for state in range(len(automaton.steps))
@@ -26,7 +26,7 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 
 
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
-    """Return the goals, traps and verdicts of an FSPA.
+    """Return the analysis (goals, verdicts, …) of a finite state predicate automaton over infinite traces.
 
     Uses only the number of its states, its edges, and its Rabin pairs. The indices in the pairs
     must be valid.
@@ -38,12 +38,14 @@ def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
 
 
 class Analysis:
-    """Goals, traps and verdicts of an automaton, from its cycles (``docs/semantics.md``, "Infinite traces").
+    """The goals and verdicts of a Rabin automaton, computed from its cycles.
 
-    ``targets`` maps each state to its successors. ``goals`` is the set of the states on an
-    accepted cycle. State 0 is initial. The marks of ``edges`` are numbered as by
-    :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`. The constructor and every method
-    may raise :class:`~tltlc.automaton.work.OutOfWork`.
+    ``docs/semantics.md``, "Infinite traces", defines them. ``targets`` maps each state to its
+    successors. ``goals`` is the set of the states on an accepted cycle. The states are the ints
+    from 0 to ``states - 1``, and state 0 is initial. An edge is (source, target, marks). A mark
+    says that the edge is in a set of one of the ``pairs`` Rabin pairs; marks are numbered as by
+    :func:`~tltlc.automaton.infinite.mark_conditions.pair_marks`. The constructor and
+    :meth:`default_judge` may raise :class:`~tltlc.automaton.work.OutOfWork`.
     """
 
     def __init__(self, states: int, edges: Sequence[MarkedEdge], pairs: int, work: Work) -> None:
@@ -62,8 +64,8 @@ class Analysis:
     def verdict(self, state: int) -> Verdict:
         """Return the verdict of a state.
 
-        It is ``satisfied`` if every run from the state is accepted, and ``violated`` if no run is.
-        Otherwise it is ``holding`` if the state is a goal, and ``pending`` if not.
+        The verdict is ``satisfied`` if every run from the state is accepted, and ``violated`` if no
+        run is accepted. Otherwise it is ``holding`` if the state is a goal, ``pending`` if not.
         """
         if state not in self._alive:
             return "violated"
@@ -72,10 +74,10 @@ class Analysis:
         return "holding" if state in self.goals else "pending"
 
     def default_judge(self) -> JudgeMode:
-        """Return when a spec without a ``judge`` clause is judged.
+        """Return when a spec without a ``judge`` clause is judged: at its ``goal`` or at its ``limit``.
 
-        Returns ``goal`` if the initial state is not a goal, and every run from a goal that avoids
-        traps is accepted. Otherwise returns ``limit``.
+        Returns ``goal`` if the initial state is not a goal, and if every run that begins in a goal
+        and enters no trap is accepted. Otherwise returns ``limit``.
         """
         if 0 in self.goals:
             return "limit"
@@ -90,14 +92,14 @@ class Analysis:
         return "limit" if reached & rejected else "goal"
 
     def _states_on_rejected_cycles(self, edges: MarkedEdges) -> set[int]:
-        """Return the states on a cycle of ``edges`` that is not accepted."""
+        """Return all states that lie on a rejected cycle of ``edges``."""
         rejected = (
             cycle for part in parts(edges, self._work) for cycle in rejecting_parts(part, self._clauses, self._work)
         )
         return _endpoints(rejected)
 
     def _states_reaching(self, states: Collection[int]) -> set[int]:
-        """Return the states from which one of the given states can be reached."""
+        """Return all states that can reach one of the given states."""
         sources: dict[int, list[int]] = {state: [] for state in self.targets}
         for state, targets in self.targets.items():
             for target in targets:

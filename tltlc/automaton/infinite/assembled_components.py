@@ -1,6 +1,8 @@
-"""Join the automata of all components of the after-automaton into one automaton, and merge equal states.
+"""Join the automata of all components into one automaton, and merge equal states.
 
-States are equal if, on each letter, they have the same marks and lead to equal states.
+A component is a strongly connected component of the after-automaton
+(:mod:`tltlc.automaton.infinite.after_automaton`). States are equal if, on each letter, they have
+the same marks and lead to equal states.
 """
 
 from __future__ import annotations
@@ -25,12 +27,13 @@ def join_components(
     initial: ComponentPlace,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[ComponentPlace, int]]:
-    """Return the automaton that joins ``components``, and the number of each reachable state in it.
+    """Join ``components`` into one automaton; return it, and the numbers that their states have in it.
 
     The automaton has only the states that can be reached from ``initial``, which becomes state 0.
-    An exit is an edge of a component to a label of another component; ``entry`` maps this label to
-    the state that the edge leads to. States keep the labels of the components. A state whose label
-    is in ``apart`` is not merged with a state whose label is not in it.
+    Where an edge leaves its component, it has only a label as its target; ``entry`` maps this label
+    to the state of another component to which the edge then leads. States keep their labels. Equal
+    states are merged, except that no state with a label in ``apart`` is merged with a state whose
+    label is not in ``apart``.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)
@@ -48,11 +51,10 @@ def join_components(
 def _steps(
     letters: Diagrams[Any], components: Sequence[RabinComponent], entry: Mapping[int, ComponentPlace]
 ) -> dict[ComponentPlace, int]:
-    """Return the step of each state of the components.
+    """Return the step of each state: a function from the letter to the next state and the marks of the edge.
 
-    The step is a function from the letter to the next state and the marks of the edge, or to None
-    if ``exclusive`` rules the letter out. An edge to a label of another component leads to the
-    state that ``entry`` has for this label.
+    The value is None on letters that ``exclusive`` rules out. If the target of an edge is only a
+    label of another component, ``entry`` has the state for this label.
     """
     steps: dict[ComponentPlace, int] = {}
     for number, component in enumerate(components):
@@ -89,12 +91,12 @@ def _number_states(
     reached: Sequence[ComponentPlace],
     apart: Sequence[bool],
 ) -> dict[ComponentPlace, int]:
-    """Number the states from 0 in the order of ``reached``.
+    """Number the states from 0 in the order of ``reached``; states that are merged get the same number.
 
-    States that are merged get the same number. States are merged if they have the same value in
-    ``apart`` and, on each letter, the same marks and merged targets. The method is partition
-    refinement: a block of states is split while its states have different steps, and only states
-    that lead to a state of a new block are examined again.
+    ``apart`` has a truth value for each state of ``reached``. States are merged if they have the
+    same value in ``apart`` and, on each letter, the same marks and merged targets. The method is
+    partition refinement: a block of states is split while its states have different steps, and only
+    states that lead to a state of a new block are examined again.
     """
     sources: dict[ComponentPlace, list[ComponentPlace]] = {place: [] for place in reached}
     for place in reached:

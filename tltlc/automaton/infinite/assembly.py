@@ -23,7 +23,7 @@ class TargetsAndGoals(Protocol):
     goals: set[int]
 
     def verdict(self, state: int) -> Verdict:
-        """Return the verdict of a state."""
+        """Return the verdict of the state with this number."""
 
 
 @record
@@ -47,12 +47,12 @@ def assemble(
     label: Callable[[int], Formula | Text],
     first: Sequence[int] | None = None,
 ) -> AssembledParts:
-    """Return states, edges and Rabin pairs, with the states in breadth-first order, as artefacts have them.
+    """Return the states, edges and Rabin pairs of an automaton, with the states numbered breadth-first.
 
     ``atoms`` are the names of the atoms, ``exclusive`` groups of their indices. ``label`` returns
-    the label of a state, given its number in ``automaton``. Successors of a state are sorted by
-    distance. ``first`` may list all states: successors with the same distance then have the order
-    of this list.
+    the label of a state, given its number in ``automaton``. The successors of a state are numbered
+    in order of their distance to a goal. Successors with the same distance are numbered in the
+    order of ``first``, a list of all states; by default in the order of their old numbers.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes` and
     :class:`~tltlc.automaton.diagrams.OutOfSteps`.
@@ -105,8 +105,8 @@ def _edges(
 class _Leaves:
     """Converts the steps of a Rabin automaton to transitions in another table of decision diagrams.
 
-    A step is a function from the letter to a target and marks. A leaf of its transition stores an
-    index into ``values``, where each entry is a target and its marks.
+    A step is a function from the letter to a target and marks. A leaf of a transition can store
+    only ints, so it has an index into ``values``, a list of targets with their marks.
     """
 
     def __init__(self) -> None:
@@ -115,7 +115,7 @@ class _Leaves:
         self._known: dict[int, int] = {}
 
     def transition(self, letters: Diagrams[Any], step: int, diagrams: TransitionDiagrams) -> int:
-        """Return the transition in the table ``diagrams`` for a step, which is a node of the table ``letters``."""
+        """Convert ``step``, a node of the table ``letters``, to a transition, a node of the table ``diagrams``."""
         node = self._known.get(step)
         if node is None:
             if letters.variable[step] != LEAF:

@@ -10,7 +10,7 @@ from tltlc.automaton.fspa import Mark
 from tltlc.core.record import record
 
 PairMarks = frozenset[Mark]
-"""The marks of an edge: ``(pair, "fin")`` or ``(pair, "inf")`` for each set of a Rabin pair that has the edge."""
+"""The marks of an edge: ``(pair, "fin")`` or ``(pair, "inf")`` for each set of a Rabin pair that contains the edge."""
 
 NO_MARKS: Final[PairMarks] = frozenset()
 
@@ -34,7 +34,7 @@ class Rabin:
     pairs: int
 
     def leaves(self, state: int) -> list[tuple[int, PairMarks]]:
-        """Return the successors of a state, each with the marks of the edge to it."""
+        """Return the successors of a state, each with the marks of the edge that leads there."""
         return [leaf for leaf in self.letters.values(self.steps[state]) if leaf is not None]
 
     def step(self, state: int, letter: Sequence[bool]) -> tuple[int, PairMarks]:

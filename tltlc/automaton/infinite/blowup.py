@@ -21,7 +21,8 @@ _FOR_ALL_PARTS: Final = 2_000_000
 def budget_error(spec: Spec, reason: Exception) -> TltlError:
     """Return the error for a spec whose automaton is too expensive.
 
-    It is TLT0502 if there are too many edges or prime implicants, and TLT0501 otherwise.
+    ``reason`` is the exception that stopped the construction. The error is TLT0502 if there are too
+    many edges or prime implicants, and TLT0501 otherwise.
     """
     too_large, advice = failure_text(reason), ADVICE
     if isinstance(reason, OutOfWork):

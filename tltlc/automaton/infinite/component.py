@@ -23,7 +23,7 @@ IMPOSSIBLE: Final = -1
 """Takes the place of a label where a letter has no successor because ``exclusive`` rules it out."""
 
 ComponentState = tuple[Any, ...]
-"""A label, then the memory of each part. A target outside the component is ``("exit", label)``."""
+"""A label, then the memory of each part. A target outside the component is ``("exit", label)`` instead."""
 
 ComponentLeaf = tuple[ComponentState, Marks]
 """The state after a letter, and the marks of the edge: the indices of the parts that mark the letter."""
@@ -35,9 +35,9 @@ _NONE: Final[Marks] = frozenset()
 class ComponentAutomaton:
     """A strongly connected component of the after-automaton, with an acceptance condition.
 
-    ``labels`` maps each state to its label, ``steps`` each state to a function from the letter to a
-    :data:`ComponentLeaf`. A run that stays in the component is accepted if it meets a clause of
-    ``accepts``.
+    ``labels`` maps each state to its label, the obligation that remains in the state. ``steps``
+    maps each state to a function from the letter to a :data:`ComponentLeaf`. A run that stays in
+    the component is accepted if it meets a clause of ``accepts``.
     """
 
     labels: dict[ComponentState, int]
@@ -48,12 +48,13 @@ class ComponentAutomaton:
 def parts_of(
     after: ObligationAutomaton, normal: Formula, *, keep: bool, in_turn: bool
 ) -> tuple[Skeleton, list[LeafAutomaton]]:
-    """Return the Boolean structure of a normalised formula over its parts, and an automaton for each part.
+    """Split a normalised formula into parts; return how ``and`` and ``or`` join them, and an automaton for each part.
 
-    The parts are the operands that are left when every outermost ``and`` and ``or`` is taken apart.
-    If ``in_turn``, the operands ``G F p`` of a conjunction, and ``F G p`` of a disjunction, share
-    one automaton, a :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`. ``keep`` is the
-    parameter of :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
+    The parts are the largest subformulas that are neither an ``and`` nor an ``or``. For
+    ``G F a & (p U q | G F b)``, they are ``G F a``, ``p U q`` and ``G F b``. If ``in_turn``, the
+    operands ``G F p`` of an ``and`` share one automaton, a
+    :class:`~tltlc.automaton.infinite.leaf_automata.RoundRobin`, and so do the operands ``F G p`` of
+    an ``or``. ``keep`` is passed to :class:`~tltlc.automaton.infinite.leaf_automata.Recurrence`.
     """
     index_of: dict[Formula | tuple[Formula, ...], int] = {}
     parts: list[LeafAutomaton] = []
@@ -78,9 +79,9 @@ def parts_of(
 
 
 def has_turns(normal: Formula) -> bool:
-    """Whether a conjunction in a normalised formula has several ``G F p``, or a disjunction several ``F G p``.
+    """Whether an ``and`` in a normalised formula has several operands ``G F p``, or an ``or`` several ``F G p``.
 
-    :func:`parts_of` can then join their automata with ``in_turn``.
+    With ``in_turn``, :func:`parts_of` gives these operands one automaton.
     """
     rigid = {"and": "G", "or": "F"}.get(normal.op)
     if rigid is None:
@@ -106,11 +107,11 @@ def bottom_component(
 ) -> ComponentAutomaton:
     """Return an automaton with an acceptance condition for the component of the labels ``inside``.
 
-    The automata ``parts`` observe the parts of a formula, whose Boolean structure over its parts is
-    ``skeleton``. Take the product of the labels and these automata, beginning at the label
-    ``first`` and the initial memories. The result is the smallest strongly connected component of
-    this product that no edge leaves, except to labels outside ``inside``. ``step_of`` returns, for
-    a label, a function from the letter to the next label.
+    A label is an obligation, and ``step_of(label)`` is a function from the letter to the next
+    label. The automata ``parts`` observe the parts of a formula; ``skeleton`` says how ``and`` and
+    ``or`` join these parts. The states of the product of the labels and these automata are
+    explored from the label ``first`` and the initial memories. The result is the smallest strongly
+    connected component of the product that no edge leaves, except to labels outside ``inside``.
     """
     initial: ComponentState = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))
@@ -127,11 +128,12 @@ def bottom_component(
 def explore(
     letters: Diagrams[Any], initial: ComponentState, step_of: Callable[[ComponentState], int]
 ) -> tuple[dict[ComponentState, int], list[ComponentState]]:
-    """Return the steps of all reachable states, and the states of a bottom component.
+    """Return the step of each state that ``initial`` can reach, and the states of the bottom component.
 
-    ``step_of`` returns the step of a state: a function from the letter to the next state and marks.
-    The states of the steps are in breadth-first order. The bottom component is the smallest
-    strongly connected component that no edge leaves, except to targets ``("exit", label)``.
+    The step of a state, ``step_of(state)``, is a function from the letter to the next state and
+    marks. The first result has the states in breadth-first order. The bottom component is the
+    smallest strongly connected component that no edge leaves, except to targets
+    ``("exit", label)``.
     """
     steps: dict[ComponentState, int] = {}
     targets: dict[ComponentState, list[ComponentState]] = {}
@@ -190,7 +192,7 @@ def _step(
     state: ComponentState,
     parts: Sequence[LeafAutomaton],
 ) -> int:
-    """Return, for a state of the product, the function from the letter to a :data:`ComponentLeaf`."""
+    """Return the step of a state of the product: a function from the letter to a :data:`ComponentLeaf`."""
 
     def start(label: int) -> ComponentLeaf:
         return ((label,), _NONE) if label in inside else (("exit", label), _NONE)

@@ -68,11 +68,11 @@ def rabin(
 ) -> Rabin:
     """Return the deterministic Rabin automaton of a formula over infinite traces.
 
-    ``atoms`` are the names of the atoms of a letter, in order; by default the atoms of the formula.
-    ``exclusive`` has groups of indices of atoms; at most one atom of a group holds in a letter.
-    Raises :class:`OutOfWork` after ``work`` steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` if
-    an obligation becomes too large, and :class:`~tltlc.automaton.guards.TooManyPrimes` if there are
-    too many edges.
+    ``atoms`` are the names of the atoms, in the order of their indices; by default the atoms of the
+    formula. ``exclusive`` has groups of indices of atoms; at most one atom of a group holds at a
+    sample. Raises :class:`OutOfWork` after ``work`` steps,
+    :class:`~tltlc.automaton.diagrams.OutOfSteps` if an obligation becomes too large, and
+    :class:`~tltlc.automaton.guards.TooManyPrimes` if there are too many edges.
     """
     normal = infinite_form(formula)
     return _Construction(normal, formula.atoms() if atoms is None else atoms, exclusive, work).automaton()
@@ -105,11 +105,11 @@ class _Construction:
         return first
 
     def _equal_labels(self, automaton: Rabin, state_of: LabelMap, depth: LabelMap) -> LabelMap:
-        """Map each label to one label that represents all labels with the same language.
+        """Map each label (obligation) to a representative of all labels with the same language.
 
-        The representative has the lowest ``depth`` (the position of its component) of these labels,
-        and is the shortest of those with this depth. ``state_of`` maps labels to states of
-        ``automaton``.
+        The representative is the label with the lowest ``depth``, and of these the shortest.
+        ``depth`` maps labels to the positions of their components; ``state_of`` maps labels to
+        states of ``automaton``.
         """
         same = equal_states(automaton, len(self.after.atoms), self._exclusive, self.work)
         representatives: LabelMap = {}
@@ -119,12 +119,12 @@ class _Construction:
         return representatives
 
     def _construct(self, representatives: LabelMap) -> tuple[Rabin, LabelMap, LabelMap]:
-        """Build the automaton, with labels replaced by their representatives.
+        """Build the automaton, with each label (obligation) in ``representatives`` replaced by its representative.
 
-        Returns the automaton, the state of each label, and the position of each label's component.
-        A component has a higher position than all components that can be reached from it. Raises
-        :class:`TooManyPrimes` if there are more edges between labels than the row "edges" of
-        ``WORK`` allows.
+        Returns the automaton, a dict from labels to states, and a dict from labels to the positions
+        of their components. A component has a higher position than all components that can be
+        reached from it. Raises :class:`TooManyPrimes` if there are more edges between labels than
+        ``WORK["edges"]``.
         """
         memo: dict[int, int] = {}
 
@@ -163,9 +163,9 @@ class _Construction:
     # --- letters ----------------------------------------------------------------------------------
 
     def _step(self, label: int) -> int:
-        """Return a decision diagram that maps each letter to the next label.
+        """Return a decision diagram that maps each letter to the label that follows ``label``.
 
-        Its value is ``IMPOSSIBLE`` for letters that ``exclusive`` rules out.
+        The value is ``IMPOSSIBLE`` on letters that ``exclusive`` rules out.
         """
         step = self.after.after(label)
         if not self._exclusive:
@@ -180,7 +180,11 @@ class _Construction:
     # --- components -------------------------------------------------------------------------------
 
     def _rabin_component(self, step_of: Callable[[int], int], group: Sequence[int]) -> RabinComponent:
-        """Return the smallest automaton found for a component of the after-automaton, with Rabin pairs."""
+        """Return the smallest automaton with Rabin pairs that was found for ``group``, the labels of a component.
+
+        ``step_of(label)`` is a function from the letter to the next label. Raises OutOfWork if no
+        automaton was found.
+        """
         inside = frozenset(group)
         if not any(target in inside for label in group for target in self._targets(step_of(label))):
             (label,) = group
@@ -200,8 +204,8 @@ class _Construction:
     def _attempts(self, step_of: Callable[[int], int], inside: frozenset[int], first: int) -> Iterator[RabinComponent]:
         """Yield automata for the component with the labels ``inside``, each built in another way.
 
-        Each automaton starts at the label ``first``. An attempt that takes too much work yields
-        nothing.
+        Each automaton is made for the formula of the label ``first``. An attempt that takes too
+        much work yields no automaton.
         """
         formula = self.after.formula(first)
         forms = []

@@ -19,9 +19,9 @@ _WORK: Final = 100_000
 
 
 def unsatisfiable(parts: Sequence[Conjunct], spec: Spec) -> bool:
-    """Whether no infinite trace satisfies all of ``parts``, which are clauses of ``spec``.
+    """Whether it is certain that no infinite trace satisfies all of ``parts``, which are clauses of ``spec``.
 
-    Returns False as well if the decision takes too much work.
+    Returns False if some trace does, or if the decision takes too much work.
     """
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

@@ -4,8 +4,9 @@ It is from A. Casares, T. Colcombet, N. Fijalkow, "Optimal Transformations of Ga
 Using Muller Conditions" (ICALP 2021). A set of edges is accepted if a run that takes exactly these
 edges infinitely often is accepted. A node is a strongly connected set of edges. The children of an
 accepted node are its maximal rejected subsets; the children of a rejected node are its maximal
-accepted subsets. To judge a run, take a node that contains all edges that the run takes infinitely
-often, and none of whose children does. The run is accepted if this node is accepted.
+accepted subsets. To judge a run, take the edges that the run takes infinitely often, and find a
+node that contains all of them but has no child that contains all of them. The run is accepted if
+this node is accepted.
 """
 
 from __future__ import annotations
@@ -24,15 +25,16 @@ MarkedEdge = tuple[Any, Any, Marks]
 MarkedEdges = frozenset[MarkedEdge]
 
 LOOKS_PER_STEP: Final = 16
-"""How many edges a function may read for one step of work."""
+"""How many edges a function may look at for one step of work."""
 
 
 @record
 class CycleNode:
     """A node of an alternating cycle decomposition: a strongly connected set of edges, accepted or rejected.
 
-    ``index`` numbers the nodes of a tree from 0. ``states`` are the sources and targets of
-    ``edges``.
+    ``index`` is the number of the node in its tree, from 0. ``states`` are the sources and targets
+    of ``edges``. ``children`` are maximal subsets that are judged the other way: rejected if this
+    node is accepted, and accepted if it is rejected.
     """
 
     index: int
@@ -45,9 +47,9 @@ class CycleNode:
 def decomposition(edges: Iterable[MarkedEdge], clauses: Sequence[MarkClause], work: Work) -> CycleNode:
     """Return the root of the alternating cycle decomposition of a strongly connected set of edges.
 
-    A set is accepted if one of ``clauses`` accepts its marks. Children have the order of their
-    first edges in ``edges``. Like all functions of this module, this one takes steps of ``work``
-    for the edges that it visits, and raises :class:`~tltlc.automaton.work.OutOfWork`.
+    A set of edges is accepted if one of ``clauses`` accepts the marks of its edges. Children are
+    sorted by the position of their first edge in ``edges``. Takes steps of ``work`` for the edges
+    that it visits, and raises :class:`~tltlc.automaton.work.OutOfWork` if no steps are left.
     """
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0
@@ -67,7 +69,7 @@ def decomposition(edges: Iterable[MarkedEdge], clauses: Sequence[MarkClause], wo
 
 
 def _maximal(sets: Sequence[MarkedEdges], work: Work) -> list[MarkedEdges]:
-    """Return the sets that are not contained in another one, without duplicates."""
+    """Return the sets that are not a subset of another set, without duplicates."""
     distinct = sorted(dict.fromkeys(sets), key=len, reverse=True)
     maximal: list[MarkedEdges] = []
     for candidate in distinct:
@@ -84,12 +86,15 @@ def _accepts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> b
 
 
 def marks_of(edges: Iterable[MarkedEdge]) -> Marks:
-    """Return all marks of the edges."""
+    """Return the union of the marks of the edges."""
     return frozenset().union(*(edge[2] for edge in edges))
 
 
 def accepting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> list[MarkedEdges]:
-    """Return, for each clause, the maximal strongly connected subsets of ``edges`` that the clause accepts."""
+    """Return, in one list, the maximal strongly connected subsets of ``edges`` that each clause accepts.
+
+    A clause accepts a set if it accepts the marks of all its edges together.
+    """
     work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
         part
@@ -100,8 +105,10 @@ def accepting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Wor
 
 
 def rejecting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Work) -> list[MarkedEdges]:
-    """Return strongly connected subsets of ``edges`` that no clause accepts: all maximal ones, and
-    possibly smaller ones.
+    """Return strongly connected subsets of ``edges`` that no clause accepts.
+
+    The result has all maximal subsets, and possibly smaller ones. ``edges`` must be strongly
+    connected.
     """
     rejected: dict[MarkedEdges, None] = {}
     seen: set[MarkedEdges] = set()
@@ -124,7 +131,7 @@ def rejecting_parts(edges: MarkedEdges, clauses: Sequence[MarkClause], work: Wor
 
 
 def parts(edges: Iterable[MarkedEdge], work: Work) -> list[MarkedEdges]:
-    """Return the maximal strongly connected subsets of ``edges``."""
+    """Return the maximal strongly connected subsets of ``edges``, without empty sets."""
     leaving: dict[Any, list[MarkedEdge]] = {}
     for edge in edges:
         leaving.setdefault(edge[0], []).append(edge)

@@ -19,7 +19,7 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 
 @lru_cache(maxsize=65536)
 def contains(formula: Formula, op: str) -> bool:
-    """Whether a formula contains an operator."""
+    """Whether a formula contains the operator ``op``."""
     return formula.op == op or any(contains(argument, op) for argument in formula.args)
 
 
@@ -44,16 +44,18 @@ def is_pi_2(formula: Formula) -> bool:
 
 
 def delta_2(formula: Formula) -> Formula:
-    """Return an equivalent Boolean combination of the four kinds of formulas that this module describes.
+    """Return an equivalent formula that is normalised: a Boolean combination of four kinds of formulas.
 
-    Raises OutOfWork if the formula becomes too large.
+    They are formulas without ``U`` inside a ``W``, formulas without ``W`` inside a ``U``, ``G F p``
+    without ``W``, and ``F G p`` without ``U``. Raises OutOfWork if the formula becomes too large.
     """
     return _Normaliser().normal(formula)
 
 
 def delta_2_dually(formula: Formula) -> Formula:
-    """Return another normalised formula: normalise the negation of the formula, and negate the result.
+    """Normalise the negation of a formula with :func:`delta_2`, and return the negation of the result.
 
+    The result is normalised and equivalent to ``formula``, but may differ from ``delta_2(formula)``.
     Raises OutOfWork if the formula becomes too large.
     """
     return normal_form.negation(delta_2(normal_form.negation(formula)))
@@ -70,7 +72,7 @@ class _Normaliser:
         self._flat: dict[Formula, Formula] = {}
 
     def normal(self, formula: Formula) -> Formula:
-        """Return an equivalent normalised formula; results are cached."""
+        """Return an equivalent normalised formula, as :func:`delta_2` describes it; results are cached."""
         result = self._normal.get(formula)
         if result is None:
             self._spend()

@@ -39,10 +39,11 @@ _RankedEdge = tuple[ComponentState, ComponentState, Marks, int]
 def factor(
     letters: Diagrams[Any], component: ComponentAutomaton, key: Callable[[ComponentState], ComponentState], work: Work
 ) -> RabinComponent | None:
-    """Return the component with the states that have the same key merged into one.
+    """Return the component with all states of the same key merged into one state.
 
-    The key after a letter must depend only on the key before it and on the letter. Returns None if
-    some edge gets no rank, or if more than :data:`_MOST_TOGETHER` states have the same key. Raises
+    The key after a letter must depend only on the letter and on the key before the letter. Returns
+    None if the merged automaton would not accept the same runs (some edge gets no rank, as the
+    module describes), or if more than :data:`_MOST_TOGETHER` states have the same key. Raises
     OutOfWork.
     """
     groups: dict[ComponentState, list[ComponentState]] = {}
@@ -89,7 +90,10 @@ def factor(
 
 
 def _ranks(edges: list[_RankedEdge], component: ComponentAutomaton, work: Work) -> dict[int, int] | None:
-    """Return the rank of each edge of the factor; None if some edge gets no rank."""
+    """Return the rank of each edge of the factor, which decides acceptance; None if some edge gets no rank.
+
+    A run is accepted if the least rank that it takes infinitely often is even.
+    """
     # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
     unranked: frozenset[Any] = frozenset(edges)
     ranks: dict[int, int] = {}

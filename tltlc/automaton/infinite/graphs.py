@@ -11,9 +11,9 @@ GraphNode = TypeVar("GraphNode", bound=Hashable)
 def components(
     roots: Iterable[GraphNode], successors: Callable[[GraphNode], Iterable[GraphNode]]
 ) -> list[list[GraphNode]]:
-    """Return the strongly connected components of the nodes that can be reached from ``roots``.
+    """Return the strongly connected components of the nodes that ``roots`` can reach.
 
-    A component comes after all components that can be reached from it.
+    A component comes after all other components that it can reach.
 
     The algorithm is from R. Tarjan, "Depth-First Search and Linear Graph Algorithms", SIAM J.
     Comput. 1972.
@@ -60,10 +60,10 @@ def components(
 
 
 def smallest_bottom(targets: Mapping[GraphNode, Sequence[GraphNode]], root: GraphNode) -> list[GraphNode]:
-    """Return the smallest strongly connected component that no edge leaves and ``root`` can reach.
+    """Return the smallest of the strongly connected components that ``root`` can reach and that no edge leaves.
 
-    ``targets`` maps each node to its successors. Of several smallest components, returns the first
-    one in the order of :func:`components`.
+    ``targets`` maps each node to its successors. If several are smallest, returns the first in the
+    order of :func:`components`.
     """
     bottoms = []
     for group in components([root], targets.__getitem__):

@@ -1,4 +1,4 @@
-"""Write Boolean combinations of temporal formulas in a short form, with common factors in front.
+"""Write Boolean combinations of temporal formulas in a short form, with common factors taken out.
 
 The labels of states are often longer than necessary, because they are made from decision diagrams.
 This module rewrites a label in two forms: a disjunction of prime implicants, and a conjunction of
@@ -21,7 +21,7 @@ from tltlc.automaton.work import Work
 from tltlc.logic.formula import Formula, not_
 
 _MOST_TERMS: Final = 48
-"""The most prime implicants, or prime implicates, of a formula that is rewritten in this form."""
+"""The most terms (prime implicants or prime implicates) of a form; a form with more terms is left out."""
 _MOST_STEPS: Final = 20_000
 """The most steps of the diagrams for one form of a formula. A form that takes more is left out."""
 
@@ -29,9 +29,7 @@ _LiteralSet = frozenset[int]
 """A set of literals. The literal of variable ``v`` is ``2 * v``, its negation ``2 * v + 1``."""
 
 _JoiningOp = Literal["or", "and"]
-"""The operator that joins terms: ``or`` for implicants (conjunctions), ``and`` for implicates
-(disjunctions).
-"""
+"""The operator that joins terms: ``or`` for implicants, which are conjunctions, ``and`` for implicates."""
 
 
 class _TooManyTerms(Exception):
@@ -39,9 +37,10 @@ class _TooManyTerms(Exception):
 
 
 class Factoring:
-    """Rewrites formulas in normal form over ``atoms``.
+    """Rewrites formulas over ``atoms`` to shorter formulas that are equivalent on infinite traces.
 
-    The results are equivalent on infinite traces.
+    The formulas must be in the normal form of :mod:`tltlc.automaton.infinite.normal_form`. A *term*
+    is a prime implicant (a conjunction of literals) or a prime implicate (a disjunction).
     """
 
     def __init__(self, atoms: Sequence[str]) -> None:
@@ -56,9 +55,10 @@ class Factoring:
         self._redundant: dict[tuple[_JoiningOp, int], _LiteralSet] = {}
 
     def forms(self, formula: Formula) -> Iterator[Formula]:
-        """Yield the formula as a disjunction of prime implicants and as a conjunction of prime implicates.
+        """Yield the formula as a disjunction of prime implicants, then as a conjunction of prime implicates.
 
-        Both have their common factors in front. A form with too many terms is left out.
+        Common factors are taken out of both. A form with too many terms is left out, and the second
+        form is left out if it equals the first.
         """
         operators: tuple[_JoiningOp, ...] = ("or", "and")
         for op in operators:
@@ -75,7 +75,7 @@ class Factoring:
     # --- terms ------------------------------------------------------------------------------------
 
     def _primes(self, obligation: int, op: _JoiningOp) -> tuple[_LiteralSet, ...]:
-        """Return all prime implicants of an obligation if ``op`` is ``or``, all prime implicates if it is ``and``."""
+        """Return all prime implicants (``op`` is ``or``) or all prime implicates (``and``) of an obligation."""
         primes = self._terms.get((op, obligation))
         if primes is None:
             obligations = self._after.obligations
@@ -94,7 +94,7 @@ class Factoring:
         return primes
 
     def _drop_redundant_terms(self, terms: Sequence[_LiteralSet], op: _JoiningOp) -> list[_LiteralSet]:
-        """Return the terms without redundant literals and without redundant terms."""
+        """Return the terms without those that are redundant beside the others, and without redundant literals."""
         kept = [self._drop_redundant_literals(term, op) for term in terms]
         for term in sorted(kept, key=len, reverse=True) if len(kept) > 1 else ():
             others = [other for other in kept if other is not term]
@@ -125,7 +125,7 @@ class Factoring:
         return redundant
 
     def _is_consensus(self, term: _LiteralSet, others: Sequence[_LiteralSet], op: _JoiningOp) -> bool:
-        """Whether a term is redundant beside the other terms together, as ``b & c`` beside ``a & b | !a & c``."""
+        """Whether a term follows from all other terms together: ``b & c`` is redundant beside ``a & b | !a & c``."""
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
             return False
@@ -139,13 +139,13 @@ class Factoring:
     # --- factors ----------------------------------------------------------------------------------
 
     def _factor(self, terms: Sequence[_LiteralSet], op: _JoiningOp) -> Formula:
-        """Return the terms as a formula, with the literals that all terms share in front.
+        """Return the terms as a formula, with common factors taken out.
 
-        If the terms share no literal, the literal that most terms have is factored out. The rests
-        are what is left of these terms. A factor that occurs with every rest is factored out too.
-        The terms that are left are factored separately. For example,
-        ``a & c | a & d | b & c | b & d | e`` becomes ``(a | b) & (c | d) | e``: ``a`` leaves the
-        rests ``c`` and ``d``, and ``b`` occurs with both.
+        ``a & b | a & c`` becomes ``a & (b | c)``. If no literal is in all terms, the literal that
+        is in most terms is taken out of these terms. In ``a & c | a & d | b & c | b & d | e``, this
+        is ``a``, which leaves the rests ``c`` and ``d``. Since ``b`` also occurs with each of these
+        rests, it becomes a factor too: ``(a | b) & (c | d) | e``. Other terms, such as ``e``, are
+        factored separately.
         """
         if len(terms) < 2:
             return self._join(terms, op)

@@ -15,10 +15,10 @@ _WORDS: Final = 48
 
 
 def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[int]:
-    """Return, for each state, the first state that has the same language.
+    """Return, for each state, the first state that accepts the same traces.
 
-    ``atoms`` is the number of atoms of a letter. ``exclusive`` has groups of indices of atoms; at
-    most one atom of a group holds in a letter. Raises OutOfWork.
+    ``atoms`` is the number of atoms. ``exclusive`` has groups of indices of atoms; at most one atom
+    of a group holds at a sample. Raises OutOfWork.
     """
     representatives: list[int] = []
     signatures = _signatures(automaton, atoms, exclusive, work)
@@ -33,7 +33,7 @@ def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]
 
 
 def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
-    """Whether two states have the same language. Raises OutOfWork."""
+    """Whether two states accept the same traces. Raises OutOfWork."""
     steps, pairs = automaton.steps, automaton.pairs
     together = product_leaves(automaton.letters, pairs, lambda leaf: leaf is None)
 
@@ -48,7 +48,10 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:
-    """Draw random cycles of letters, and return for each state which of them it accepts. Raises OutOfWork."""
+    """Draw random cycles of letters; return, for each state, whether it accepts each cycle repeated for ever.
+
+    The cycles are always the same for equal arguments. Raises OutOfWork.
+    """
     # A fixed seed, so that the same formula gives the same automaton.
     rng = Random(1)
 
@@ -64,9 +67,9 @@ def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]]
 
 
 def accepting(automaton: Rabin, cycle: Sequence[Sequence[bool]], work: Work) -> list[bool]:
-    """Return, for each state, whether it accepts a cycle of letters that repeats for ever.
+    """Return, for each state, whether it accepts the trace that repeats ``cycle`` for ever.
 
-    Raises OutOfWork.
+    A letter of the cycle has a truth value for each atom. Raises OutOfWork.
     """
     work.spend(len(automaton.steps))
     rounds = [_round(automaton, state, cycle) for state in range(len(automaton.steps))]

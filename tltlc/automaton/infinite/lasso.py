@@ -31,7 +31,7 @@ def _values(
 ) -> list[bool]:
     """Return the truth value of a formula at each sample of ``trace``, given the values of its operands there.
 
-    ``following`` has the index of the sample after each sample.
+    ``following[i]`` is the index of the sample after sample ``i``.
     """
     count = len(trace)
     a = operands[0] if operands else []
@@ -68,7 +68,11 @@ def _values(
 
 
 def _fixed_point(go_on: list[bool], ends: list[bool], following: Sequence[int], *, least: bool) -> list[bool]:
-    """Return the least or greatest solution of ``v = ends | go_on & X v``, as a truth value for each sample."""
+    """Return the least or greatest solution ``v`` of ``v = ends | go_on & X v``, with a truth value for each sample.
+
+    ``X v`` is the value of ``v`` at the next sample; ``following[i]`` is the index of the sample
+    after sample ``i``.
+    """
     values = [not least] * len(ends)
     # Each round gives at least one more sample its final value.
     for _ in range(len(ends) + 1):

@@ -25,10 +25,10 @@ It has no truth values, because in a table of leaves True would be equal to 1, a
 
 
 class LeafAutomaton(Protocol):
-    """A deterministic automaton for a part of a formula; its states are called memories.
+    """A deterministic automaton for a part of a formula, which marks some of the letters that it reads.
 
-    A run is accepted if infinitely many letters are marked (``kind`` is ``inf``), or only finitely
-    many (``kind`` is ``fin``).
+    Its states are called memories. If ``kind`` is ``inf``, a run is accepted if infinitely many
+    letters are marked; if ``kind`` is ``fin``, if only finitely many letters are marked.
     """
 
     kind: MarkKind
@@ -38,14 +38,18 @@ class LeafAutomaton(Protocol):
         """Return a decision diagram that maps each letter to the next memory and to whether the letter is marked."""
 
     def final_value(self, memory: Memory) -> bool | None:
-        """Return True if the part of the formula holds whatever letters follow, False if it fails, None otherwise."""
+        """Return True if the part of the formula holds whatever follows, False if it fails whatever follows.
+
+        Returns None if later letters decide.
+        """
 
 
 class Breakpoint:
     """A breakpoint automaton for a Pi-2 formula (``inf``) or a Sigma-2 formula (``fin``).
 
-    :mod:`tltlc.automaton.infinite.delta2` explains these two kinds of formulas. The memory is two
-    obligations: what remains of the formula, and a second one, which has these rules:
+    A Pi-2 formula has no ``W`` inside a ``U``, a Sigma-2 formula has no ``U`` inside a ``W``. The
+    memory is two obligations: what remains of the formula, and a second obligation. The second
+    obligation follows the letters too, and has these rules:
 
     - Pi-2: the second obligation starts as what remains, with each outermost ``W`` replaced by
       true. When it becomes true, the letter is marked, and the second obligation starts again from
@@ -100,7 +104,7 @@ class Breakpoint:
 
 @lru_cache(maxsize=16384)
 def _replace_outermost(formula: Formula, op: str) -> Formula:
-    """Return the formula with each outermost ``W`` replaced by true, or each outermost ``U`` by false."""
+    """Return the formula with each outermost ``W`` replaced by true (``op`` is ``W``), or ``U`` by false (``U``)."""
     if formula.op == op:
         return build.TRUE if op == "W" else build.FALSE
     if formula.op in ("and", "or", "X"):
@@ -109,12 +113,12 @@ def _replace_outermost(formula: Formula, op: str) -> Formula:
 
 
 class Recurrence:
-    """An automaton for ``G F p`` if p has no ``W`` (``inf``), or for ``F G p`` if p has no ``U``
-    (``fin``).
+    """An automaton for ``G F p`` (``kind`` is ``inf``) or ``F G p`` (``kind`` is ``fin``).
 
-    At each letter, an attempt to satisfy p starts. The memory has what remains of p for each
-    attempt that has not succeeded or failed yet. A letter is marked if an attempt succeeds (for
-    ``F G p``: fails). The other attempts are then dropped, unless ``keep`` is true.
+    ``formula`` is p. For ``G F p`` it must contain no ``W``, for ``F G p`` no ``U``. At each
+    letter, an attempt to satisfy p starts. The memory has what remains of p for each attempt that
+    has not succeeded or failed yet. A letter is marked if an attempt succeeds (for ``F G p``:
+    fails). The other attempts are then dropped, unless ``keep`` is true.
     """
 
     def __init__(self, after: ObligationAutomaton, formula: Formula, kind: MarkKind, *, keep: bool) -> None:
@@ -162,10 +166,11 @@ class Recurrence:
 class RoundRobin:
     """An automaton for a conjunction of ``G F p``, or a disjunction of ``F G p``, that observes one operand at a time.
 
-    The memory is the index of the current operand and the memory of its :class:`Recurrence`. On a
-    letter that the current operand marks, the automaton moves on to the next operand. It marks the
-    letter if all operands have had their turn. So it has as many memories as the operands have
-    together. An automaton for each operand would give the product of their numbers.
+    ``parts`` are automata for the operands. The memory is the index of the current operand, and the
+    memory of this operand's automaton. When the automaton of the current operand marks a letter,
+    the next operand becomes the current one. The letter is marked if all operands have had their
+    turn. So the number of memories is the sum of the numbers for the operands. If all operands were
+    observed at the same time, it would be their product.
     """
 
     def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:

@@ -14,10 +14,10 @@ from tltlc.automaton.work import Work
 from tltlc.core.record import record
 
 MarkKind = Literal["inf", "fin"]
-"""Whether a run must take a mark infinitely often or only finitely often."""
+"""Whether a run must take a mark infinitely often (``inf``) or only finitely often (``fin``)."""
 
 Marks = frozenset[int]
-"""The marks of an edge: indices of the formula's parts, or numbers of :func:`pair_marks` for Rabin pairs."""
+"""The marks of an edge, as ints: indices of a formula's parts, or the numbers that :func:`pair_marks` returns."""
 
 Skeleton = tuple[Any, ...]
 """The Boolean structure of a formula over its parts: ``("leaf", index)``, ``("and", …)`` or ``("or", …)``.
@@ -28,7 +28,10 @@ Skeleton = tuple[Any, ...]
 
 @record
 class MarkClause:
-    """A condition that a run meets if it takes all marks of ``infs``, and none of ``fins``, infinitely often."""
+    """A condition on a run: it takes all marks of ``infs``, and no mark of ``fins``, infinitely often.
+
+    A run takes a mark when it takes an edge with this mark.
+    """
 
     fins: Marks
     infs: Marks
@@ -41,16 +44,17 @@ class MarkClause:
 def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
     """Return marks of Rabin pairs as numbers.
 
-    The marks of pair ``i`` are ``first + 2 * i`` for ``fin`` and ``first + 2 * i + 1`` for ``inf``.
+    The mark ``(i, "fin")`` has the number ``first + 2 * i``, and ``(i, "inf")`` has
+    ``first + 2 * i + 1``.
     """
     return frozenset(first + 2 * pair + (kind == "inf") for pair, kind in marks)
 
 
 def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
-    """Return the conditions of ``pairs`` Rabin pairs.
+    """Return, for each of ``pairs`` Rabin pairs, the condition that a run meets the pair.
 
-    As in :func:`pair_marks`, the marks of pair ``i`` are ``first + 2 * i`` for ``fin`` and
-    ``first + 2 * i + 1`` for ``inf``.
+    The marks are numbered as by :func:`pair_marks`: the mark ``fin`` of pair ``i`` is
+    ``first + 2 * i``, and the mark ``inf`` is ``first + 2 * i + 1``.
     """
     return [MarkClause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
@@ -58,12 +62,13 @@ def pair_clauses(pairs: int, first: int = 0) -> list[MarkClause]:
 def clauses(
     skeleton: Skeleton, kinds: Sequence[MarkKind], values: Sequence[bool | None], work: Work
 ) -> list[MarkClause] | bool:
-    """Return conditions on marks: a run satisfies the formula of a skeleton if it meets one of them.
+    """Return conditions on marks; a run satisfies the formula if it meets at least one of them.
 
-    A skeleton is the Boolean structure of a formula over its parts. The mark of each part is its
-    index in ``kinds``. ``values`` has True or False for a part whose value is known, None for the
-    others. Returns True or False if the formula is constant. Raises OutOfWork if there are too many
-    conditions.
+    ``skeleton`` is the formula, with the indices of its parts as leaves. Part ``i`` holds if the
+    run takes mark ``i`` infinitely often (``kinds[i]`` is ``inf``) or only finitely often
+    (``fin``). If the truth of part ``i`` is known already, it is ``values[i]``; otherwise
+    ``values[i]`` is None. Returns True or False if the formula is constant. Raises OutOfWork if
+    there are too many conditions.
     """
     result = _clauses(skeleton, kinds, values, work)
     if not result:
@@ -94,7 +99,7 @@ def _clauses(
 
 
 def _drop_covered(disjuncts: list[MarkClause], work: Work) -> list[MarkClause]:
-    """Return the clauses without duplicates and without each clause that implies another one."""
+    """Return the clauses without duplicates, and without the clauses that imply another clause."""
     distinct = list(dict.fromkeys(disjuncts))
     work.spend(len(distinct) ** 2 // 16)
     return [

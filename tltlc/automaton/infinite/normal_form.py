@@ -17,14 +17,11 @@ from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.normal_form import negation_normal_form
 
 _MOST_PULLED = 6
-"""The most rigid formulas that are moved out of a temporal operator.
-
-Each of them doubles the formula's size.
-"""
+"""The most rigid formulas that are moved out of a temporal operator; each doubles the size of the formula."""
 
 
 def infinite_form(formula: Formula) -> Formula:
-    """Return the formula in normal form; the result is equivalent on every infinite trace."""
+    """Return an equivalent formula in the normal form of this module, for infinite traces."""
     normal = negation_normal_form(formula)
     done: dict[Formula, Formula] = {}
     for node in normal.bottom_up():
@@ -93,15 +90,16 @@ def negation(formula: Formula) -> Formula:
 
 
 def conjunction(operands: Iterable[Formula]) -> Formula:
-    """Return the ``and`` of the operands.
+    """Return the ``and`` of the operands, simplified.
 
-    Simplifies constants, repeated operands, complementary operands and absorbed operands.
+    Drops ``true`` and repeated operands, and drops ``a | b`` beside ``a``. The result is ``false``
+    if an operand is ``false``, or if there are operands ``a`` and ``!a`` for an atom.
     """
     return _nary("and", operands)
 
 
 def disjunction(operands: Iterable[Formula]) -> Formula:
-    """Return the ``or`` of the operands, simplified as in :func:`conjunction`."""
+    """Return the ``or`` of the operands, with the simplifications that are dual to those of :func:`conjunction`."""
     return _nary("or", operands)
 
 
@@ -119,7 +117,7 @@ def _nary(op: str, operands: Iterable[Formula]) -> Formula:
 
 
 def is_rigid(formula: Formula) -> bool:
-    """Whether a formula in normal form has the same truth value at every sample of a trace."""
+    """Whether a formula in normal form has the same truth value at all samples of a trace, as ``G F p`` has."""
     if formula.op in ("and", "or"):
         return all(map(is_rigid, formula.args))
     return formula.op in ("true", "false", "G", "F")
@@ -188,8 +186,8 @@ def weak_until(left: Formula, right: Formula) -> Formula:
 def _splits(formula: Formula, op: str) -> bool:
     """Whether an operand of the formula has the outermost operator ``op``.
 
-    Callers then split the formula, since ``F`` of a ``W`` and ``G`` of a ``U`` can be written with
-    a rigid formula.
+    If so, callers distribute ``F`` or ``G`` over the operands: ``F`` of a ``W``, and ``G`` of a
+    ``U``, can be written with a rigid formula.
     """
     return any(operand.op == op for operand in formula.args)
 
@@ -257,14 +255,17 @@ def with_derived_operators(formula: Formula, known: dict[Formula, Formula] | Non
 
 @lru_cache(maxsize=16384)
 def rigid_parts(formula: Formula) -> tuple[Formula, ...]:
-    """Return the outermost subformulas ``G F p`` and ``F G p``, in the order of the formula."""
+    """Return the distinct outermost subformulas of the forms ``G F p`` and ``F G p``, in the order of the formula."""
     if formula.op in ("G", "F"):
         return (formula,)
     return tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, formula.args))))
 
 
 def substitute(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """Return the formula with the keys of ``values`` replaced by their values, except inside rigid formulas."""
+    """Return the formula with the keys of ``values`` replaced by their values, simplified.
+
+    Subformulas inside ``G F p`` and ``F G p`` are not replaced.
+    """
     return _substitute(formula, dict(values))
 
 
@@ -281,15 +282,15 @@ def _substitute(formula: Formula, done: dict[Formula, Formula]) -> Formula:
 
 
 def substitute_operands(formula: Formula, values: dict[Formula, Formula]) -> Formula:
-    """Return the formula with each operand replaced by its value in ``values``."""
+    """Return the formula with each operand replaced by its value in ``values``, simplified."""
     return _rebuild(formula, [values[operand] for operand in formula.args])
 
 
 def _pull_rigid(make: Callable[..., Formula], *args: Formula) -> Formula | None:
     """Return the formula f = ``make(*args)`` with a rigid subformula g moved out of its outermost operator.
 
-    The result is ``g & f[g := true] | f[g := false]``. Returns None if f has no rigid subformula,
-    or more than :data:`_MOST_PULLED`.
+    A rigid formula is ``G F p`` or ``F G p``. The result is ``g & f[g := true] | f[g := false]``.
+    Returns None if f has no rigid subformula, or more than :data:`_MOST_PULLED`.
     """
     rigid = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
     if not rigid or len(rigid) > _MOST_PULLED:

@@ -51,8 +51,8 @@ class RabinComponent:
 def with_pairs(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with an acceptance condition of Rabin pairs instead of clauses.
 
-    Of the automata that this module can build, it is the one with the fewest states, and then the
-    fewest pairs. Raises OutOfWork.
+    Tries several constructions, and returns the result with the fewest states; of these, the result
+    with the fewest pairs. Raises OutOfWork.
     """
     candidates: list[RabinComponent] = []
     direct = clauses_as_pairs(letters, component)
@@ -92,10 +92,11 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 
 
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
-    """Return the component with a Rabin pair for each clause, and with more states.
+    """Return the component with a Rabin pair for each clause; it may have more states than before.
 
-    A state of the result also stores, for each clause, which of its marks ``infs`` the run must
-    take next. The edge on which the run has taken all of them gets the ``inf`` mark of the pair.
+    For each clause, a state of the result also stores how many of the marks ``infs`` the run has
+    taken, in ascending order. The edge with which the run has taken all of them gets the ``inf``
+    mark of the pair, and the count starts again.
     """
     orders = [sorted(clause.infs) for clause in component.accepts]
     first = next(iter(component.steps))
@@ -142,8 +143,10 @@ def _edges(letters: Diagrams[Any], component: ComponentAutomaton) -> list[Marked
 class _Walks:
     """Computes the positions of runs in the tree of an alternating cycle decomposition.
 
-    At an accepted node, the position is in one child. At a rejected node, it is in all children
-    that contain the state of the run, or in only one of them if ``one_at_a_time``.
+    At an accepted node, the position is in one child. At a rejected node, the position is in all
+    children that contain the state of the run; with ``one_at_a_time``, in only one of them.
+    ``pair`` maps the index of each accepted node to the number of its Rabin pair, and ``pairs`` is
+    the number of pairs.
     """
 
     def __init__(self, tree: CycleNode, *, one_at_a_time: bool) -> None:
@@ -186,11 +189,11 @@ class _Walks:
     def step(
         self, node: CycleNode, walk: TreePosition, edge: MarkedEdge, active: set[int], marked: set[int]
     ) -> TreePosition:
-        """Return the position of a run below a node after the run takes an edge that the node contains.
+        """Return the position of a run below ``node`` after the run takes ``edge``, an edge of the node.
 
-        ``walk`` is the position before the edge. This method also adds indices of accepted nodes at
-        the position to two sets: to ``active`` if the node contains the edge, and to ``marked`` if,
-        in addition, no child at the position contains the edge.
+        ``walk`` is the position before the edge. This method also collects indices of accepted
+        nodes at this position: in ``active``, of all nodes that contain the edge; in ``marked``, of
+        those of them that have no child with the edge at this position.
         """
         source, target, _ = edge
         if node.accepted:

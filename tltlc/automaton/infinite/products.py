@@ -15,16 +15,13 @@ StatePair = tuple[Any, Any]
 """A state of the first automaton and a state of the second."""
 
 PairLeaf = tuple[StatePair, Marks]
-"""The states after a letter, and the marks of both edges.
-
-The second automaton's marks have the higher numbers.
-"""
+"""The states after a letter, and the marks of both edges; the second automaton's marks have the higher numbers."""
 
 Alternatives = Sequence[tuple[Sequence[MarkClause], Sequence[MarkClause]]]
-"""Pairs of lists of clauses.
+"""Conditions on a cycle, each a pair of lists of clauses.
 
-A cycle meets a pair if a clause of the first list accepts the cycle, and no clause of the second
-list does.
+A cycle meets the condition if a clause of the first list accepts the marks of the cycle, and no
+clause of the second list does.
 """
 
 
@@ -41,10 +38,10 @@ def product_leaves(
 ) -> Callable[[int, int], list[PairLeaf]]:
     """Return a function that lists the successors of a pair of states in the product of two automata.
 
-    The function takes the steps of the two states. A step is a function from the letter to a target
-    and marks. Each automaton has ``pairs`` Rabin pairs. ``is_over`` returns True for the values of
-    a step that have no target. On letters with such a value, the product has no successor. These
-    letters must be the same in both automata.
+    The function takes the steps of the two states, nodes of ``letters``. A step maps each letter to
+    a target and marks. Each automaton has ``pairs`` Rabin pairs. ``is_over`` says whether a value
+    of a step has no target; on such a letter, the pair of states has no successor. A letter must
+    have a target in both automata or in neither.
     """
     memo: dict[tuple[int, int], int] = {}
 
@@ -68,10 +65,10 @@ def separating_component(
 ) -> MarkedEdges | None:
     """Return a strongly connected set of edges that meets one of ``alternatives``; None if no set does.
 
-    The edges belong to a product of two automata, and can be reached from ``starts``. The set meets
-    an alternative if a clause of its first list accepts the marks of the set, and no clause of its
-    second list does. ``leaves`` returns the successors of a pair of states and is called once for
-    each pair. Raises OutOfWork.
+    The edges belong to a product of two automata, and can be reached from ``starts``. An
+    alternative is two lists of clauses. The set meets an alternative if a clause of the first list
+    accepts the marks of the set, and no clause of the second list does. ``leaves`` returns the
+    successors of a pair of states; it is called once for each pair. Raises OutOfWork.
     """
     known: dict[StatePair, Sequence[PairLeaf]] = {}
 
@@ -91,9 +88,10 @@ def separating_component(
 def _separating_part(
     edges: Sequence[MarkedEdge], accepting: Sequence[MarkClause], rejecting: Sequence[MarkClause], work: Work
 ) -> MarkedEdges | None:
-    """Return a strongly connected subset of ``edges`` that separates two automata; None if no subset does.
+    """Return a strongly connected subset of ``edges`` that ``accepting`` accepts and ``rejecting`` does not.
 
-    A clause of ``accepting`` accepts the marks of the subset, and no clause of ``rejecting`` does.
+    That is, a clause of ``accepting`` accepts the marks of the subset, and no clause of
+    ``rejecting`` does. Returns None if there is no such subset. Raises OutOfWork.
     """
     for clause in accepting:
         # Removing edges is cheap; `parts` counts its own work.

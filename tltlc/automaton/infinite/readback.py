@@ -1,4 +1,4 @@
-"""Write the label of a state with the operators that the source text uses, and operands in the order of the source."""
+"""Write the labels of states with the operators of the source text, and with operands in the order of the source."""
 
 from __future__ import annotations
 
@@ -14,15 +14,18 @@ _MOST_PARTS: Final = 300
 
 
 def without_constants(formula: Formula) -> Formula:
-    """Return an equivalent formula without ``true`` and ``false``, unless the whole formula is constant.
+    """Return a formula without ``true`` and ``false`` that is equivalent on every infinite trace.
 
-    The result is equivalent on every infinite trace.
+    If the formula is constant, the result is ``true`` or ``false``.
     """
     return NormalFormWriter(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
 class NormalFormWriter:
-    """Rewrites formulas from normal form to the style of ``source``: ``a -> F b`` instead of ``!a | F b``."""
+    """Rewrites formulas from the normal form for infinite traces to the style of ``source``.
+
+    If the source has ``a -> F b``, the result has ``a -> F b`` too, instead of ``!a | F b``.
+    """
 
     def __init__(self, source: Formula) -> None:
         self._place: dict[Formula, int] = {}
@@ -64,7 +67,10 @@ class NormalFormWriter:
         return self._done[plain]
 
     def _place_of(self, formula: Formula) -> int:
-        """Return the position of a formula in the source formula, or else the first position of its parts."""
+        """Return the position of a formula in the source; if it is not there, the first position of its operands.
+
+        The position of a formula that has nothing in common with the source is after all others.
+        """
         place = self._place.get(formula)
         if place is None:
             place = self._place[formula] = min(map(self._place_of, formula.args), default=self._last)
@@ -78,5 +84,5 @@ class NormalFormWriter:
 
 
 def _has_constants(formula: Formula) -> bool:
-    """Whether a formula contains ``true`` or ``false``; over infinite traces, only constant formulas need them."""
+    """Whether a formula contains ``true`` or ``false``."""
     return not {TRUE, FALSE}.isdisjoint(formula.walk())

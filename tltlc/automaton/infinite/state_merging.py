@@ -18,9 +18,9 @@ from tltlc.automaton.work import OutOfWork, Work
 
 
 def shrink(letters: Diagrams[Any], component: RabinComponent, work: Work, steps: int) -> RabinComponent:
-    """Return the component without states that another state can replace.
+    """Return the component without the states that another state of the same label can replace.
 
-    The search stops after ``steps`` steps of work, and keeps all states that are left then.
+    The search stops after ``steps`` steps of work; the states that are left then are kept.
     """
     original = component
     try:
@@ -42,9 +42,9 @@ def shrink(letters: Diagrams[Any], component: RabinComponent, work: Work, steps:
 
 
 def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, other: Any) -> RabinComponent:
-    """Return the component with all edges to ``state`` redirected to ``other``.
+    """Return the component without ``state``, with all edges to ``state`` redirected to ``other``.
 
-    ``state`` is removed, and so are the states that a run can then leave but not reach again.
+    Also removes other states if the rest would not be strongly connected.
     """
 
     def redirected(leaf: Any) -> Any:
@@ -73,7 +73,7 @@ def _redirect(letters: Diagrams[Any], component: RabinComponent, state: Any, oth
 def _is_equal(letters: Diagrams[Any], one: RabinComponent, other: RabinComponent, work: Work) -> bool:
     """Whether each state of ``one`` accepts the same traces in ``one`` as in ``other``.
 
-    Only traces whose runs stay in the component for ever are compared. Raises OutOfWork.
+    Compares only traces whose runs never leave the component. Raises OutOfWork.
     """
     together = product_leaves(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 
