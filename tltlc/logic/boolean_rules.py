@@ -1,8 +1,8 @@
 """Rewrites of ``not``, ``and``, ``or``, ``implies`` and ``iff``.
 
-The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
-equivalent one that is not larger. It returns the same object if the rule does not apply. Operands
-keep their order.
+The laws are listed in :mod:`tltlc.logic.rewrite`. Each rule takes a formula and returns an
+equivalent formula that is not larger. If the rule does not apply, it returns the same object.
+Operands keep their order.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def join(op: str, operands: Iterable[Formula]) -> Formula:
 
 
 def drop_constants(node: Formula) -> Formula:
-    """Remove ``true`` and ``false`` from ``and`` and ``or``."""
+    """Remove constants from an ``and`` or ``or``: ``a & true`` becomes ``a``, and ``a & false`` becomes ``false``."""
     neutral, zero = (TRUE, FALSE) if node.op == "and" else (FALSE, TRUE)
     if zero in node.args:
         return zero
@@ -38,7 +38,7 @@ def drop_repeated(node: Formula) -> Formula:
 
 
 def decide_complementary(node: Formula) -> Formula:
-    """Replace an ``and`` that has an operand and its negation by ``false``.
+    """Replace an ``and`` that has an operand and its negation by ``false``: ``a & b & !a`` becomes ``false``.
 
     Replace an ``or`` that has an operand and its negation by ``true``.
     """
@@ -49,10 +49,10 @@ def decide_complementary(node: Formula) -> Formula:
 
 
 def absorb(node: Formula) -> Formula:
-    """Drop redundant operands of an ``and`` or ``or``.
+    """Drop redundant operands of an ``and`` or ``or``: ``a & (a | b)`` becomes ``a``.
 
-    From ``and``, drop those that another operand implies; from ``or``, those that imply another
-    operand. Of two equivalent operands, drop the later one.
+    In an ``and``, an operand is redundant if another operand implies it; in an ``or``, if it
+    implies another operand. Of two equivalent operands, the later one is dropped.
     """
     if len(node.args) > _MOST_OPERANDS:
         return node
@@ -161,5 +161,5 @@ def shorten_equivalence(node: Formula) -> Formula:
 
 
 def _opposite(node: Formula) -> Formula:
-    """Return the negation of a formula: without its ``not``, or with a new ``not``."""
+    """Return the negation of a formula: ``a`` for ``!a``, and ``!a`` for ``a``."""
     return node.args[0] if node.op == "not" else build.not_(node)

@@ -13,11 +13,11 @@ from weakref import WeakKeyDictionary
 from tltlc.logic.formula import Formula, rebuild
 
 LEAST: Final = 2
-"""The fewest steps of a bound that is printed in bounded form; ``a | X a`` has one step."""
+"""The fewest steps of a bound that is printed in bounded form: ``a | X a``, with one step, is not."""
 
 
 class Bounded(NamedTuple):
-    """``F[0,steps] body`` or ``G[0,steps] body``, with ``steps`` at least 1."""
+    """``F[0,steps] body`` (``op`` is ``F``) or ``G[0,steps] body`` (``G``), with ``steps`` at least 1."""
 
     op: str
     steps: int
@@ -49,11 +49,11 @@ def bounded_operator(node: Formula) -> Bounded | None:
 
 
 def count_down(node: Formula) -> Formula | None:
-    """Return ``node`` with a bound that is one step shorter; None if ``node`` counts down no bound.
+    """Return ``node``, which counts down a bound, with one step less; None if ``node`` has another form.
 
     For ``X(p | X(p | X p))`` the result is ``X(p | X p)``, and for ``X(p | X p)`` it is ``X p``.
-    The formula may have ``N`` in place of ``X``, and ``and`` in place of ``or``. Over ``or``, the
-    shorter formula implies the longer one; over ``and``, the longer one implies the shorter.
+    The formula may have ``N`` in place of ``X``, and ``and`` in place of ``or``. With ``or``, the
+    result implies ``node``; with ``and``, ``node`` implies the result.
     """
     chain: list[Formula] = []
     inner: Formula | None = node
@@ -67,7 +67,7 @@ def count_down(node: Formula) -> Formula | None:
 
 
 def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
-    """Yield the results of repeated :func:`count_down`, until one is None or in ``known``."""
+    """Call :func:`count_down` again and again, and yield each result, until a result is None or in ``known``."""
     shorter = count_down(node)
     while shorter is not None and shorter not in known:
         yield shorter
@@ -75,10 +75,9 @@ def count_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formul
 
 
 def _last_step(node: Formula) -> Formula | None:
-    """Return ``X q`` for ``X(p | … | X q)`` and ``X(p & … & X q)``, and the same with ``N`` for
-    ``X``.
+    """Return ``X q`` for ``X(p | … | X q)`` and ``X(p & … & X q)``; None for any other formula.
 
-    Returns None for any other formula.
+    The formula may also have ``N`` in place of both ``X``.
     """
     if node.op not in ("X", "N") or node.args[0].op not in ("or", "and"):
         return None
@@ -98,10 +97,10 @@ def _repeats_operands(body: Formula, last: Formula) -> bool:
 
 
 def operands_with_bounds(node: Formula) -> list[Formula]:
-    """Return the operands of an ``or`` or ``and``, with expansions of bounded operators as one operand.
+    """Return the operands of an ``or`` or ``and``, and join operands that are a bounded operator together.
 
-    Operands that together are such an expansion, of at least :data:`LEAST` steps, become one
-    operand.
+    ``a | p | X(p | X p)`` gives two operands, ``a`` and ``p | X(p | X p)``, since the latter is
+    ``F[0,2] p``. Bounds of less than :data:`LEAST` steps are not joined.
     """
     operands: list[Formula] = []
     for operand in node.args:
@@ -129,7 +128,7 @@ def _bounded_ending_in(last: Formula, node: Formula, before: Sequence[Formula]) 
 
 
 def _ends_with_next(node: Formula) -> bool:
-    """Whether the node is ``… | X p`` or ``… & N p``."""
+    """Whether the node has the form ``… | X p`` or ``… & N p``."""
     return node.op in ("or", "and") and node.args[-1].op == _next_op(node)
 
 

@@ -22,11 +22,11 @@ BINARY_TEMPORAL: Final = ("U", "W", "R", "M")
 
 
 class Formula:
-    """A formula: its outermost operator ``op``, its operands ``args``, and its ``name`` if it is an
-    atom.
+    """A formula: its outermost operator ``op``, its operands ``args``, and the ``name`` of an atom.
 
-    Do not construct it directly; use the functions of this module. ``and`` and ``or`` have two or
-    more operands, none of which has the same operator again.
+    Use the functions of this module to make formulas. The name is empty if the formula is no atom.
+    An ``and`` has two or more operands, none of which is an ``and`` again; the same is true of
+    ``or``.
     """
 
     __slots__ = ("__weakref__", "args", "name", "op")
@@ -58,11 +58,11 @@ class Formula:
 
     @property
     def english(self) -> str:
-        """The formula as a sentence on finite traces, as :func:`~tltlc.logic.text.printer.english_text` gives it.
+        """The formula as a sentence about finite traces, as :func:`~tltlc.logic.text.printer.english_text` gives it.
 
         For the formula and the labels of an automaton, use ``tltlc.api.formula_text`` and
-        ``tltlc.api.label_text``: over infinite traces, and where only the end of the trace decides,
-        they give another sentence.
+        ``tltlc.api.label_text``. They also know the sentences for infinite traces, and for states
+        in which the trace must end or go on.
         """
         from tltlc.logic.text.printer import english_text
 
@@ -73,7 +73,7 @@ class Formula:
         return _unpickle, (flatten([self])[0],)
 
     def walk(self) -> Iterator[Formula]:
-        """Yield every distinct subformula: the formula itself first, left before right, without recursion."""
+        """Yield every distinct subformula, without recursion: the formula itself first, operands from left to right."""
         seen: set[Formula] = set()
         stack = [self]
         while stack:
@@ -86,8 +86,8 @@ class Formula:
     def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
         """Yield every distinct subformula after its operands, the formula itself last, without recursion.
 
-        Skips the subformulas in ``known``, and those that occur only inside a subformula in
-        ``known``.
+        Does not look into the subformulas in ``known``: these and their operands are skipped,
+        unless an operand also occurs elsewhere.
         """
         seen: set[Formula] = set()
         stack = [(self, False)]
@@ -201,12 +201,15 @@ def until(left: Formula, right: Formula) -> Formula:
 
 
 def weak_until(left: Formula, right: Formula) -> Formula:
-    """Return ``left W right``: ``left U right``, or ``left`` holds throughout."""
+    """Return ``left W right``: ``left U right`` holds, or ``left`` holds now and at every later sample."""
     return _intern("W", (left, right))
 
 
 def release(left: Formula, right: Formula) -> Formula:
-    """Return ``left R right``: ``right`` holds up to and including the first sample with ``left``, or throughout."""
+    """Return ``left R right``: ``right`` holds up to and including the first sample with ``left``.
+
+    If there is no such sample, ``right`` holds at every sample from now on.
+    """
     return _intern("R", (left, right))
 
 
@@ -235,10 +238,7 @@ A tuple contains the operator, the indices of the operands in this list, and the
 
 
 def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
-    """Return the distinct subformulas of some formulas as a list of tuples, for serialization.
-
-    Also return the index of each formula in this list.
-    """
+    """Return the distinct subformulas of some formulas as plain data, and the index of each formula in this list."""
     nodes: FlatNodes = []
     index: dict[Formula, int] = {}
     places = []
@@ -251,7 +251,7 @@ def flatten(formulas: Iterable[Formula]) -> tuple[FlatNodes, list[int]]:
 
 
 def unflatten(nodes: FlatNodes) -> list[Formula]:
-    """Return the formulas for the list of tuples that :func:`flatten` made, in the same order."""
+    """Return a formula for each entry of a list that :func:`flatten` made, in the same order."""
     formulas: list[Formula] = []
     for op, args, name in nodes:
         formulas.append(_intern(op, tuple(formulas[argument] for argument in args), name))

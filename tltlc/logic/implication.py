@@ -1,6 +1,6 @@
 """Quick proofs about formulas on finite traces, such as that one implies another.
 
-The functions prove nothing that is false, but they give up where a proof would be long.
+What the functions prove is true, but they give up where a proof would be long.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _ImplicationTest = Callable[[Formula, Formula], bool]
 def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
     """Whether the syntax shows that ``premise`` implies ``conclusion`` on every finite trace.
 
-    False means "not shown". Looks at no more than 400 pairs of subformulas.
+    False means "not shown": the proof gives up after about 400 pairs of subformulas.
     """
     return _implies(premise, conclusion, {}, 0)
 
@@ -59,9 +59,10 @@ def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
 
 
 def value_at_last(formula: Formula, depth: int = _LAST_DEPTH) -> bool | None:
-    """Return the truth of the formula at the last sample of every trace.
+    """Return the truth value that the formula has at the last sample of every trace: True for ``a | N b``.
 
-    Returns None if this truth depends on atoms, or was not found within ``depth`` operators.
+    Returns None if this value depends on atoms, or if it was not found within ``depth`` nested
+    operators.
     """
     op = formula.op
     if op in ("true", "N"):
@@ -115,10 +116,7 @@ def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool],
 
 
 def _prove(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
-    """Whether one law of finite traces shows that ``p`` implies ``q``.
-
-    Each line of the code is a law.
-    """
+    """Whether a law of finite traces shows that ``p`` implies ``q``; each line of the code is a law."""
 
     def shows(premise: Formula, conclusion: Formula) -> bool:
         return _implies(premise, conclusion, known, depth)
@@ -180,9 +178,10 @@ def _strengthen_conclusion(p: Formula, q: Formula, shows: _ImplicationTest) -> b
 
 
 def _compare_operands(p: Formula, q: Formula, shows: _ImplicationTest) -> bool:
-    """Whether ``q`` has the operator of ``p`` or a weaker one, and each operand of ``p`` implies that of ``q``.
+    """Whether ``q`` has the operator of ``p`` or a weaker operator, and the operands of ``p`` imply those of ``q``.
 
-    ``F G`` and ``G F`` count as one operator: ``F G a`` and ``G F a`` both mean ``a`` at the last sample.
+    For example, ``a U b`` implies ``(a | c) W b``. ``F G`` and ``G F`` count as one operator:
+    ``F G a`` and ``G F a`` both mean ``a`` at the last sample.
     """
     a, b = p.args, q.args
     if (p.op, q.op) in _NOT_WEAKER and all(shows(x, y) for x, y in zip(a, b, strict=True)):

@@ -13,13 +13,13 @@ _Signed = tuple[Formula, bool]
 
 
 def negation_normal_form(formula: Formula) -> Formula:
-    """Return an equivalent formula over literals, ``and``, ``or`` and temporal operators.
+    """Return an equivalent formula over literals, constants, ``and``, ``or`` and temporal operators.
 
-    The two formulas have the same truth on every finite trace. ``a -> b`` becomes ``!a | b``, and
-    ``a <-> b`` becomes ``a & b | !a & !b``. Negation turns each operator into its dual (``!X a`` is
-    ``N !a``). Operands keep source order, and repeated operands of one ``and`` or ``or`` are
-    dropped. Each subformula is visited once per sign and without recursion, so shared subformulas
-    stay shared.
+    The two formulas have the same truth value on every finite trace. ``a -> b`` becomes ``!a | b``,
+    and ``a <-> b`` becomes ``a & b | !a & !b``. Negation turns each operator into its dual:
+    ``!X a`` becomes ``N !a``. Operands keep their order, and repeated operands of one ``and`` or
+    ``or`` are dropped. Takes no recursion, and converts each subformula and its negation at most
+    once, so shared subformulas stay shared.
     """
     if all(map(_is_normal, formula.walk())):
         return formula
@@ -53,7 +53,7 @@ def _is_normal(node: Formula) -> bool:
 def _strip(signed: _Signed) -> _Signed:
     """Remove the leading negations of a signed formula, and invert its sign for each of them.
 
-    A signed formula is a formula and its sign, which is False for the negation of the formula.
+    A signed formula is a formula and its sign: True for the formula itself, False for its negation.
     """
     node, positive = signed
     while node.op == "not":
@@ -62,10 +62,10 @@ def _strip(signed: _Signed) -> _Signed:
 
 
 def _expand(signed: _Signed) -> tuple[FormulaOp, tuple[_Signed, ...]]:
-    """Push the sign of a signed formula inwards: return its new top operator, and its signed operands.
+    """Push the sign of a signed formula inwards: return its new outermost operator, and its signed operands.
 
-    For ``a & b`` with the sign False (negated), the operator is ``or``, and both operands get the
-    sign False.
+    The sign is True for the formula itself, False for its negation. For ``a & b`` with the sign
+    False, the operator is ``or``, and both operands get the sign False.
     """
     node, positive = signed
     op = node.op
@@ -83,9 +83,10 @@ def _expand(signed: _Signed) -> tuple[FormulaOp, tuple[_Signed, ...]]:
 
 
 def _gather(op: FormulaOp, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
-    """Return signed operands (formulas, each maybe negated) in order and each once.
+    """Return signed operands in order, without duplicates and with nested operators flattened.
 
-    An operand that has the operator ``op`` is replaced by its own operands.
+    An operand with the operator ``op`` is replaced by its own operands. A signed operand is a
+    formula and its sign: True for the formula itself, False for its negation.
     """
     gathered: list[_Signed] = []
     seen: set[_Signed] = set()
@@ -104,10 +105,10 @@ def _gather(op: FormulaOp, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]
 
 
 def _combine(signed: _Signed, op: FormulaOp, operands: tuple[Formula, ...]) -> Formula:
-    """Return the negation normal form of a signed formula, which is a formula or its negation.
+    """Return the negation normal form of a formula (sign True) or of its negation (sign False).
 
-    ``op`` is the top operator after pushing the sign inwards, and ``operands`` are the normal forms
-    of its operands.
+    ``op`` is the outermost operator after the sign was pushed inwards, and ``operands`` are the
+    normal forms of its operands.
     """
     node, positive = signed
     if op in ("and", "or"):

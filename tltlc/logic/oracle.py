@@ -43,7 +43,7 @@ def robustness_of_state(formula: Formula, values: Mapping[str, float]) -> float:
 
 
 def all_traces(atoms: Sequence[str], max_length: int) -> Iterator[tuple[frozenset[str], ...]]:
-    """Yield every trace over the atoms of 1 to ``max_length`` samples, shorter ones first."""
+    """Yield every trace of 1 to ``max_length`` samples over the given atoms, shorter traces first."""
     samples = [
         frozenset(chosen) for chosen in chain.from_iterable(combinations(atoms, k) for k in range(len(atoms) + 1))
     ]
@@ -52,7 +52,7 @@ def all_traces(atoms: Sequence[str], max_length: int) -> Iterator[tuple[frozense
 
 
 def _holds_at(node: Formula, operands: list[list[bool]], trace: Sequence[Collection[str]], i: int) -> bool:
-    """Whether ``node`` holds at position ``i``, given the truth of its operands at every position."""
+    """Whether ``node`` holds at position ``i``, given the truth values of its operands at every position."""
     n = len(trace)
     a = operands[0] if operands else []
     b = operands[1] if len(operands) > 1 else []

@@ -22,9 +22,9 @@ _MOST_STEPS: Final = 50
 class Rewrite:
     """A rewrite of formulas whose outermost operator is in ``ops``.
 
-    ``apply`` returns an equivalent formula with no more atoms, constants and operators than before.
-    It returns the same object if the rewrite does not match. ``law`` contains examples of the
-    rewrite, ``before = after``, separated by ``;``, which tests check.
+    ``apply`` returns an equivalent formula that is not larger (see :func:`size`); if the rewrite
+    does not match, it returns the same object. ``law`` has examples ``before = after``, separated
+    by ``;``, which tests check.
     """
 
     name: str
@@ -154,9 +154,9 @@ _BY_OP: Final[dict[str, tuple[Rewrite, ...]]] = {
 def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
     """Return a formula that is equivalent on every finite trace and not larger (see :func:`size`).
 
-    Operands keep their order. Passes from the leaves to the root repeat until nothing changes, at
-    most 12 times. ``known`` caches the result of a pass for each subformula; pass the same dict for
-    formulas that share subformulas.
+    Operands keep their order. Rewrites all subformulas, operands first, and repeats this until
+    nothing changes, at most 12 times. ``known`` caches the results for subformulas; pass the same
+    dict for formulas that share subformulas.
     """
     known = {} if known is None else known
     for _ in range(_MOST_PASSES):
@@ -187,7 +187,7 @@ def _run_pass(formula: Formula, done: dict[Formula, Formula]) -> Formula:
 
 @lru_cache(maxsize=16384)
 def _rewrite_root(node: Formula) -> Formula:
-    """Apply rewrites to the outermost operator of a formula until none matches."""
+    """Apply rewrites to the outermost operator of a formula until no rewrite matches."""
     for _ in range(_MOST_STEPS):
         for rewrite in _BY_OP.get(node.op, ()):
             rewritten = rewrite.apply(node)

@@ -22,10 +22,10 @@ _cache: WeakKeyDictionary[Formula, int] = WeakKeyDictionary()
 
 
 def signature(formula: Formula) -> int:
-    """Return the truth of a formula at the three positions of 64 fixed pseudo-random traces, as 192 bits.
+    """Return the truth values of a formula at the three positions of 64 fixed pseudo-random traces, as 192 bits.
 
-    The lowest 64 bits are the truth at the first position, one bit for each trace. If ``a`` implies
-    ``b`` on every finite trace, then ``signature(a) & ~signature(b)`` is 0.
+    The lowest 64 bits are the truth values at the first position, one bit for each trace. If ``a``
+    implies ``b`` on every finite trace, then ``signature(a) & ~signature(b)`` is 0.
     """
     bits = _cache.get(formula)
     if bits is not None:

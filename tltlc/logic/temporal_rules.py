@@ -1,7 +1,7 @@
 """Rewrites of the temporal operators over finite traces.
 
-The laws are listed in :mod:`tltlc.logic.rewrite`. Each function takes a formula and returns an
-equivalent one that is not larger. It returns the same object if the rule does not apply.
+The laws are listed in :mod:`tltlc.logic.rewrite`. Each rule takes a formula and returns an
+equivalent formula that is not larger. If the rule does not apply, it returns the same object.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tltlc.logic.implication import DUAL, complement, syntactically_implies, val
 
 
 def push_not(node: Formula) -> Formula:
-    """Push ``not`` through a temporal operator if this does not make the formula larger."""
+    """Push ``not`` through a temporal operator if this does not make the formula larger: ``!F a`` becomes ``G !a``."""
     (inner,) = node.args
     if not inner.is_temporal or (len(inner.args) == 2 and all(part.op != "not" for part in inner.args)):
         return node
@@ -24,9 +24,9 @@ def push_not(node: Formula) -> Formula:
 
 
 def evaluate_constant(node: Formula) -> Formula:
-    """Evaluate ``X``, ``F``, ``G`` or ``N`` of a constant.
+    """Evaluate ``X``, ``F``, ``G`` or ``N`` of a constant: ``F true`` becomes ``true``.
 
-    ``X true`` and ``N false`` stay, because they are about the end of the trace.
+    ``X true`` (not the last sample) and ``N false`` (the last sample) are not constant, and stay.
     """
     (inner,) = node.args
     reducible = {"X": FALSE, "N": TRUE}.get(node.op, inner)
@@ -34,9 +34,9 @@ def evaluate_constant(node: Formula) -> Formula:
 
 
 def evaluate_at_last(node: Formula) -> Formula:
-    """Replace ``F p`` by ``true`` if ``p`` is true at the last sample of every trace.
+    """Replace ``F p`` by ``true`` if ``p`` is true at the last sample of every trace, as ``N a`` is.
 
-    Replace ``G p`` by ``false`` if ``p`` is false at the last sample of every trace.
+    Replace ``G p`` by ``false`` if ``p`` is false at the last sample of every trace, as ``X a`` is.
     """
     value = value_at_last(node.args[0])
     if value is None or value != (node.op == "F"):
@@ -67,8 +67,8 @@ def simplify_nested(node: Formula) -> Formula:
 def simplify_until(node: Formula) -> Formula:
     """Simplify ``a U b`` and ``a W b``.
 
-    They are simplified if an operand is a constant, if ``a`` or its negation implies ``b``, and if
-    an operand repeats the operator, as in ``a U (a U b)`` and ``a U F b``.
+    Applies if an operand is a constant, if ``a`` or its negation implies ``b``, or if an operand
+    repeats the operator, as in ``a U (a U b)`` and ``a U F b``.
     """
     left, right = node.args
     strong = node.op == "U"
@@ -88,9 +88,8 @@ def simplify_until(node: Formula) -> Formula:
 def simplify_release(node: Formula) -> Formula:
     """Simplify ``a R b`` and ``a M b``.
 
-    They are simplified if an operand is a constant, if ``b`` implies ``a``, if ``a`` implies the
-    negation of ``b``, and if an operand repeats the operator, as in ``a R (a R b)`` and
-    ``a R G b``.
+    Applies if an operand is a constant, if ``b`` implies ``a``, if ``a`` implies the negation of
+    ``b``, or if an operand repeats the operator, as in ``a R (a R b)`` and ``a R G b``.
     """
     left, right = node.args
     weak = node.op == "R"
@@ -143,7 +142,8 @@ def merge_at_last(node: Formula) -> Formula:
 def fold_expansion(node: Formula) -> Formula:
     """Replace the expansion of a temporal operator by the operator: ``a | X F a`` becomes ``F a``.
 
-    An expansion has a part about this sample and a part about the rest of the trace.
+    The expansion of an operator says the same with a part about this sample and a part about the
+    rest of the trace.
     """
     inner_op = "or" if node.op == "and" else "and"
     for index, part in enumerate(node.args):
@@ -166,9 +166,10 @@ _EXPANDED = {("or", "X"): "U", ("or", "N"): "W", ("and", "X"): "M", ("and", "N")
 
 
 def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
-    """Return ``a U b`` and ``b`` for ``a & X(a U b)`` in an ``or``, and likewise for W, M and R.
+    """Return ``a U b`` and ``b`` if ``part`` is ``a & X(a U b)``, since ``b | a & X(a U b)`` is ``a U b``.
 
-    The second formula is None if ``part`` is no expansion of this kind.
+    ``op``, here ``or``, is the operator of which ``part`` is an operand. ``W``, ``M`` and ``R`` have
+    similar forms. If ``part`` has no such form, the second result is None.
     """
     for index, step in enumerate(part.args):
         if step.op in ("X", "N") and step.args[0].op == _EXPANDED[op, step.op]:
@@ -202,9 +203,10 @@ def merge_weak_and_strong(node: Formula) -> Formula:
 
 
 def _positions(node: Formula, part: Formula) -> list[int] | None:
-    """Return the positions of ``part``, or of each of its operands, among the operands of ``node``.
+    """Return the position of ``part`` among the operands of ``node``, as a list.
 
-    Returns None if ``part``, or one of its operands, is missing.
+    If ``part`` is not there but has the operator of ``node``, returns the positions of its operands
+    instead. Returns None if any of these is missing.
     """
     if part in node.args:
         return [node.args.index(part)]

@@ -16,7 +16,7 @@ _MOST_PARTS: Final = 300
 def without_constants(formula: Formula) -> Formula:
     """Return a formula without ``true`` and ``false`` that is equivalent on every infinite trace.
 
-    If the formula is constant, the result is ``true`` or ``false``.
+    If the formula simplifies to a constant, the result is this constant.
     """
     return NormalFormWriter(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 

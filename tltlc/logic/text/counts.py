@@ -13,7 +13,11 @@ from tltlc.logic.formula import Formula
 
 
 class CountPrinter:
-    """Prints each count as a number. The printers of formulas call it once for each count in a text, in one order."""
+    """Prints the counts of steps in the text of a formula, such as the 9 in ``F[0,9] p``, as numbers.
+
+    The functions that print formulas call it once for each count, always in the same order.
+    Subclasses print counts in other ways.
+    """
 
     def number(self, count: int) -> str:
         """Return the text of a count."""
@@ -28,7 +32,7 @@ NUMBERS: Final = CountPrinter()
 
 
 class _CountCollector(CountPrinter):
-    """Prints the same text for each count, and collects the counts in ``counts``."""
+    """Prints ``…`` in place of each count, and collects the counts in ``counts``."""
 
     def __init__(self) -> None:
         self.counts: list[int] = []
@@ -42,7 +46,7 @@ class _CountCollector(CountPrinter):
 
 
 class _RangePrinter(CountPrinter):
-    """Prints each count as a range that ends at the next count in ``ends``."""
+    """Prints each count as a range to the next number in ``ends``: ``39…2`` for 39 if that number is 2."""
 
     def __init__(self, ends: Sequence[int]) -> None:
         self._ends = iter(ends)
@@ -56,7 +60,7 @@ class _RangePrinter(CountPrinter):
 
 
 def number_range(first: int, last: int) -> str:
-    """Return ``39…2`` for 39 and 2; ``2`` if both numbers are 2."""
+    """Return the text of a range: ``39…2`` for 39 and 2, and ``2`` if both numbers are 2."""
     return str(first) if first == last else f"{first}…{last}"
 
 

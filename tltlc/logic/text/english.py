@@ -31,7 +31,7 @@ _RankedClause = tuple[str, int]
 
 
 class _SentenceContext(NamedTuple):
-    """What the functions below pass on while they turn one formula into a sentence.
+    """The settings that the functions below pass on while they turn one formula into a sentence.
 
     ``depth`` is how many more levels of clauses may nest. ``endless`` says whether the sentence is
     about traces that never end. ``counts`` prints the counts of steps.
@@ -50,8 +50,8 @@ def english_text(formula: Formula, *, endless: bool = False, counts: CountPrinte
 
     Atoms appear by name. ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then
     near(exit), and keep alive throughout." "Reach" means now or later, "then" strictly later,
-    "throughout" from now to the end. Formulas with the same sentence are equivalent. A formula that
-    has a constant elsewhere than in ``X true`` and ``N false`` is simplified first.
+    "throughout" from now to the end. Formulas with the same sentence are equivalent. A formula with
+    a constant is simplified first, unless its only constants are in ``X true`` and ``N false``.
 
     ``endless`` says that the sentence is about traces that never end. The formula must then be a
     constant, or contain no constant. ``counts`` prints the counts of steps.
@@ -75,13 +75,13 @@ def clause_text(formula: Formula, *, endless: bool = False) -> str:
 
 
 def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
-    """Return a formula ``G p`` as an item of a list of what must hold: ``keep alive`` for ``G alive``."""
+    """Return the text of a formula ``G p`` for a list of permanent conditions: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
     return imperative(body, "keep", "avoid") if _is_condition(body) else clause_text(invariant, endless=endless)
 
 
 def recurring_text(recurring: Formula) -> str:
-    """Return a formula ``G F p`` as an item of a list of recurring goals: ``reach a`` for ``G F a``."""
+    """Return the text of a formula ``G F p`` for a list of recurring goals: ``reach a`` for ``G F a``."""
     (body,) = recurring.args
     reach = _without_negation(body)
     if reach.op != "F":
@@ -91,17 +91,18 @@ def recurring_text(recurring: Formula) -> str:
 
 
 def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
-    """Return the goals of a formula ``F p`` in order, as pairs of a link to the previous goal and a text.
+    """Return the goals of a formula ``F p`` in order, each as a pair (link, text).
 
-    A link is ``then`` or ``then or at the same time``; the link of the first goal is empty.
+    ``F(a & X F b)`` gives ``("", "a")`` and ``("then", "b")``. The link joins a goal to the
+    previous one: ``then`` or ``then or at the same time``, and empty for the first goal.
     """
     return tuple(_linked_goals(reach.args[0], _SentenceContext(_DEEPEST, endless)))
 
 
 def without_constants(formula: Formula) -> Formula:
-    """Return an equivalent formula without constants, except in ``X true`` and ``N false``.
+    """Return an equivalent formula in which constants occur only in ``X true`` and ``N false``.
 
-    The result may itself be a constant.
+    The whole formula may also become a constant.
     """
     has_constants = any(
         (TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk()
@@ -110,9 +111,7 @@ def without_constants(formula: Formula) -> Formula:
 
 
 def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
-    """Return the instruction to make ``node`` hold at the moment that ``when`` names, such as
-    ``now``.
-    """
+    """Return a clause that tells the player to make ``node`` hold ``when``, a moment such as ``now``."""
     if is_state(node):
         return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
     if context.depth == 0:
@@ -146,10 +145,10 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
 
 
 def _parts(node: Formula) -> list[Formula]:
-    """Return the operands of an ``and`` or ``or``, some of them joined to one formula.
+    """Return the operands of an ``and`` or ``or``, with all operands without temporal operators joined to one.
 
-    The operands without a temporal operator are joined. The joined formula stands where the first
-    of these operands stood.
+    The joined operand stands in the place of the first of them: ``a & F p & b`` gives ``a & b`` and
+    ``F p``.
     """
     make = build.and_ if node.op == "and" else build.or_
     operands = operands_with_bounds(node)
@@ -173,7 +172,7 @@ def _join_clauses(clauses: Sequence[_RankedClause]) -> _RankedClause:
 
 
 def _reach_clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
-    """Return the clause of a formula ``F p``: a goal, or a sequence of goals."""
+    """Return the clause of a formula ``F p``, which names a goal or a sequence of goals: ``reach a, then b``."""
     (body,) = node.args
     if _without_negation(body).op == "G":
         return f"from some step on {_inner_clause(body, context)}", _LIST
@@ -188,9 +187,9 @@ def _goals(body: Formula, context: _SentenceContext) -> str:
 
 
 def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[str, str]]:
-    """Yield pairs (link, goal) for the goals of ``F body`` in order.
+    """Yield a pair (link, text) for each goal of ``F body``, in order.
 
-    The link is the word that joins the goal to the previous one; the first is empty.
+    The link, such as ``then``, joins the goal to the previous one; the first link is empty.
     """
     link = ""
     while True:
@@ -203,9 +202,10 @@ def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[st
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """Return the link to the next goal and the formula ``F q`` of that goal, for a body ``p & X F q`` or ``p & F q``.
+    """Return the link to the next goal, such as ``then``, and the formula ``F q`` of the next goal.
 
-    The formula is None if no goal follows.
+    ``body`` is ``p & X F q`` or ``p & F q``. For any other body no goal follows, and the formula is
+    None.
     """
     if body.op != "and":
         return "", None
@@ -221,8 +221,8 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 def _goal(body: Formula, context: _SentenceContext) -> str:
     """Return the text of the last goal in a sequence of goals.
 
-    ``body`` is the formula that must hold when the goal is reached. The text names a condition, a
-    choice of goals, or a condition and what must hold from the step on at which it is reached.
+    ``body`` is the formula that must hold when the goal is reached. The text is a condition, or a
+    condition and what must hold from that step on, or ``either … or …``, or ``a step …``.
     """
     if is_state(body):
         return phrase(body)
@@ -241,7 +241,7 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
 
 
 def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClause:
-    """Return the clause of ``G body``: what to keep, what to avoid, or what to do whenever something holds."""
+    """Return the clause of ``G body``, such as ``keep a throughout`` or ``whenever a, reach b``."""
     if _has_parts(body):
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):
@@ -260,19 +260,20 @@ def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClaus
 
 
 def _has_parts(body: Formula) -> bool:
-    """Whether the operands of ``body``, which must hold throughout, are listed one by one."""
+    """Whether the clause of ``G body`` lists the operands of ``body`` one by one."""
     return body.op == "and" and not all(part.op == "atom" for part in body.args)
 
 
 def _is_condition(body: Formula) -> bool:
-    """Whether ``body``, which must hold throughout, is one thing to keep or to avoid."""
+    """Whether the clause of ``G body`` names one thing to keep or to avoid."""
     return is_state(body) and body.op != "implies" and not _has_parts(body)
 
 
 def _parts_throughout(body: Formula) -> list[Formula]:
-    """Return the operands of an ``and`` that must hold throughout.
+    """Return the operands of an ``and``, with all atoms joined to one operand.
 
-    The atoms among them are joined to one operand, which stands where the first atom stood.
+    The joined operand stands in the place of the first atom: ``a & !c & b`` gives ``a & b`` and
+    ``!c``.
     """
     atoms = [part for part in body.args if part.op == "atom"]
     joined = build.and_(*atoms)
@@ -281,10 +282,9 @@ def _parts_throughout(body: Formula) -> list[Formula]:
 
 
 def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
-    """Return the condition and the consequence of ``body``, an implication.
+    """Return the condition ``a`` and the consequence ``p`` if ``body`` has the form ``a -> p`` or ``!a | p``.
 
-    The condition has no temporal operator. Both are None if ``body`` has neither the form
-    ``a -> p`` nor the form ``!a | p``.
+    The condition has no temporal operator. For any other body, both are None.
     """
     if body.op == "implies" and is_state(body.args[0]):
         return body.args[0], body.args[1]
@@ -312,7 +312,7 @@ def _until_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
 
 
 def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
-    """Return the clause of one ``X`` or ``N``, or of several in a row."""
+    """Return the clause of a formula that begins with one or more ``X``, or one or more ``N``."""
     ops = ("X", "N") if context.endless else (node.op,)
     count, body = 0, node
     while body.op in ops:
@@ -343,7 +343,7 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _RankedClau
 
 
 def _step_noun(node: Formula, context: _SentenceContext) -> str:
-    """Return a noun for a step at which ``node`` holds, for example ``step with near(exit)``."""
+    """Return a phrase for a step at which ``node`` holds, for example ``step with near(exit)``."""
     if _is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
     return (
@@ -354,19 +354,13 @@ def _step_noun(node: Formula, context: _SentenceContext) -> str:
 
 
 def _inner_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause of ``node`` for use inside another clause.
-
-    It stands in brackets, unless its rank is ``_PLAIN``.
-    """
+    """Return the clause of ``node`` for use inside another clause: in brackets, unless its rank is ``_PLAIN``."""
     text, rank = _clause(node, when, context.deeper())
     return text if rank == _PLAIN else f"({text})"
 
 
 def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that step") -> str:
-    """Return the clause of ``node`` for use at the end of another clause.
-
-    It stands in brackets only if its rank is ``_SCOPED``.
-    """
+    """Return the clause of ``node`` for use at the end of another clause: in brackets if its rank is ``_SCOPED``."""
     text, rank = _clause(node, when, context.deeper())
     return f"({text})" if rank == _SCOPED else text
 
@@ -374,13 +368,13 @@ def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that 
 def _rank_of_state(state: Formula) -> int:
     """Return the rank of a clause about ``state``, a formula without temporal operators.
 
-    The rank decides where the clause needs brackets.
+    The rank, such as ``_PLAIN``, decides where the clause needs brackets.
     """
     return _PLAIN if is_literal(state) else _LIST
 
 
 def _without_negation(node: Formula) -> Formula:
-    """Return an equivalent of a temporal formula, without a leading ``not``."""
+    """Return an equivalent formula without a leading ``not``: ``F !a`` for ``!G a``."""
     negations = 0
     while node.op == "not":
         node, negations = node.args[0], negations + 1
@@ -388,7 +382,7 @@ def _without_negation(node: Formula) -> Formula:
 
 
 def _negation(node: Formula) -> Formula:
-    """Return the negation of a formula, pushed through its outermost operator."""
+    """Return the negation of a formula, with ``not`` pushed through its outermost operator: ``F !a`` for ``G a``."""
     if node.op == "iff":
         return build.iff(node.args[0], complement(node.args[1]))
     return complement(node, depth=1)

@@ -1,4 +1,4 @@
-"""Print formulas in a notation, which a table of spellings describes."""
+"""Print formulas in a notation: ASCII, Unicode symbols or words."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from tltlc.logic.formula import Formula, FormulaOp
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 
 OPERAND: Final = 6
-"""The strength of unary operators, as in ``STRENGTH``.
+"""The strength of unary operators in ``STRENGTH``.
 
-An operand of a unary operator needs brackets if its own operator is weaker.
+The operand of a unary operator needs brackets if the operand's own operator is weaker.
 """
 
 STRENGTH: Final[Mapping[FormulaOp, int]] = {
@@ -29,14 +29,15 @@ STRENGTH: Final[Mapping[FormulaOp, int]] = {
 
 
 class Spelling(NamedTuple):
-    """A notation: the spellings of operators before an operand (``prefix``) and between two
-    (``infix``).
+    """A notation: how operators and constants are written.
 
-    ``space_before_bracket`` keeps the space between a prefix and an opening bracket.
-    ``brackets_between_infix`` puts brackets around every infix operator inside another infix
-    operator, and ``brackets_around_comparisons`` around comparisons that are operands. ``within``
-    and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{}`` for n; in ``during``,
-    ``{}`` is the number n + 1 of samples if ``during_counts_samples``.
+    ``prefix`` has the texts of unary operators, ``infix`` of binary operators. ``within`` and
+    ``during`` are the texts of ``F[0,n]`` and ``G[0,n]``, with ``{}`` in place of n. If
+    ``during_counts_samples``, the number in ``during`` is n + 1, the number of samples.
+    ``space_before_bracket`` keeps the space between a unary operator and an opening bracket.
+    ``brackets_between_infix`` puts brackets around each binary operator inside another binary
+    operator. ``brackets_around_comparisons`` puts brackets around comparisons, such as ``a > 0``,
+    that are operands.
     """
 
     prefix: Mapping[FormulaOp, str]
@@ -89,14 +90,14 @@ WORDS: Final = Spelling(
 
 
 _TextItem = str | tuple[Formula, int]
-"""A text; or a formula to be written, with the least strength at which it needs no brackets."""
+"""A text; or a formula to be written, and the least strength (as in ``STRENGTH``) that needs no brackets."""
 
 
 def write(formula: Formula, spelling: Spelling, least: int = 0, counts: CountPrinter = NUMBERS) -> str:
     """Return the text of the formula, with only the brackets that it needs.
 
-    If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
-    brackets: a number as in :data:`STRENGTH`. ``counts`` prints the bounds.
+    The whole text is in brackets if the outermost operator has a strength below ``least`` in
+    :data:`STRENGTH`; 0 means no brackets. ``counts`` prints the bounds.
     """
     return "".join(_pieces(formula, spelling, least, counts))
 
@@ -104,8 +105,8 @@ def write(formula: Formula, spelling: Spelling, least: int = 0, counts: CountPri
 def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
     """Whether :func:`write` returns this text for the formula.
 
-    The time is at most proportional to the length of ``text``. The text of the formula may be far
-    longer than the formula is in memory, since a formula shares equal operands.
+    Takes time proportional to the length of ``text``, even if the formula has a far longer text.
+    This can happen because formulas share equal operands in memory.
     """
     position = 0
     for piece in _pieces(formula, spelling, 0, NUMBERS):
@@ -116,10 +117,9 @@ def is_written_as(formula: Formula, text: str, spelling: Spelling) -> bool:
 
 
 def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrinter) -> Iterator[str]:
-    """Yield the text of the formula, from left to right.
+    """Yield the text of the formula in pieces, from left to right.
 
-    If the text is to be an operand, ``least`` says how tightly the formula must bind to need no
-    brackets: a number as in :data:`STRENGTH`. An explicit stack replaces recursion, since formulas
+    The arguments are those of :func:`write`. An explicit stack replaces recursion, since formulas
     nest deep.
     """
     stack: list[_TextItem] = [(formula, least)]
@@ -145,8 +145,10 @@ def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrint
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """Return the bounded operator that is printed in place of its expansion ``node``; None if
-    ``node`` is printed as it is.
+    """Return the bounded operator that is printed for ``node``, its expansion; None if ``node`` is no such expansion.
+
+    ``p | X(p | X p)`` is printed as ``F[0,2] p``. Bounds of less than
+    :data:`~tltlc.logic.bounded_operators.LEAST` steps are not printed in this form.
     """
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None
@@ -165,9 +167,9 @@ def _push_operand(stack: list[_TextItem], prefix: str, operand: Formula, spellin
 
 
 def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> None:
-    """Push onto ``stack`` what remains to be printed for ``node``, a formula with an infix operator.
+    """Push the operands of ``node``, and the text of its operator between them, onto ``stack``.
 
-    This is the operands, the last one first, with the symbol of the operator between them.
+    The last operand is pushed first, so that the first operand is printed first.
     """
     strength, inner = STRENGTH[node.op], OPERAND if spelling.brackets_between_infix else 0
     operands = operands_with_bounds(node) if node.op in ("or", "and") else node.args
@@ -181,7 +183,7 @@ def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> No
 
 
 def _needs_brackets(node: Formula, least: int, spelling: Spelling) -> bool:
-    """Whether a node needs brackets where its operator must bind at least as tightly as ``least``."""
+    """Whether a formula needs brackets in a place where operators below the strength ``least`` need them."""
     if spelling.brackets_around_comparisons and least and isinstance(node.name, ComparisonName):
         return True  # The grammar reads F a > 0 as F(a > 0), but a person might not.
     if STRENGTH[node.op] >= least:

@@ -38,10 +38,10 @@ class Outline:
 
 
 def outline(formula: Formula, *, endless: bool = False) -> Outline:
-    """Return the conjuncts of a formula as English clauses, sorted by what kind of requirement they are.
+    """Return the conjuncts of a formula as English clauses, sorted into kinds of requirements.
 
-    ``endless`` says that the formula is about traces that never end. It must then be a constant, or
-    contain no constant.
+    ``endless`` says that the formula is about traces that never end. The formula must then be a
+    constant, or contain no constant.
     """
     formula = formula if endless else without_constants(formula)
     goals: list[tuple[Goal, ...]] = []
@@ -64,9 +64,10 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
 
 
 def _conjuncts(formula: Formula) -> list[Formula]:
-    """Return the operands of the outermost ``and``; ``G (a & b)`` gives ``G a`` and ``G b``.
+    """Return the distinct operands of the outermost ``and``, with ``G (a & b)`` split into ``G a`` and ``G b``.
 
-    Bounded operators are not split.
+    An ``and`` without temporal operators is not split, nor is the expansion of a bounded operator
+    such as ``G[0,2] p``.
     """
     conjuncts: list[Formula] = []
     stack = [formula]
@@ -82,7 +83,7 @@ def _conjuncts(formula: Formula) -> list[Formula]:
 
 
 def _core(node: Formula) -> Formula:
-    """Return the formula without leading double negations."""
+    """Return the formula without leading double negations: ``a`` for ``!!a``."""
     while node.op == "not" and node.args[0].op == "not":
         node = node.args[0].args[0]
     return node

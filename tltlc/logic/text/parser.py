@@ -1,7 +1,7 @@
 """Parse the formulas in artefacts, the files ``NAME.fspa.json`` with compiled automata.
 
 :func:`tltlc.logic.text.printer.ascii_text` printed these formulas. The parser of source texts reads
-many more notations, and needs declarations. This parser needs only the names of the atoms.
+many more notations, and needs the declarations of the atoms. This parser needs only their names.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _BINARY: Final[Mapping[str, Callable[[Formula, Formula], Formula]]] = {
     "<->": build.iff,
 }
 _STRENGTH: Final = {"(": 0, **{symbol.strip(): STRENGTH[op] for op, symbol in ASCII.infix.items()}}
-"""How tightly infix operators bind, by their symbols; an open bracket binds least."""
+"""How tightly each infix operator binds: a greater number binds more tightly, and an open bracket binds least."""
 
 _Operator = str | tuple[str, int]
 """An operator or an open bracket; or a pair of ``F`` or ``G`` and its bound in steps."""
@@ -50,9 +50,10 @@ class _NoFormulaError(Exception):
 
 
 class FormulaParser:
-    """Parses formulas over atoms with the given names.
+    """Parses formulas over atoms with the given names; results are cached.
 
-    Bounded operators over the same operand share the formulas of their expansions.
+    ``F[0,2] p`` is parsed as ``p | X(p | X p)``. The expansions of ``F[0,2] p`` and ``F[0,9] p``
+    share their subformulas.
     """
 
     def __init__(self, names: Iterable[str]) -> None:
@@ -69,10 +70,10 @@ class FormulaParser:
         self._parsed: dict[str, Formula | None] = {}
 
     def formula(self, text: str) -> Formula | None:
-        """Return the formula, or None if the text is no formula over the names.
+        """Return the formula that ``text`` stands for, or None if ``text`` is no formula over the names.
 
-        Also returns None if the expansions of all bounds together are larger than the row "expanded
-        bounds" of :data:`~tltlc.io.limits.WORK` allows. Takes linear time and no recursion.
+        Also returns None if the expansions of all bounds that were parsed so far are larger than
+        ``WORK["expanded bounds"]``. Takes linear time and no recursion.
         """
         if text not in self._parsed:
             try:
@@ -133,9 +134,10 @@ class FormulaParser:
         return match.group() if match else ""
 
     def _apply(self, operands: list[Formula], operators: list[_Operator], least: int) -> None:
-        """Apply the last ``operators`` to the last ``operands``, which are both stacks.
+        """Pop operators, and replace their operands on top of ``operands`` by the formulas that they make.
 
-        Stops at an open bracket, and at an operator that binds less tightly than ``least``.
+        Both lists are stacks. Stops at an open bracket, and at an operator that binds less tightly
+        than ``least``.
         """
         while operators and _strength(operators[-1]) >= least:
             operator = operators.pop()
@@ -168,7 +170,7 @@ class FormulaParser:
 
 
 def _strength(operator: _Operator) -> int:
-    """Return how tightly an operator binds; all prefix operators bind alike."""
+    """Return how tightly an operator binds, as in ``_STRENGTH``; all prefix operators bind equally."""
     return _STRENGTH.get(operator, OPERAND) if isinstance(operator, str) else OPERAND
 
 

@@ -43,16 +43,20 @@ def bracketed_phrase(state: Formula) -> str:
 
 
 def object_phrase(state: Formula) -> str:
-    """Return the formula as the object of a verb, in brackets where they help to read it.
+    """Return the formula as the object of a verb, such as ``a and not b``.
 
-    A literal has no brackets, and neither have literals joined by `and` alone or by `or` alone.
+    Literals have no brackets, nor have literals that are all joined by ``and``, or all by ``or``.
+    Any other formula is in brackets.
     """
     is_row = state.op in ("and", "or") and all(map(is_literal, state.args))
     return phrase(state) if is_row else bracketed_phrase(state)
 
 
 def imperative(state: Formula, keep: str, avoid: str) -> str:
-    """Return an instruction: ``keep`` is the verb for a positive formula, ``avoid`` for a negated one."""
+    """Return the verb ``keep`` and the formula, or, for a negated formula, the verb ``avoid`` and what is negated.
+
+    With the verbs ``keep`` and ``avoid``, ``a`` gives "keep a", and ``!a`` gives "avoid a".
+    """
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
@@ -66,5 +70,5 @@ def is_state(formula: Formula) -> bool:
 
 
 def is_literal(formula: Formula) -> bool:
-    """Whether the formula is an atom, a constant, or the negation of one."""
+    """Whether the formula is an atom, a constant, or the negation of an atom or constant."""
     return not formula.args or (formula.op == "not" and not formula.args[0].args)

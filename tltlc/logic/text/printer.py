@@ -24,7 +24,7 @@ def is_ascii_text(formula: Formula, text: str) -> bool:
 
 
 def operand_text(formula: Formula) -> str:
-    """Return the formula like :func:`ascii_text`, in brackets if an operand of ``!`` or ``&`` needs them."""
+    """Return the :func:`ascii_text` of the formula, in brackets if it needs them as the operand of ``!``."""
     return write(formula, ASCII, OPERAND)
 
 
