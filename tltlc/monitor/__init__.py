@@ -1,6 +1,6 @@
-"""Run an automaton on samples: compute atoms, take the transition, and return progress and reward.
+"""Run an automaton on samples: compute the atoms, take a transition, and return progress and reward.
 
-A sample is the signals of a game at one step. Begin with `Monitor`.
+A sample has the values of a game's signals at one step. Begin with `Monitor`.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ class Step(NamedTuple):
 
     - ``state``: the number of the automaton's state after the sample. ``label`` (what remains to be
       satisfied), ``verdict`` and ``accepting`` are those of this state.
-    - ``done``: whether the episode has ended, with this step or before.
+    - ``done``: whether the episode has ended, at this step or before.
     - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step; 0 after the end of the episode.
     - ``robustness``: the robustness of the edge taken, in [-1, 1].
@@ -67,10 +67,7 @@ class Monitor:
         self.reset()
 
     def reset(self) -> None:
-        """Start a new trace: go back to the initial state, with no progress.
-
-        ``notices`` are kept.
-        """
+        """Start a new trace: go back to the initial state, with no progress. ``notices`` stay."""
         self.state = 0
         self.steps = 0
         self.progress = 0.0

@@ -1,4 +1,4 @@
-"""How near some steps in a state came to an edge that leads towards acceptance."""
+"""Find the step at which a run came nearest to leaving a state towards acceptance."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from tltlc.monitor.tables import tables
 
 @record
 class NearestEdge:
-    """The step that came nearest to an edge that leads from a state towards acceptance.
+    """The step, of some steps in one state, that came nearest to an edge towards acceptance.
 
-    ``row`` is the index of the step, the first one if several are equally near. ``robustness``, in
-    [-1, 1], is the greatest robustness of the guards of these edges at this step. ``atom`` is the
-    index of the atom that limits it, and ``wanted`` the truth value that the guard needs.
+    ``row`` is the index of the step; of several equally near steps, the first. ``robustness``, in
+    [-1, 1], is the greatest robustness of a guard of these edges at this step. ``atom`` is the
+    index of the atom that limits this robustness, and ``wanted`` the truth value of the atom that
+    the guard needs.
     """
 
     row: int
@@ -26,10 +27,11 @@ class NearestEdge:
 
 
 def nearest_edge(fspa: Fspa, state: int, rows: Sequence[Sequence[float]]) -> NearestEdge | None:
-    """Return which of some steps in a state came nearest to an edge that leads towards acceptance.
+    """Return the step, of some steps in one state, that came nearest to an edge towards acceptance.
 
-    ``rows`` has the values of all atoms at each of these steps. None if there is no step, or if no
-    edge leads from the state towards acceptance.
+    Such an edge leads to a state with a smaller distance to an accepting state. ``rows`` has the
+    values of all atoms, in [-1, 1], at each step. Returns None if there is no step, or if no such
+    edge leaves the state.
     """
     guards = [edge.guard for edge in tables(fspa).improving[state]]
     if not guards or not rows:

@@ -24,8 +24,8 @@ class _ColumnError(Exception):
 def is_parquet(start: bytes, name: str) -> bool:
     """Whether a file is in Parquet, judged by the ending of its name, or by ``start``, its first bytes.
 
-    A file in Parquet begins with ``PAR1``. A trace in CSV may begin with the same characters. But in
-    Parquet, a control character other than a tab or a line end follows, which CSV cannot have there.
+    A file in Parquet begins with ``PAR1``, followed by a control character that is neither a tab nor
+    a line end. A trace in CSV may also begin with ``PAR1``, but not with such a character after it.
     """
     following = start[4:5]
     is_control = b"" < following < b" " and following not in (b"\t", b"\n", b"\r")
@@ -33,7 +33,7 @@ def is_parquet(start: bytes, name: str) -> bool:
 
 
 def as_text(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:
-    """Return a trace as text: one in Parquet as JSON lines, any other unchanged.
+    """Convert a trace in Parquet to JSON lines; return any other trace unchanged.
 
     The arguments and errors are those of :func:`json_lines`.
     """
@@ -79,11 +79,11 @@ def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None
 
 
 def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
-    """Return the names of the columns to read.
+    """Return the names of the columns to read, as :func:`json_lines` describes them.
 
     Raises:
-        _ColumnError: two of them have the same name, or the column of a signal has other values than
-            numbers and booleans.
+        _ColumnError: two of them have the same name, or one of them has values that are neither
+            numbers nor booleans.
     """
     kinds = [(field.name, field.type) for field in file.schema_arrow]
     if signals is None:

@@ -145,9 +145,9 @@ def step_progress(
 
 
 def approach(tables: MonitorTables, state: int, values: Sequence[float]) -> float:
-    """Return what line 14 of Algorithm 1 adds to the progress, in [0, 1 / spec_size].
+    """Return how near the automaton is to taking an edge from ``state`` towards a goal, in [0, 1 / spec_size].
 
-    It tells how near the automaton is to taking an edge from ``state`` towards a goal.
+    Line 14 of Algorithm 1 adds this number to the progress. At least one such edge must exist.
     """
     nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
     return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
@@ -168,7 +168,7 @@ def _share_survived(tables: MonitorTables, target: int, step: int) -> float:
 
 
 def ends_episode(tables: MonitorTables, state: int, target: int, options: RewardOptions) -> bool:
-    """Whether the step from ``state`` to ``target`` ends an episode before its limit."""
+    """Whether the step from ``state`` to ``target`` ends the episode, whatever the limit of steps is."""
     if options.termination == "paper":
         # Lines 12 to 21: the episode ends if the state did not change and no edge leads nearer to a goal.
         return state == target and not tables.improving[target]
@@ -178,9 +178,9 @@ def ends_episode(tables: MonitorTables, state: int, target: int, options: Reward
 def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) -> bool:
     """Whether an episode that is cut off in the state ``target`` is a success.
 
-    It is a success if the state is accepting, with one exception: if the spec has a limit and is
-    judged at it, an episode that is cut off before the limit is a failure. With
-    ``termination="paper"``, every spec is judged at its goal.
+    It is a success if the state is accepting. But if the spec has a limit and is judged at this
+    limit, an episode that is cut off earlier is a failure. With ``termination="paper"``, every spec
+    is judged at its goal.
     """
     at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
@@ -189,9 +189,9 @@ def _succeeds_early(tables: MonitorTables, target: int, options: RewardOptions) 
 def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
     """Return the penalty for an episode that fails after ``step`` of ``limit`` steps.
 
-    It is the sum of the penalties ``1 / limit`` of all steps that are left:
-    ``(limit - step) / limit``. With the ``discounted`` penalty, the penalty of the n-th step left
-    (from 0) is multiplied by ``gamma ** n``.
+    Each step that is left costs ``1 / limit``, so the penalty is ``(limit - step) / limit``. If
+    ``options.terminal_penalty`` is ``discounted``, the cost of the n-th step that is left (n from
+    0) is multiplied by ``gamma ** n``.
     """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:

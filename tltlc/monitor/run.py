@@ -51,7 +51,7 @@ def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Itera
 
 
 def header(fspa: Fspa) -> tuple[str, ...]:
-    """Return the names of the columns that :func:`cells` fills."""
+    """Return the names of the columns for which :func:`cells` returns the texts."""
     return ("step", "state", "verdict", "progress", "reward", *(atom.name for atom in fspa.atoms))
 
 

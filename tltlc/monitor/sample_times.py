@@ -12,7 +12,7 @@ from tltlc.resolve.spec import Signal
 _TIME: Final = "time"
 
 _JITTER: Final = 0.5
-"""A sample may be early or late by this share of the sampling period."""
+"""A sample may be early or late by this share of the clock's period."""
 
 _CLOCK_ERROR: Final = 0.02
 """The clock of the game may be fast or slow by this share."""
@@ -22,10 +22,10 @@ _ROUNDING_S: Final = 1e-3
 
 
 def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
-    """Return the name of the column, or key, with the times of the samples in seconds; None if there is none.
+    """Return the name of the column with the times of the samples in seconds; None if there is none.
 
-    Its name is ``time``, whatever its capital letters, unless the spec has a signal of this name.
-    ``names`` are the names of all columns.
+    ``names`` are the names of all columns of a CSV file, or all keys of a JSON object. The column
+    is called ``time``, in upper or lower case. A column with the name of a signal does not count.
     """
     taken = {signal.name for signal in signals}
     candidates = [name for name in names if name.lower() == _TIME and name not in taken]
@@ -35,10 +35,11 @@ def times_name(names: Iterable[str], signals: Iterable[Signal]) -> str | None:
 class SampleTimes:
     """Checks the times of the samples of one trace, in order.
 
-    Each time must be later than the one before. With a clock, whose period is c, two more conditions
-    hold. The time between two samples is at most 1.5 * c, so that no sample is missing. And the time
-    from the first sample to sample i (from 0) differs from i * c by at most c / 2, plus 2 % of i * c
-    because the clock of the game may be fast or slow. Both allow 1 ms more for rounding.
+    Each time must be later than the time before. If the spec declares a clock with a period of c
+    seconds, there are two more conditions. The time between two samples must be at most 1.5 * c, so
+    that no sample is missing. The time from the first sample to sample i (i from 0) must differ
+    from i * c by at most c / 2, plus 2 % of i * c because the clock of the game may be fast or
+    slow. Both conditions allow 1 ms more for rounding.
 
     ``clock_s`` is the period of the clock in seconds, None without a clock.
     """
@@ -49,7 +50,7 @@ class SampleTimes:
         self._first = self._last = 0.0
 
     def problem(self, time: float) -> str | None:
-        """Take the time of the next sample, in seconds; return what is wrong with it, or None."""
+        """Take the time of the next sample, in seconds; return what is wrong with this time, or None."""
         count, last = self._count, self._last
         self._count, self._last = count + 1, time
         if not isfinite(time):
@@ -72,7 +73,7 @@ class SampleTimes:
 
     @property
     def advice(self) -> str:
-        """Help for the error about a wrong time: how to record the trace again so that it fits."""
+        """The advice in the error about a wrong time: how to record the trace so that its times are right."""
         if self._clock_s is None:
             return "record the samples in the order in which they happen, with times in seconds"
         return "record every sample at the rate of `clock`, with times in seconds, or change `clock` in the spec"

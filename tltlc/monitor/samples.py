@@ -12,7 +12,7 @@ from tltlc.expression.python import compile_expressions
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
-"""How far the value of an atom may be outside [-1, 1] without a notice, because of rounding."""
+"""How far rounding may take the value of an atom outside [-1, 1] without a warning."""
 
 
 class MonitorError(TltlError):
@@ -60,7 +60,9 @@ class Samples:
     def _signal_value(self, signal: Signal, name: str, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range.
 
-        Adds a notice if the value was outside the range. ``name`` is ``signal.name``.
+        Adds a warning to the notices the first time that a value of this signal is outside the
+        range. ``name`` is ``signal.name``. Raises MonitorError (TLT0612) if the value is not a
+        finite number, or if the value of a bool is neither 0 nor 1.
         """
         value = finite_signal_value(signal, given, when)
         low, high = signal.low, signal.high
@@ -147,7 +149,7 @@ def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
 
 
 def number_text(value: float) -> str:
-    """Return a number for a message: the shortest text that Python reads as the same number."""
+    """Return a number as text for a message, such as ``0.1`` or ``3``, without rounding."""
     text = repr(float(value))
     return text[:-2] if text.endswith(".0") else text
 
@@ -158,7 +160,7 @@ def range_text(low: float | None, high: float | None) -> str:
 
 
 def name_list(names: Sequence[str]) -> str:
-    """Return one or more names in backticks, with ``and`` before the last one."""
+    """Return one or more names in backticks, as a list with commas and ``and`` before the last name."""
     quoted = [f"`{name}`" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 

@@ -17,7 +17,7 @@ from tltlc.resolve.spec import Expect, ResolvedFile, Test
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
 
 _TOLERANCE: Final = 1e-12
-"""Numbers that differ by at most this count as equal, so that 0.1 + 0.2 is not below 0.3."""
+"""Numbers whose difference is at most this count as equal, so that 0.1 + 0.2 is not above 0.3."""
 
 
 @record
@@ -50,8 +50,9 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     """Run one test of a spec on the automaton of the spec, and return the result.
 
     At each ``step`` of the test, the atoms that the step names have the value 1, and all other
-    atoms -1. An ``expect`` is about the trace of all steps before it. The failure has the code
-    TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
+    atoms -1. An ``expect`` is about the trace of all steps before it. The test ends with the first
+    failure, which has the code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold
+    at the same step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None

@@ -8,12 +8,12 @@ from tltlc.core.record import record
 
 @record
 class MonitorTables:
-    """What the monitor needs to know about each state. Each of the tuples below has one entry for each state.
+    """What a monitor needs to know about each state; each tuple has one entry for each state.
 
-    ``edges`` has the edges that leave the state. ``improving`` has only those of them that lead to
-    a state nearer to a goal. ``base_progress`` says how much of the greatest distance to a goal
-    (``spec_size``) is done in the state, as a share in [0, 1]. ``ends_on_entry`` says whether an
-    episode ends when it enters the state, with ``termination="entry"``.
+    ``edges`` has the edges that leave the state. ``improving`` has the edges that lead from the
+    state to a state nearer to a goal. ``base_progress`` is ``(spec_size - distance) / spec_size``:
+    1 in a goal, 0 in a state with the greatest distance, and also 0 in a trap. ``ends_on_entry``
+    says whether an episode ends when it enters the state, with ``termination="entry"``.
     """
 
     fspa: Fspa
@@ -49,10 +49,12 @@ def _improves(fspa: Fspa, edge: Edge) -> bool:
 
 
 def _base_progress(distance: int | None, spec_size: int) -> float:
-    """Return the progress of line 11 of Algorithm 1: ``(spec_size - distance) / spec_size``.
+    """Return the progress of a state, in [0, 1]: ``(spec_size - distance) / spec_size``.
 
-    A trap, whose ``distance`` is None, has the progress 0.
-    ▲ The paper divides by ``spec_size``. If it is 0, a goal has the progress 1.
+    This is line 11 of Algorithm 1 (Gutiérrez-Sánchez et al. 2024). A trap, whose ``distance`` is
+    None, has the progress 0.
+    ▲ The paper divides by ``spec_size`` without exception. Here, if ``spec_size`` is 0, a goal has
+    the progress 1.
     """
     if distance is None:
         return 0.0

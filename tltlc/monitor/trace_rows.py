@@ -46,11 +46,11 @@ class TraceObjects:
 
 
 def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
-    """Return the trace, which is in CSV or in JSON lines; None if the stream has only blank lines.
+    """Return a trace, which may be in CSV or in JSON lines; None if the stream has only blank lines.
 
     Raises:
-        TltlError: TLT0622 the first line cannot be read. Iteration over ``rows`` raises the same
-            error for later lines.
+        TltlError: TLT0622 the first row cannot be read. Iteration over ``rows`` of the result
+            raises the same error for later rows.
     """
     first = lines.first_of_row()
     if first is None:
@@ -64,10 +64,7 @@ def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
 
 
 def cell_number(cell: str) -> float | None:
-    """Return the number in a cell, 1 for true and 0 for false.
-
-    Returns None if the cell has another text.
-    """
+    """Return the number in a cell; 1 for ``true``, 0 for ``false``, and None for any other text."""
     text = cell.strip(_BLANKS)
     if _NUMBER.fullmatch(text):
         return float(text)
@@ -78,8 +75,9 @@ def cell_number(cell: str) -> float | None:
 class TraceLines:
     """Reads the lines of a stream, and remembers for messages where the current row begins.
 
-    ``name`` is the trace's name in messages. A row is one line, or several if a quoted cell has
-    line breaks, and has at most ``TRACE_LINE.size`` bytes. At most one row is kept in memory.
+    ``name`` is the trace's name in messages. A row is one line, or several lines if a quoted cell
+    contains line breaks. It has at most ``TRACE_LINE.size`` bytes. At most one row is kept in
+    memory.
     """
 
     def __init__(self, stream: Stream, name: str, kind: SourceKind = "file") -> None:
@@ -148,7 +146,10 @@ class TraceLines:
         return text
 
     def _bad_line(self, line: bytes, message: str, column: int, help: str) -> TltlError:  # noqa: A002
-        """Return the error TLT0622 about ``line``, the line read last; a row may have begun before it."""
+        """Return the error TLT0622 about ``line``, the line that was read last.
+
+        Makes this line the first line of the current row, even if the row began earlier.
+        """
         self._first, self.text = self._read, line.decode(errors="replace")
         return self.error(message, (column, column + 1), help)
 
@@ -266,7 +267,7 @@ def _after_blanks(line: str, start: int) -> int:
 
 
 class _BadObjectError(ValueError):
-    """Raised for a JSON object that a trace may not contain; the message says why."""
+    """Raised for a JSON object that is not allowed in a trace; the message says why."""
 
 
 def _object(line: str, lines: TraceLines) -> dict[str, Any]:

@@ -32,16 +32,16 @@ def read_trace(
 ) -> Iterator[TraceSample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
-    ``stream`` is binary; ``name`` is the trace's name in messages, and ``kind`` its kind of source.
-    The format is described in ``docs/traces.md``. A column ``time`` is checked against the clock of
-    the spec, whose period is ``clock_s`` seconds; None without a clock. Other columns that belong
-    to none of the signals are ignored. A sample from JSON lines may lack values, and numbers may be
-    infinite or NaN: the monitor reports both.
+    ``docs/traces.md`` describes the format. ``stream`` is binary; ``name`` is the trace's name in
+    messages, and ``kind`` its kind of source. The times in a column ``time`` are checked against
+    the clock of the spec; ``clock_s`` is the period of the clock in seconds, None without a clock.
+    Other columns are ignored. In JSON lines, values may be missing; in all traces, numbers may be
+    infinite or NaN. The monitor reports both.
 
     Raises:
         TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
-            line cannot be read, TLT0623 the time of a sample is wrong. Raised during the iteration,
-            after the samples before the error.
+            line cannot be read, TLT0623 the time of a sample is wrong. The iteration yields the
+            samples before the error first.
     """
     lines = TraceLines(stream, name, kind)
     trace = read_rows(lines)
@@ -116,10 +116,9 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
 
 
 def _format_advice(line: str, header: Sequence[str]) -> str | None:
-    """Return advice for a trace whose first line is no header with columns separated by commas.
+    """Return advice if the first line of a trace is no CSV header; None if nothing is wrong with the format.
 
-    Returns None unless the line begins a JSON list, separates its columns by semicolons or tabs, or
-    names no columns.
+    The line may begin a JSON list, separate its columns by semicolons or tabs, or name no columns.
     """
     if line.lstrip().startswith("["):
         return JSON_LINES_HELP

@@ -2,10 +2,9 @@
 
 A module defines a pure function ``reward(tables, transition, options, memory) -> (reward,
 memory)``. ``memory`` is what the mode remembers from step to step; it is None at the start of an
-episode. A mode computes the whole reward: it does not get the penalties of Algorithm 1. To add a
-mode, write its module.
-To compute it faster for many environments, write a module of the same name in
-``tltl_runtime.spec.batch.reward_modes`` that uses tensors.
+episode. The function computes the whole reward: the penalties of Algorithm 1 are not subtracted
+from it. To add a mode, write its module. To compute the reward faster for many environments, also
+write a module of the same name in ``tltl_runtime.spec.batch.reward_modes`` that uses tensors.
 """
 
 from __future__ import annotations
@@ -23,8 +22,8 @@ from tltlc.monitor.tables import MonitorTables
 class Transition:
     """One step of the automaton, from ``state`` to ``target``.
 
-    ``values`` are the values of the atoms at its sample. ``done`` says whether the episode ends
-    with this step, ``success`` whether it ends in success.
+    ``values`` are the values of the atoms at the sample of this step, in [-1, 1]. ``done`` says
+    whether the episode ends with this step, and ``success`` whether it ends in success.
     """
 
     state: int
@@ -38,6 +37,6 @@ ModeFunction = Callable[[MonitorTables, Transition, RewardOptions, Any], tuple[f
 
 
 def mode_function(name: str) -> ModeFunction:
-    """Return the reward function of a mode."""
+    """Return the function ``reward`` of a mode, given the mode's name, such as ``sparse``."""
     function: ModeFunction = importlib.import_module(f"{__name__}.{name}").reward
     return function

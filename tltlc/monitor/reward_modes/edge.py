@@ -9,11 +9,11 @@ from tltlc.monitor.tables import MonitorTables
 
 
 def reward(tables: MonitorTables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
-    """Return the robustness of the most robust edge to another state, in [-1, 1].
+    """Return the robustness of the most robust edge to another state, in [-1, 1]; 0 if there is no such edge.
 
-    Returns 0 if there is no such edge.
+    ``memory`` is not used, and is returned unchanged.
 
-    ▲ Edges into a trap are left out, because they would reward a violation.
+    ▲ Unlike in the paper, edges into a trap are left out, because they would reward a violation.
     """
     states = tables.fspa.states
     leaving = [

@@ -16,9 +16,9 @@ def reward(
 ) -> tuple[float, float]:
     """Return 1 on success (0 otherwise), plus ``gamma * potential after - potential before``.
 
-    The second result is the potential after this step, which is ``memory`` at the next step. The
-    base progress of a state says how much of the greatest distance to a goal is done there, as a
-    share in [0, 1]. The potential is:
+    The second result is the potential after this step; the caller passes it as ``memory`` at the
+    next step. The base progress of a state says how near the state is to a goal: 1 in a goal, 0 in
+    a trap or at the greatest distance. The potential is:
 
     - before the first sample, the base progress of the initial state;
     - after a sample, the base progress of the state, plus how near the automaton is to an edge

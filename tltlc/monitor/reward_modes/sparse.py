@@ -19,18 +19,17 @@ States that no run reaches are left out.
 def reward(
     tables: MonitorTables, transition: Transition, _: RewardOptions, memory: Widths | None
 ) -> tuple[float, Widths]:
-    """Return 0, and at the end of the episode the robustness of its trace, in [-1, 1].
+    """Return the reward: 0 before the end of the episode, and the robustness of its trace at the end.
 
-    The robustness of a trace is positive if and only if the trace is accepted. Its absolute value
-    is the distance to the nearest opposite trace: one that is rejected if this one is accepted, and
-    the other way round. The distance of two traces is the greatest difference between the values
-    of an atom at a sample.
+    The caller passes the second result as ``memory`` at the next step. The robustness, in [-1, 1],
+    is at least 0 if the trace is accepted, and at most 0 if it is rejected. Its absolute value is
+    the distance to the nearest trace with the opposite judgement. The distance of two traces is the
+    greatest difference between the values of an atom at a sample.
 
-    A run is a path in the automaton with one edge for each sample. Its width, the least robustness
-    of its edges, tells how much the values must change for the trace to take this run. So the
-    distance follows from the widest opposite run: one that ends in a rejecting state if the trace
-    is accepted, and in an accepting state otherwise. If there is no opposite run, the robustness is
-    1 or -1.
+    The distance is computed from runs. A run is any path in the automaton with one edge for each
+    sample. Its width, the least robustness of its edges, tells how much the values must change for
+    the trace to take this run. The widest of the runs that end in the opposite judgement gives the
+    distance. If there is no such run, the robustness is 1 or -1.
 
     ▲ The paper uses the robustness of the formula. Both values agree if no atom's value is 0 and no
     equivalent formula has a robustness nearer to 0.
@@ -45,9 +44,10 @@ def reward(
 
 
 def _widen(tables: MonitorTables, widths: Widths, transition: Transition) -> Widths:
-    """Return the width of the widest run to each state after one more sample, that of ``transition``.
+    """Return the width of the widest run to each state after the sample of ``transition``.
 
-    ``widths`` are these widths before the sample.
+    ``widths`` are the widths before this sample. A run is a path in the automaton with one edge for
+    each sample, and its width is the least robustness of its edges.
     """
     widened: Widths = {}
     for state, width in widths.items():
