@@ -77,7 +77,7 @@ def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
 def state_inclusion(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
     """Return a function that compares two states of an automaton over finite traces.
 
-    Its arguments are the ids of the two states. It returns whether every trace that is accepted
+    The function takes the ids of the two states, and returns whether every trace that is accepted
     from the first state is also accepted from the second. It raises OutOfWork when all calls
     together take more than ``work`` steps.
     """
@@ -149,8 +149,8 @@ class _Product:
 
         An automaton accepts a run if the marks of the edges that are taken infinitely often meet
         one of its clauses: ``accepting`` for the first automaton, ``rejecting`` for the second. The
-        marks of ``part`` meet a clause of ``accepting`` and no clause of ``rejecting``. The cycle
-        must keep both. So it takes every ``inf`` mark of the clause that is met. It also takes
+        marks of ``part`` meet a clause of ``accepting`` and no clause of ``rejecting``, and so must
+        the marks of the cycle. So the cycle takes every ``inf`` mark of the clause that is met, and
         each mark of ``part`` that is a ``fin`` mark of a clause of ``rejecting``.
         """
         marks_in_part = marks_of(part)

@@ -17,17 +17,19 @@ from tltlc.resolve.spec import Conjunct, JudgeMode
 
 
 def judge_of(parts: Iterable[Conjunct]) -> JudgeMode:
-    """Return when a spec with these clauses, but without a ``judge`` clause, is judged: at its ``goal`` or ``limit``.
+    """Return when a spec over finite traces is judged, given its clauses, of which none is a ``judge`` clause.
 
-    The spec is over finite traces.
+    The result is ``goal`` (as soon as the trace is accepted) or ``limit`` (at the limit of steps);
+    :func:`default_judge` has the rule.
     """
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> JudgeMode:
-    """Return when a spec with this formula, but without a ``judge`` clause, is judged: at its ``limit`` or ``goal``.
+    """Return when a spec with this formula is judged, if it has no ``judge`` clause.
 
-    The result is ``limit`` if the formula, in negation normal form, is true on the empty trace. By
+    The result is ``goal`` (as soon as the trace is accepted) or ``limit`` (at the limit of steps).
+    It is ``limit`` if the formula, in negation normal form, is true on the empty trace. By
     convention, literals (``p`` and ``!p`` alike) and formulas with the outermost operator ``G``,
     ``R``, ``W`` or ``N`` are true on the empty trace; formulas with ``F``, ``U``, ``M`` or ``X``
     are false. So ``G p`` is judged at the limit, and ``F q & G p`` at the goal.

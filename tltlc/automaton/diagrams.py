@@ -74,9 +74,10 @@ class StepLimit:
 
 
 class Diagrams(Generic[DiagramLeaf]):
-    """A table of nodes and the operations on them.
+    """A table of decision diagrams, which are functions of Boolean variables, and the operations on them.
 
-    Inner node ``n`` tests ``variable[n]``: it is the function ``high[n]`` where the variable is
+    A function is a node, and a node is an int. Equal functions are the same node. Inner node ``n``
+    tests the variable ``variable[n]``: it is the function ``high[n]`` where the variable is
     true, and ``low[n]`` where it is false. Variables are ints and are tested in ascending order.
     Leaf ``n`` has the value ``value[n]``, and its ``variable`` is :data:`LEAF`.
 
@@ -107,7 +108,7 @@ class Diagrams(Generic[DiagramLeaf]):
     # --- making nodes -------------------------------------------------------------------------
 
     def leaf(self, value: DiagramLeaf) -> int:
-        """Return the constant function ``value``."""
+        """Return the leaf with this value: the function that has this value everywhere."""
         number = self._leaves.get(value)
         if number is None:
             number = self._leaves[value] = self._add(LEAF, _NO_NODE, _NO_NODE, value)

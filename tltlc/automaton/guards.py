@@ -57,7 +57,8 @@ class Guards:
 
     A guard is a node of the decision diagrams ``diagrams``. ``names`` are the names of the atoms.
     ``allowed`` is a guard that is true on exactly the letters that ``exclusive`` declarations
-    allow; a letter is the set of the atoms that hold at a sample.
+    allow; a letter is the set of the atoms that hold at a sample. A cube is a conjunction of
+    literals, which are ints: ``2 * i + 1`` if atom ``i`` is true, ``2 * i`` if it is false.
     """
 
     __slots__ = (
@@ -92,8 +93,8 @@ class Guards:
     def by_leaf(self, transition: int) -> dict[int, int]:
         """Map each leaf of a transition to a guard, which is true on the letters that lead to this leaf.
 
-        A transition is a decision diagram that maps each letter to a leaf. Leaves out the leaf
-        ``IMPOSSIBLE``, to which letters lead that cannot occur.
+        A transition is a decision diagram that maps each letter to a leaf. The result does not have
+        ``IMPOSSIBLE``, the leaf for letters that cannot occur.
         """
         guards = self._split(transition)
         return {leaf: guard for leaf, guard in guards.items() if leaf != IMPOSSIBLE}

@@ -71,7 +71,7 @@ def budget_error(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 
 
 def failure_text(reason: Exception) -> str:
-    """Return in words what the automaton needs too much of, such as "needs too much memory".
+    """Return in words why the automaton could not be built, such as "needs too much memory".
 
     A LabelsTooLong is reported as labels that are too long, a RecursionError as formulas that nest
     too deeply, and any other ``reason`` as too much memory.
@@ -93,8 +93,8 @@ def error_with_clauses(
     At most three clauses get a label. ``size`` returns the size of the automaton of one clause
     alone, or None if this automaton is too large to build. ``too_large`` says in the title why the
     automaton of the spec could not be built, for example ``needs too much memory``. ``advice`` is
-    the suggestion of the message. If ``reason`` is TooManyPrimes, the error has a title and an
-    advice of its own, which replace these two.
+    the suggestion of the message. If ``reason`` is TooManyPrimes, ``too_large`` and ``advice`` are
+    not used: that error has a title and an advice of its own.
     """
     sizes: dict[Conjunct, ClauseSize | None] = {}
     alone: list[Conjunct] = []
@@ -135,7 +135,7 @@ def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
 
 
 def _cause_label(part: Conjunct) -> Label:
-    """Return a label on the longest bound of a clause, such as ``within 100 steps``, or on the clause without bounds.
+    """Return a label on the longest bound of a clause, such as ``within 100 steps``; on the clause if it has no bound.
 
     Long bounds make automata large: a bound of n samples may have to be counted from n different
     starts at once.

@@ -94,8 +94,8 @@ def _embed(successors: Successors, minimal: Machine) -> int:
     """Return an obligation that is satisfied by exactly the traces that a machine accepts.
 
     A state that accepts whatever follows becomes TRUE, and a state that rejects whatever follows
-    becomes FALSE. Each other state becomes a new variable of obligations, which gets the transition
-    of the state.
+    becomes FALSE. Each other state becomes a new obligation, a variable of its own, which gets the
+    transition of the state.
     """
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}

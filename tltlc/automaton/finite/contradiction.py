@@ -26,7 +26,7 @@ Decision = Callable[[Sequence[Conjunct], Spec], bool]
 
 
 def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Conjunct, ...]:
-    """Return clauses of an unsatisfiable spec that contradict each other, as few as possible.
+    """Return clauses of an unsatisfiable spec that contradict each other, such that all of them are needed.
 
     ``decision`` decides whether clauses contradict each other; by default :func:`unsatisfiable`,
     over finite traces. If a decision takes too much work, the result may have more clauses than

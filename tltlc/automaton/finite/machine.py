@@ -48,9 +48,10 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
     """Map every obligation that can be reached from ``initial`` to its transition, in breadth-first order.
 
-    Only letters on which the guard ``allowed`` is true can occur. Raises :class:`OutOfStates` if
-    there are more than ``state_budget`` obligations, and :class:`OutOfSteps` if their transitions
-    take too many steps.
+    An obligation says what remains to be done. Its transition is a node of a decision diagram that
+    maps each letter to the next obligation. Only letters on which the guard ``allowed`` is true can
+    occur. Raises :class:`OutOfStates` if there are more than ``state_budget`` obligations, and
+    :class:`OutOfSteps` if their transitions take too many steps.
     """
     diagrams = successors.diagrams
     atom, low, high, value = diagrams.variable, diagrams.low, diagrams.high, diagrams.value
@@ -212,6 +213,7 @@ def matches_state(
 ) -> bool:
     """Whether an obligation has the same language as a state of a minimal machine.
 
+    An obligation says what remains to be done; its language is the set of traces that satisfy it.
     Explores the obligation and the machine together, letter by letter. If the languages are equal,
     each obligation meets only one state, since states of a minimal machine have different
     languages. ``known`` maps obligations to the states with the same language; if the result is

@@ -18,11 +18,11 @@ from tltlc.logic.formula import Formula
 class Successors:
     """Computes the transitions of obligations and of formulas, in one table of decision diagrams.
 
-    The formulas must be in negation normal form. Obligations are Boolean functions of variables,
-    and a variable is an int. ``formulas[v]`` is the formula of variable ``v``: an atom, or a
-    formula whose outermost operator is temporal. A variable can also be a state of a smaller
-    automaton that was built for a part of the formula (:meth:`new_state`). Then ``formulas[v]`` is
-    None, and ``stands_for[v]`` is the obligation that remains in this state.
+    The formulas must be in negation normal form. An obligation says what remains to be done, as a
+    Boolean function of variables; a variable is an int. ``formulas[v]`` is the formula of variable
+    ``v``: an atom, or a formula whose outermost operator is temporal. A variable can also be a
+    state of a smaller automaton that was built for a part of the formula (:meth:`new_state`). Then
+    ``formulas[v]`` is None, and ``stands_for[v]`` is the obligation that remains in this state.
     """
 
     __slots__ = (
@@ -158,7 +158,7 @@ class Successors:
         return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
-        """Return the transition of a formula in negation normal form, as :meth:`of_obligation` of its obligation."""
+        """Return the transition of a formula in negation normal form, as :meth:`of_obligation` describes it."""
         known = self._of_formula
         result = known.get(formula)
         if result is not None:

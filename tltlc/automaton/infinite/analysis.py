@@ -74,10 +74,12 @@ class Analysis:
         return "holding" if state in self.goals else "pending"
 
     def default_judge(self) -> JudgeMode:
-        """Return when a spec without a ``judge`` clause is judged: at its ``goal`` or at its ``limit``.
+        """Return when a spec with this automaton is judged, if it has no ``judge`` clause.
 
-        Returns ``goal`` if the initial state is not a goal, and if every run that begins in a goal
-        and enters no trap is accepted. Otherwise returns ``limit``.
+        If a spec is judged at its ``goal``, an episode ends on entry into a goal; if at its
+        ``limit``, an episode ends at the limit of steps. Returns ``goal`` if the initial state is
+        not a goal, and if every run that begins in a goal and enters no trap is accepted. Otherwise
+        returns ``limit``.
         """
         if 0 in self.goals:
             return "limit"

@@ -27,13 +27,13 @@ def join_components(
     initial: ComponentPlace,
     apart: Collection[int] = (),
 ) -> tuple[Rabin, dict[ComponentPlace, int]]:
-    """Join ``components`` into one automaton; return it, and the numbers that their states have in it.
+    """Return the automaton that joins ``components``, and the number that each reachable state has in it.
 
     The automaton has only the states that can be reached from ``initial``, which becomes state 0.
-    Where an edge leaves its component, it has only a label as its target; ``entry`` maps this label
-    to the state of another component to which the edge then leads. States keep their labels. Equal
-    states are merged, except that no state with a label in ``apart`` is merged with a state whose
-    label is not in ``apart``.
+    An edge that leaves its component has a label (an obligation) in place of a target; ``entry``
+    maps this label to the state of another component to which the edge leads. States keep their
+    labels. Equal states are merged, but a state with a label in ``apart`` only with states whose
+    labels are in ``apart`` too.
     """
     steps = _steps(letters, components, entry)
     reached = _reachable(letters, steps, initial)
@@ -53,8 +53,8 @@ def _steps(
 ) -> dict[ComponentPlace, int]:
     """Return the step of each state: a function from the letter to the next state and the marks of the edge.
 
-    The value is None on letters that ``exclusive`` rules out. If the target of an edge is only a
-    label of another component, ``entry`` has the state for this label.
+    The function is a decision diagram. Its value is None on letters that ``exclusive`` rules out.
+    An edge that leaves its component leads to the state that ``entry`` has for the edge's label.
     """
     steps: dict[ComponentPlace, int] = {}
     for number, component in enumerate(components):

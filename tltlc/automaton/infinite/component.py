@@ -33,9 +33,10 @@ _NONE: Final[Marks] = frozenset()
 
 @record
 class ComponentAutomaton:
-    """A strongly connected component of the after-automaton, with an acceptance condition.
+    """The automaton of a strongly connected component of the after-automaton, with an acceptance condition.
 
-    ``labels`` maps each state to its label, the obligation that remains in the state. ``steps``
+    The states of the after-automaton are obligations: what remains to be done. ``labels`` maps each
+    state of this automaton to its label, the obligation that remains in the state. ``steps``
     maps each state to a function from the letter to a :data:`ComponentLeaf`. A run that stays in
     the component is accepted if it meets a clause of ``accepts``.
     """
@@ -109,9 +110,9 @@ def bottom_component(
 
     A label is an obligation, and ``step_of(label)`` is a function from the letter to the next
     label. The automata ``parts`` observe the parts of a formula; ``skeleton`` says how ``and`` and
-    ``or`` join these parts. The states of the product of the labels and these automata are
-    explored from the label ``first`` and the initial memories. The result is the smallest strongly
-    connected component of the product that no edge leaves, except to labels outside ``inside``.
+    ``or`` join these parts. The product of the labels and these automata is explored from the label
+    ``first`` and the initial states of the automata. The result is the smallest strongly connected
+    component of the product that no edge leaves, except to labels outside ``inside``.
     """
     initial: ComponentState = (first, *(part.initial for part in parts))
     steps, best = explore(letters, initial, lambda state: _step(letters, step_of, inside, state, parts))

@@ -237,5 +237,8 @@ class _Construction:
 
 
 def _key_function(chosen: Sequence[int]) -> Callable[[ComponentState], ComponentState]:
-    """Return a function that reduces a state to its label and its memories at the indices ``chosen``."""
+    """Return a function that reduces a state, which is a tuple, to its label and its entries at ``chosen`` indices.
+
+    The label is the first entry.
+    """
     return lambda state: (state[0], *(state[index] for index in chosen))

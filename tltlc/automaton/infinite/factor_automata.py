@@ -90,9 +90,10 @@ def factor(
 
 
 def _ranks(edges: list[_RankedEdge], component: ComponentAutomaton, work: Work) -> dict[int, int] | None:
-    """Return the rank of each edge of the factor, which decides acceptance; None if some edge gets no rank.
+    """Return the rank of each edge of the merged automaton; None if some edge gets no rank.
 
-    A run is accepted if the least rank that it takes infinitely often is even.
+    A run of the merged automaton is accepted if the least rank that it takes infinitely often is
+    even.
     """
     # The functions of `cycles` read three fields of an edge; the number only keeps the edges distinct.
     unranked: frozenset[Any] = frozenset(edges)

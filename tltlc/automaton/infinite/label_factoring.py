@@ -125,7 +125,7 @@ class Factoring:
         return redundant
 
     def _is_consensus(self, term: _LiteralSet, others: Sequence[_LiteralSet], op: _JoiningOp) -> bool:
-        """Whether a term follows from all other terms together: ``b & c`` is redundant beside ``a & b | !a & c``."""
+        """Whether a term is redundant because of several other terms, as ``b & c`` in ``a & b | !a & c | b & c``."""
         literals = frozenset().union(*others)
         if not any(literal ^ 1 in literals for literal in literals):
             return False

@@ -104,7 +104,10 @@ class Breakpoint:
 
 @lru_cache(maxsize=16384)
 def _replace_outermost(formula: Formula, op: str) -> Formula:
-    """Return the formula with each outermost ``W`` replaced by true (``op`` is ``W``), or ``U`` by false (``U``)."""
+    """Return the formula with each outermost ``p W q`` replaced by true, or each outermost ``p U q`` by false.
+
+    ``op`` is ``W`` or ``U``.
+    """
     if formula.op == op:
         return build.TRUE if op == "W" else build.FALSE
     if formula.op in ("and", "or", "X"):
@@ -169,8 +172,8 @@ class RoundRobin:
     ``parts`` are automata for the operands. The memory is the index of the current operand, and the
     memory of this operand's automaton. When the automaton of the current operand marks a letter,
     the next operand becomes the current one. The letter is marked if all operands have had their
-    turn. So the number of memories is the sum of the numbers for the operands. If all operands were
-    observed at the same time, it would be their product.
+    turn. So the number of memories is the sum of the numbers for the operands. If the automaton
+    observed all operands at the same time, the number would be the product.
     """
 
     def __init__(self, after: ObligationAutomaton, parts: Sequence[Recurrence]) -> None:

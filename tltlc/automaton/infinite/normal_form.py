@@ -21,7 +21,11 @@ _MOST_PULLED = 6
 
 
 def infinite_form(formula: Formula) -> Formula:
-    """Return an equivalent formula in the normal form of this module, for infinite traces."""
+    """Return a formula in normal form that is equivalent on every infinite trace.
+
+    The operators of the normal form are ``and``, ``or``, ``X``, ``U`` and ``W``, ``not`` before
+    atoms, and ``G F p`` and ``F G p``.
+    """
     normal = negation_normal_form(formula)
     done: dict[Formula, Formula] = {}
     for node in normal.bottom_up():

@@ -94,9 +94,10 @@ def clauses_as_pairs(letters: Diagrams[Any], component: ComponentAutomaton) -> R
 def _wait_in_turn(letters: Diagrams[Any], component: ComponentAutomaton, work: Work) -> RabinComponent:
     """Return the component with a Rabin pair for each clause; it may have more states than before.
 
-    For each clause, a state of the result also stores how many of the marks ``infs`` the run has
-    taken, in ascending order. The edge with which the run has taken all of them gets the ``inf``
-    mark of the pair, and the count starts again.
+    For each clause, a state of the result also stores a count. The run waits for the marks ``infs``
+    of the clause one after another, in ascending order, and the count says how many it has taken.
+    The edge on which the run takes the last of them gets the ``inf`` mark of the pair, and the
+    count starts again.
     """
     orders = [sorted(clause.infs) for clause in component.accepts]
     first = next(iter(component.steps))
@@ -191,9 +192,9 @@ class _Walks:
     ) -> TreePosition:
         """Return the position of a run below ``node`` after the run takes ``edge``, an edge of the node.
 
-        ``walk`` is the position before the edge. This method also collects indices of accepted
-        nodes at this position: in ``active``, of all nodes that contain the edge; in ``marked``, of
-        those of them that have no child with the edge at this position.
+        ``walk`` is the position before the edge. This method also adds indices of accepted nodes at
+        this position to two sets. ``active`` gets the nodes that contain the edge. ``marked`` gets
+        those of these nodes whose current child does not contain the edge, or that have no child.
         """
         source, target, _ = edge
         if node.accepted:
