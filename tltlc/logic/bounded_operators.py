@@ -97,7 +97,7 @@ def _repeats_operands(body: Formula, last: Formula) -> bool:
 
 
 def operands_with_bounds(node: Formula) -> list[Formula]:
-    """Return the operands of an ``or`` or ``and``, and join operands that are a bounded operator together.
+    """Return the operands of an ``or`` or ``and``; operands that form a bounded operator are joined to one operand.
 
     ``a | p | X(p | X p)`` gives two operands, ``a`` and ``p | X(p | X p)``, since the latter is
     ``F[0,2] p``. Bounds of less than :data:`LEAST` steps are not joined.

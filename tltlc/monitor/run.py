@@ -58,7 +58,7 @@ def header(fspa: Fspa) -> tuple[str, ...]:
 def cells(row: RunStep) -> tuple[str, ...]:
     """Return the texts of a step, one for each column of :func:`header`.
 
-    Numbers have 17 significant digits.
+    Numbers have up to 17 significant digits.
     """
     numbers = (row.step.progress, row.step.reward, *row.values)
     return (str(row.number), str(row.step.state), row.step.verdict, *(f"{number + 0.0:.17g}" for number in numbers))

@@ -145,10 +145,10 @@ def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrint
 
 
 def _bound(node: Formula) -> Bounded | None:
-    """Return the bounded operator that is printed for ``node``, its expansion; None if ``node`` is no such expansion.
+    """Return the bounded operator as which ``node`` is printed: ``F[0,2] p`` for ``p | X(p | X p)``.
 
-    ``p | X(p | X p)`` is printed as ``F[0,2] p``. Bounds of less than
-    :data:`~tltlc.logic.bounded_operators.LEAST` steps are not printed in this form.
+    Returns None if ``node`` is not the expansion of a bounded operator, or if the bound has less
+    than :data:`~tltlc.logic.bounded_operators.LEAST` steps.
     """
     operator = bounded_operator(node) if node.op in ("or", "and") else None
     return operator if operator is not None and operator.steps >= LEAST else None

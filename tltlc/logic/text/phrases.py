@@ -53,9 +53,9 @@ def object_phrase(state: Formula) -> str:
 
 
 def imperative(state: Formula, keep: str, avoid: str) -> str:
-    """Return the verb ``keep`` and the formula, or, for a negated formula, the verb ``avoid`` and what is negated.
+    """Return an instruction with one of two verbs: "keep a" for ``a``, and "avoid a" for ``!a``.
 
-    With the verbs ``keep`` and ``avoid``, ``a`` gives "keep a", and ``!a`` gives "avoid a".
+    ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others.
     """
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
