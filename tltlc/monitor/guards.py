@@ -59,7 +59,7 @@ def bounding_literal(guards: Sequence[Guard], values: Sequence[float]) -> tuple[
 
     Take the most robust prime implicant of all guards, and its literal with the least value; the
     first one if values are equal. The literal is returned as the index of its atom, and whether it
-    is positive.
+    is positive. No guard may be always true.
     """
     primes = (prime for guard in guards for prime in guard.primes)
     best = max(primes, key=lambda prime: prime_robustness(prime, values))
