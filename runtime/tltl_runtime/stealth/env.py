@@ -38,23 +38,25 @@ _CELL: Final = 0.5
 
 
 class GameEnv(gymnasium.Env[dict[str, Any], Any]):
-    """A level without a spec: it gives observations, but no reward, and no episode ends.
+    """A level without a spec: the reward is always 0, and no episode ends.
 
-    ``level`` is the name of a shipped level or the path of a ``.toml`` file. ``sensors`` chooses
-    what the agent observes, see :func:`~tltl_runtime.stealth.observation.sensors.choose_sensors`.
+    ``level`` is the name of a shipped level or the path of a ``.toml`` file. ``variant`` is the
+    name of one of the level's variants, as in
+    :func:`~tltl_runtime.stealth.levels.file.load_level`. ``sensors`` chooses what the agent
+    observes, see :func:`~tltl_runtime.stealth.observation.sensors.choose_sensors`.
 
     An action has a number for each of :data:`~tltl_runtime.stealth.snapshot.BRANCHES`: it is an
     element of MultiDiscrete([3, 3, 2, 2, 2]). The attribute ``action`` is the last action played.
     :class:`~tltl_runtime.stealth.observation.observation.Observer` describes the observations.
 
-    ``reset(seed=...)`` reproduces an episode bit for bit. A reset without a seed draws one. The
+    ``reset(seed=...)`` reproduces an episode bit for bit. A reset without a seed draws a seed. The
     attribute ``game`` is the running game, and ``game.seed`` the seed of its episode. The level is
     divided into cells, cubes with sides of half a metre. ``info["cell"]`` is the number of the cell
     that contains the player's feet, or -1 while the player is in the air.
 
     With ``render_mode`` ``rgb_array``, :meth:`render` returns pictures of ``render_size`` (width,
     height), each from 16 to 4096 pixels. With ``human``, a window shows the episode in real time.
-    ``render_view`` is one of ``third_person top_down overview``.
+    ``render_view`` is ``third_person``, ``top_down`` or ``overview``.
 
     Raises:
         TltlError: the errors of :func:`~tltl_runtime.stealth.levels.file.load_level`; TLT0815,
@@ -92,9 +94,9 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self._closed = False
 
     def tltl_params(self) -> dict[str, float]:
-        """Return the values that the level defines for params of specs, in SI units, by name.
+        """Return the values that the level defines for parameters of specs, in SI units, by name.
 
-        See :func:`tltl_runtime.stealth.capabilities.vocabulary.params`.
+        An example is ``{"level_size": 31.2}``, in metres.
         """
         return level_params(self.level)
 
@@ -105,9 +107,10 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin an episode.
+        """Begin an episode; return the first observation, and ``info``.
 
-        Without a ``seed``, draw one from a random generator. The last given seed determines it.
+        ``seed`` determines everything in the episode that is random. Without it, a seed is drawn
+        from a generator, which the last given seed initialised. ``options`` are ignored.
         """
         self._check_open()
         super().reset(seed=seed)
@@ -116,7 +119,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         return self._observer.look(self.game), {"cell": self._cell()}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Play ``action`` for one time step. The reward is always 0; the episode never ends."""
+        """Play ``action`` for one time step, 0.15 s. The reward is always 0; the episode never ends."""
         self._check_open()
         self.action = _action_list(action)
         self.game.step(self.action)
@@ -126,8 +129,8 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     def render(self) -> NDArray[np.uint8] | None:
         """Return the current picture, (height, width, 3), or show it in the window and return None.
 
-        Without a render mode, warn and return None. If no window can be opened, warn once and show
-        nothing.
+        Without a render mode, warn and return None. In the mode ``human``, if no window can be
+        opened, warn once and show nothing.
 
         Raises:
             TltlError: TLT0730, pygame is missing.
@@ -185,15 +188,16 @@ def make_env(
     params: Mapping[str, float] | None = None,
     **render: Any,
 ) -> TltlEnv:
-    """Make an environment of a level with a spec, by default the spec that the level is made for.
+    """Make an environment of a level with a spec, by default the spec that the level names.
 
-    The arguments are those of :class:`GameEnv` and :class:`TltlEnv`, which also raise their errors.
-    ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.
+    The arguments have the same meaning as in :class:`GameEnv` and :class:`TltlEnv`, and the errors
+    of these classes can occur. ``render`` takes the ``render_mode``, ``render_view`` and
+    ``render_size`` of :class:`GameEnv`.
 
     Raises:
         TltlError: the spec needs something that the level does not supply, see
-            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_capabilities`; TLT0721, ``spec``
-            is None, and the level is made for no spec.
+            :func:`~tltl_runtime.stealth.capabilities.capabilities.check_capabilities`; TLT0721,
+            ``spec`` is None, and the level names no spec.
     """
     game = GameEnv(level, variant, sensors, **render)
     try:
@@ -207,7 +211,7 @@ def make_env(
 
 
 def check_fit(level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
-    """Raise a TltlError if a spec needs something that a level lacks.
+    """Raise a TltlError if a spec needs something that a level lacks, such as a signal.
 
     The error lists everything that is lacking, with the places in the source of ``spec``. ``fspa``
     is the automaton of ``spec``.

@@ -23,10 +23,10 @@ from tltlc.api import Step
 class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
     """A wrapper that records the current episode and changes no observation, reward or info.
 
-    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one. ``player`` is the
-    player's name in the recording. If there is a ``folder``, each finished episode is written into
-    it as ``LEVEL-VARIANT-SEED.episode.npz``. If that file exists, a number follows the seed. A
-    missing folder is created.
+    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around such an environment.
+    ``player`` is the player's name in the recording. If there is a ``folder``, each finished
+    episode is written into it as ``LEVEL-VARIANT-SEED.episode.npz``. If that file exists, the new
+    file's name has a number after the seed. A missing folder is created.
 
     Raises:
         TypeError: ``env`` has no spec, or does not contain a :class:`GameEnv`.
@@ -55,14 +55,16 @@ class RecordEpisode(EpisodeRecorder[Episode], RecordConstructorArgs):
         return self._rows.episode(self._judge, self._player)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin a new episode and discard the previous one."""
+        """Begin a new episode, and drop the recording of the previous one from memory."""
         observation, info = self.env.reset(seed=seed, options=options)
         self._rows = _EpisodeRows(self._game.level, self._game.seed, self._game.snapshot(), self._signals())
         self._over = False
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Take a step in the environment; record it unless the episode was already over.
+        """Take a step in the environment, and record it unless the episode was already over.
+
+        If the step ends the episode and there is a folder, write the recording into it.
 
         Raises:
             RuntimeError: there was no reset before.
@@ -108,7 +110,7 @@ class _EpisodeRows:
         step: Step,
         success: bool,
     ) -> None:
-        """Append a row: an ``action``, and the state of the game and of the spec after it."""
+        """Append a row: an ``action``, and the state of the game and of the spec after this action."""
         self.actions.append(action)
         self.snapshots.append(snapshot)
         self.signals.append(signals)
@@ -117,7 +119,7 @@ class _EpisodeRows:
         self.success = success
 
     def episode(self, judge: TltlEnv, player: str) -> Episode:
-        """Return the episode so far; ``judge`` is the wrapper with its spec."""
+        """Return the episode so far; ``judge`` is the environment wrapper that evaluated the spec in it."""
         fspa, steps, count = judge.task.fspa, self.steps, len(self.steps)
         return Episode(
             level=self.level,

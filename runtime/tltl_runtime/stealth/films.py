@@ -12,14 +12,21 @@ from tltlc.api import Notation
 
 
 class StealthFilms(Films[Episode]):
-    """Draws films with cameras, and of the level's plan. It imports the renderer only when it draws."""
+    """Draws films of episodes, seen by a camera or as a plan (a map from above).
+
+    The renderer is imported only when a film is drawn.
+    """
 
     views = FILM_VIEWS
 
     def frames(
         self, episode: Episode, times: Sequence[float], view: str, size: tuple[int, int], notation: Notation
     ) -> Iterator[Picture]:
-        """Yield a picture for each time, with a strip that shows the automaton's judgement."""
+        """Yield an RGB picture of ``size`` (width, height) for each of ``times``, in seconds since the reset.
+
+        A strip below the view shows the time, the progress, the health, and what remains to be
+        satisfied.
+        """
         from tltl_runtime.stealth.rendering.film import frames
 
         return frames(episode, times, cast(FilmView, view), size, notation)

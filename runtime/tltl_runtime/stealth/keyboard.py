@@ -26,7 +26,7 @@ _IDLE: Final = (0, 0, 0, 0, 0)
 _STILL_WAIT: Final = 0.05
 """Seconds between two reads of the keys while the game stands still."""
 _KEEP_INTERVAL: Final = 33
-"""An unfinished episode is written every 33 decisions, about every five seconds."""
+"""An unfinished episode is written after every 33 time steps, about every five seconds."""
 _FRAME_TIME: Final = 1 / 60
 """The shortest time between two frames, in seconds."""
 
@@ -67,7 +67,7 @@ class KeyboardPlayer(PlaySession[Episode]):
             if self._game.steps % _KEEP_INTERVAL == 0 and not over:
                 self._recordings.keep(self._env.episode)
             keys = self._animate(before, snapshot, hud(snapshot, info, fspa), due)
-            # The game catches up with a delay of up to one decision. A longer delay is dropped.
+            # The game makes up for a delay of up to one time step, and ignores the rest of a longer delay.
             due = max(due + DECISION, monotonic() - DECISION)
         if over:
             keys = self._end(snapshot, info)
@@ -78,7 +78,7 @@ class KeyboardPlayer(PlaySession[Episode]):
         """Draw the motion between two snapshots until the current time step is over.
 
         The step started at ``start``, a time of ``monotonic()``. Draw at least one frame, even if
-        the step is over by then. Return the keys that the person holds at the end.
+        the step is over by then. Return the input at the end of the step.
         """
         while True:
             self._show(interpolate(before, after, min(1.0, (monotonic() - start) / DECISION)), display)
@@ -87,16 +87,19 @@ class KeyboardPlayer(PlaySession[Episode]):
                 return self._keys()
 
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
-        """Show the end screen until the person stops or restarts; return the keys then held."""
+        """Save the episode, and show the end screen until the person stops or restarts.
+
+        Return the input of that moment.
+        """
         episode = self._env.episode
         file = self._save() or ""
         return self._show_still(snapshot, end_screen(hud(snapshot, info, episode.fspa), cause(episode), file))
 
     def _show_still(self, snapshot: Snapshot, display: Hud, begins: bool = False) -> Keys:
-        """Show a still frame until the person stops or restarts; return the keys of that moment.
+        """Show a still frame until the person stops or restarts; return the input of that moment.
 
-        If ``begins``, the episode has not begun: the key of any action also ends the frame, and the
-        returned keys contain no restart.
+        If ``begins``, the episode has not begun yet: a key of any action also ends the frame, and
+        ``restart`` is False in the result.
         """
         view = None
         while True:

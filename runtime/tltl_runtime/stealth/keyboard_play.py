@@ -15,7 +15,10 @@ _SIZE: Final = (640, 400)
 
 
 class StealthKeyboard(Keyboard[Episode]):
-    """Opens a window in which a person plays. It imports pygame and pybullet only then."""
+    """Opens a window in which a person plays.
+
+    The modules pygame and pybullet are imported only when play begins.
+    """
 
     views = VIEWS
     keys = KEYS
@@ -30,7 +33,11 @@ class StealthKeyboard(Keyboard[Episode]):
         crouch: Crouch,
         enough: Callable[[], bool],
     ) -> None:
-        """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true."""
+        """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true.
+
+        ``seed`` is the seed of the first episode, ``view`` the first camera view. With ``crouch``
+        ``toggle``, one press of the crouch key starts crouching, and the next press ends it.
+        """
         from tltl_runtime.game.window import Window
         from tltl_runtime.stealth.keyboard import KeyboardPlayer
         from tltl_runtime.stealth.rendering.render import Renderer

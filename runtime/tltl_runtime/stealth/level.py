@@ -50,9 +50,9 @@ class Switch:
 class Barrier:
     """A barrier, which stays shut until all switches in ``opened_by`` are active.
 
-    If ``opened_by`` is empty, an :class:`Unlock` opens the barrier. A shut ``solid`` barrier stops
-    bodies and sight. A shut ``laser`` stops neither the player nor sight, but takes ``damage``
-    health per second from a player who touches it. Enemies do not walk into lasers.
+    If ``opened_by`` is empty, an :class:`Unlock` opens the barrier. A shut barrier of the kind
+    ``solid`` stops bodies and sight. A shut ``laser`` stops neither the player nor sight, but takes
+    ``damage`` health per second from a player who touches it. Enemies do not walk into lasers.
     """
 
     name: str
@@ -94,8 +94,8 @@ class Mover:
 class EnemyKind:
     """The parameters of a kind of enemy.
 
-    A kind is an asset that levels share: an edit changes all levels that use it. All kinds have the
-    branches patrol, chase, search and return in their behaviour tree; ``branches`` names further
+    A kind is a file that levels share: an edit changes all levels that use it. The behaviour trees
+    of all kinds have the branches patrol, chase, search and return; ``branches`` names further
     ones.
     """
 
@@ -109,7 +109,7 @@ class EnemyKind:
     reaction_time: float
     """Seconds that the player must be in sight before the chase begins."""
     memory_time: float
-    """Seconds for which the enemy knows the player's position after it lost sight of the player."""
+    """Seconds for which the enemy still knows the player's position after it has lost sight of the player."""
     search_time: float
     search_radius: float
     attack_range: float
@@ -155,9 +155,9 @@ def _spec_text(spec: LevelSpec | None) -> str:
 class StealthLevel:
     """One variant of a level.
 
-    ``bounds`` enclose everything; the length of their diagonal is the param ``level_size`` of
-    specs. ``files`` are the files that the level was read from, with their SHA-256, so that a
-    report can show which of them changed.
+    ``bounds`` enclose everything; the length of their diagonal is the parameter ``level_size`` of
+    specs. ``files`` are the names of the files that the level was read from, each with its SHA-256,
+    so that a report can show which of them changed.
     """
 
     json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})
@@ -184,7 +184,10 @@ class StealthLevel:
     A spec may use either name.
     """
     regions: tuple[Region, ...] = ()
-    """The regions that the level names, then a region for each part (``[[use]]``) in it."""
+    """The regions that the level names, then one for each part.
+
+    A part is a group of solids and movers from a file that levels share (``[[use]]``).
+    """
 
     @property
     def game(self) -> Game[Any, Any]:

@@ -37,7 +37,12 @@ class StealthLevelCheck(LevelCheck):
         self.sensed = tuple(_sensed_parts(self._observer))
 
     def diagnostics(self, fspa: Fspa, spec: Spec | None) -> list[Diagnostic]:
-        """Return what a spec needs and the level lacks; if it lacks nothing, what nobody can reach."""
+        """Return diagnostics about what a spec needs and the level lacks.
+
+        If none of them is an error, also return a diagnostic for each entity of the spec that no
+        player can reach. ``spec``, from which ``fspa`` was made, gives the places in the source;
+        None if there is no source.
+        """
         places = SpecPlaces(spec)
         diagnostics = check_capabilities(self._level, fspa, places)
         if not any(diagnostic.severity == "error" for diagnostic in diagnostics):
@@ -45,21 +50,25 @@ class StealthLevelCheck(LevelCheck):
         return diagnostics
 
     def supplied(self, fspa: Fspa) -> tuple[str, ...]:
-        """Return the entities and params that a spec uses, and its signals that are about no entity."""
+        """Return what the level supplies to a spec, as texts.
+
+        These are the entities that the spec uses, its signals without arguments, and its
+        parameters: ``("exit", "health", "level_size = 31.2 m")``.
+        """
         names = list(used_entities(self._level, fspa))
         names += [signal.name for signal in fspa.signals if not signal.arguments]
         names += [f"{name} = {value:.4g} m" for name, value in params_from_level(self._level, fspa).items()]
         return tuple(names)
 
     def picture(self) -> bytes:
-        """Draw the plan of the level, with red where nobody can stand."""
+        """Return the plan of the level (a map from above) as a PNG, with red where nobody can stand."""
         from tltl_runtime.stealth.rendering.plan import draw_level
 
         return draw_level(self._level, self._reach)
 
 
 def _sensed_parts(observer: Observer) -> Iterator[SensedPart]:
-    """Yield the parts of the observation that depend on the level, with their sizes."""
+    """Yield the parts of the observation that depend on the level, with their shapes and names."""
     sensors = observer.sensors
     names = {
         "entities": sensors.entities,

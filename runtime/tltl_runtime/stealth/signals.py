@@ -26,7 +26,8 @@ AXES: Final = {"position.x": 0, "position.y": 1, "position.z": 2}
 class LevelSignal:
     """A signal of a level.
 
-    ``base`` is its name without its ``arguments``. ``read`` returns its value in a simulation.
+    ``base`` is its name without its ``arguments``: ``open(door)`` has the base ``open`` and the
+    arguments ``("door",)``. ``read`` returns the value of the signal in a simulation.
     """
 
     base: str
@@ -38,7 +39,8 @@ class Signals(Mapping[str, float]):
     """The current signals of a simulation, by name.
 
     - Of the player and the game: ``health stamina time position.x position.y position.z visible
-      seen crouching grounded``.
+      seen crouching grounded``. ``visible`` says that an enemy sees the player, ``seen`` that an
+      enemy has noticed the player and still knows the player's position.
     - Of each entity: ``distance(ENTITY) bearing(ENTITY) line_of_sight(ENTITY)``.
     - Of each switch ``active(SWITCH)``, and of each barrier ``open(BARRIER)``.
     - The aliases that the level declares.
@@ -94,7 +96,10 @@ def level_signals(level: StealthLevel) -> dict[str, LevelSignal]:
 
 
 def signal_list(level: StealthLevel) -> str:
-    """Return one text that lists the names of a level's signals, for messages."""
+    """Return a text that lists the names of a level's signals, for messages.
+
+    An example is ```health`, `time`; `active(…)` of s1, s2``.
+    """
     aliases = dict(level.signals)
     plain = [name for name, signal in level_signals(level).items() if name in aliases or not signal.arguments]
     plain_names = ", ".join(f"`{name}`" for name in plain)
@@ -152,9 +157,9 @@ def _mover_position(index: int) -> _PositionReader:
 
 
 def _bearing(game: Simulation, place: Point) -> float:
-    """Return the angle from the player's yaw to a place, in [-pi, pi).
+    """Return the angle from the direction in which the player looks to a place, in [-pi, pi).
 
-    It is 0 if the player stands at the place.
+    The angle is positive to the left. It is 0 if the player stands at the place.
     """
     player = game.world.player
     x, y = place[0] - player.position[0], place[1] - player.position[1]

@@ -21,9 +21,9 @@ from tltl_runtime.stealth.world.player import DECISION
 class Simulation:
     """The simulation of a level: call ``reset``, then ``step`` repeatedly.
 
-    ``health`` is in [0, 1], ``time`` in seconds since the reset. ``active`` and ``open`` say for
-    each switch whether it is active, and for each barrier whether it is open, in the order of the
-    level. The simulation continues at zero health: the spec decides when an episode is over.
+    ``health`` is in [0, 1], ``time`` in seconds since the reset. ``active`` has a bool for each
+    switch, and ``open`` a bool for each barrier, in the order of the level. The simulation
+    continues at zero health: the spec decides when an episode is over.
 
     Raises:
         WorldError: the start leaves the player no room, or the bodies in the physics differ from
@@ -81,7 +81,7 @@ class Simulation:
         return Signals(self)
 
     def snapshot(self) -> Snapshot:
-        """Return the visible state of the game."""
+        """Return the visible state of the game at this moment."""
         enemies = self.enemies
         return Snapshot(
             time=self.time,
@@ -122,7 +122,7 @@ class Simulation:
         self.enemies.set_open(barrier, True)
 
     def _burns(self) -> float:
-        """Return the health per second that lasers take from the player where it stands."""
+        """Return the health per second that shut lasers take from the player at its current position."""
         lasers = [self.level.barriers[index] for index in self._lasers if not self.open[index]]
         if not lasers:
             return 0.0

@@ -1,7 +1,7 @@
 """The stealth game as a :class:`~tltl_runtime.game.game.Game`.
 
-This module imports the modules that play or draw only when it needs them. So it can read levels and
-recordings without pybullet.
+The modules that play or draw are imported only when they are needed. So levels and recordings can
+be read without pybullet.
 """
 
 from __future__ import annotations
@@ -48,14 +48,18 @@ if TYPE_CHECKING:
 
 
 class StealthLevelFiles(LevelFiles[StealthLevel]):
-    """Finds and reads the ``.toml`` files of levels."""
+    """Finds and reads the ``.toml`` files of levels.
+
+    In all methods, ``name`` is the name of a shipped level or the path of a file. A variant of a
+    level may have overlays: files with small changes to what the level uses.
+    """
 
     def names(self) -> tuple[str, ...]:
         """Return the names of the levels that come with the package."""
         return file.level_names()
 
     def path(self, name: str) -> Path:
-        """Return the path of a level's file."""
+        """Return the path of a level's file, which may not exist."""
         return file.level_path(name)
 
     def variants(self, name: str) -> tuple[str, ...]:
@@ -63,7 +67,7 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         return file.variants(name)
 
     def overlays(self, name: str) -> tuple[str, ...]:
-        """Return the names of the overlays beside a level's file and in the package."""
+        """Return the names of the overlays in the folder ``overlays`` beside a level's file and in the package."""
         return file.shared_names(file.level_path(name), "overlays")
 
     def load_with_changes(self, name: str, variant: Variant) -> tuple[StealthLevel, tuple[str, ...]]:
@@ -71,18 +75,22 @@ class StealthLevelFiles(LevelFiles[StealthLevel]):
         return file.level_and_changes(name, variant)
 
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
-        """Yield the files that a level depends on: its own, assets, overlays, and its spec."""
+        """Yield the files that a level depends on: its own, assets (shared files), overlays, and its spec.
+
+        Also yield each path where a new file would be used instead of an existing one.
+        """
         return level_dependencies(file.level_path(name), variant)
 
     def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
         """Yield the paths at which one of a level's files may be.
 
-        ``file_name`` is the name of the file in the ``files`` of the level.
+        ``file_name`` is the name of the file as the level lists it in ``files``, for example
+        ``assets/guard.toml``.
         """
         return file_candidates(file.level_path(name), variant, file_name)
 
     def description(self, name: str, variant: Variant) -> str:
-        """Return what the overlays of a variant change or, without overlays, what the level is about."""
+        """Return what the overlays of a variant change. If it has no overlays, return what the level is about."""
         level, changes = file.level_and_changes(name, variant)
         return " ".join(changes) or level.doc
 
@@ -103,11 +111,11 @@ class StealthGame(Game[StealthLevel, Episode]):
         return file.load_level(name, variant)
 
     def level_hash(self, level: StealthLevel) -> str:
-        """Return the hash of the content of a level."""
+        """Return the SHA-256, in hexadecimal, of the part of a level that can change an episode."""
         return level_hash(level)
 
     def params(self, level: StealthLevel) -> dict[str, float]:
-        """Return the values that a level defines for params of specs, in SI units, by name."""
+        """Return the values that a level defines for parameters of specs, in SI units, by name."""
         return params(level)
 
     def check_fit(self, level: StealthLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
@@ -120,13 +128,13 @@ class StealthGame(Game[StealthLevel, Episode]):
         check_fit(level, fspa, spec)
 
     def level_check(self, name: str, variant: str | Variant, sensors: SensorChoice | None) -> LevelCheck:
-        """Read a level, and search what a player can reach in it."""
+        """Read a level, and compute what a player can reach in it; the result checks specs against the level."""
         from tltl_runtime.stealth.level_check import StealthLevelCheck
 
         return StealthLevelCheck(name, variant, sensors)
 
     def choose_sensors(self, level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
-        """Return the sensors of an agent: ``choice`` with the level's own for what it leaves out."""
+        """Return the sensors of an agent: those in ``choice``, and the level's own for the rest."""
         return choose_sensors(level, choice)
 
     def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
@@ -134,7 +142,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return missing_sensors(level, sensors)
 
     def landmarks(self, level: StealthLevel) -> dict[str, Point]:
-        """Return the positions of switches, exits and barriers, by name."""
+        """Return the positions of the switches, exits and barriers, by name."""
         return fixed_places(level)
 
     def solids(self, level: StealthLevel) -> dict[str, Box]:
@@ -146,19 +154,25 @@ class StealthGame(Game[StealthLevel, Episode]):
         return {barrier.name: barrier.box for barrier in level.barriers}
 
     def unreachable_entities(self, level: StealthLevel, fspa: Fspa) -> list[UnreachableEntity]:
-        """Return each entity of a spec that no player can reach; none if the level is too large to search."""
+        """Return the entities of a spec that no player can reach.
+
+        Return an empty list if the level is too large to search.
+        """
         return unreachable_entities(level, fspa)
 
     def is_infeasible(self, level: StealthLevel, fspa: Fspa) -> bool:
-        """Return whether no player can meet the spec; False if that is unknown."""
+        """Return whether it is certain that no player can meet the spec."""
         return is_infeasible(level, fspa)
 
     def play_warnings(self, level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
-        """Return a warning for each entity of a spec that no player can reach."""
+        """Return a warning for each entity of a spec that no player can reach.
+
+        If the level is too large to search, return a warning that says so.
+        """
         return reach_warnings(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return TLT0806 if ``error`` says that the player has left the bounds, else None."""
+        """Return TLT0806 if ``error`` says that the player has left the level's bounds, else None."""
         return player_fault(error)
 
     def make_env(
@@ -212,13 +226,16 @@ class StealthGame(Game[StealthLevel, Episode]):
         return to_bytes(episode)
 
     def check_replay(self, episode: Episode) -> tuple[Diagnostic, ...]:
-        """Play the actions of an episode again; return TLT0824 if the episodes differ in any bit."""
+        """Play the actions of an episode again, and compare the two episodes.
+
+        Return TLT0824 if they differ in any bit, else an empty tuple.
+        """
         from tltl_runtime.stealth.recordings.replay_check import check_replay
 
         return check_replay(episode)
 
     def figures(self, episode: Episode) -> GameFigures:
-        """Return the health at the end of an episode, and for how long enemies saw the player."""
+        """Return the health at the end of an episode, and the number of steps in which enemies saw the player."""
         return figures(episode)
 
     def cause(self, episode: Episode) -> Cause:

@@ -1,4 +1,4 @@
-"""Check what a level supplies to a spec, and what a player can reach in the level.
+"""Check whether a level supplies what a spec uses, and what a player can reach in the level.
 
-`capabilities` checks what a spec uses, and `feasible` what can be reached.
+`capabilities` does the first check, and `feasible` the second.
 """

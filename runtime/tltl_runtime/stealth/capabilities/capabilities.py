@@ -31,8 +31,8 @@ def check_capabilities(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> l
     - TLT0811, error: the level has no such signal.
     - TLT0812: the level's signal has another type than the spec declares (error), or values outside
       the declared range (warning).
-    - TLT0617, error: the spec's clock differs from the game's.
-    - TLT0307, error: the level's value of a param is outside the range that the spec declares.
+    - TLT0617, error: the spec's clock (its sampling interval) is not the game's time step.
+    - TLT0307, error: the level's value of a parameter is outside the range that the spec declares.
     - TLT0813, warning: the spec names another level.
     """
     diagnostics = [*_check_signals(level, fspa, places)]
@@ -58,7 +58,10 @@ def check_capabilities(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> l
 
 
 def params_from_level(level: StealthLevel, fspa: Fspa) -> dict[str, float]:
-    """Return the values that the level defines for the spec's params, in SI units, by name."""
+    """Return the values that the level defines for the spec's parameters, in SI units, by name.
+
+    Parameters that the level does not define are left out.
+    """
     declared = {param.name for param in fspa.params}
     return {name: value for name, value in params(level).items() if name in declared}
 

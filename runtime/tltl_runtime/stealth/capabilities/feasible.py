@@ -17,7 +17,7 @@ from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.api import Diagnostic, Fspa, Severity, TltlError, expressions, fileio, ranges, replace
 
 _LIFT_STEP: Final = 0.25
-"""With each try, :class:`_ObstacleSearch` lets the player jump this much higher, in metres."""
+"""In each further try, :class:`_ObstacleSearch` lets the player jump this much higher, in metres."""
 
 
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
@@ -30,9 +30,10 @@ def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlace
 
 
 def unreachable_entities(level: StealthLevel, fspa: Fspa) -> list[UnreachableEntity]:
-    """Return each entity of a spec that no player can reach; none if the level is too large to search.
+    """Return the entities of a spec that no player can reach.
 
-    The diagnostics are those of :func:`check_reach`.
+    Return an empty list if the level is too large to search. The diagnostics are those of
+    :func:`check_reach`.
     """
     try:
         return _unreachable_entities(level, compute_reach(level), fspa, SpecPlaces(None))
@@ -87,7 +88,7 @@ def reach_warnings(level: StealthLevel, fspa: Fspa) -> list[Diagnostic]:
 
 
 def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
-    """Return whether no player can meet the spec; :func:`reach_warnings` says why.
+    """Return whether it is certain that no player can meet the spec; :func:`reach_warnings` says why.
 
     Return False if the level is too large to search.
     """
@@ -95,9 +96,9 @@ def is_infeasible(level: StealthLevel, fspa: Fspa) -> bool:
 
 
 def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozenset[int]:
-    """Return the indices of the atoms that cannot hold at any place that a player can reach.
+    """Return the indices of atoms that hold at no place that a player can reach.
 
-    The result may miss some of these atoms, but contains no others.
+    The result contains only such atoms, but perhaps not all of them.
     """
     available = available_signals(level)
     box: dict[ranges.Variable, ranges.Interval] = {}
@@ -121,7 +122,7 @@ def _ends(low: float | None, high: float | None) -> ranges.Interval:
 
 
 def _upper_bound(expression: expressions.Expression, box: Mapping[ranges.Variable, ranges.Interval]) -> float:
-    """Return an upper bound of an expression whose variables are in the intervals of ``box``.
+    """Return an upper bound of an expression, given an interval for each of its variables in ``box``.
 
     Return infinity if no bound is known.
     """
@@ -170,9 +171,10 @@ class _ObstacleSearch:
         self._budget = Budget(fileio.limits.WORK["cells of reachable space"])
 
     def describe(self, entity: str) -> tuple[str, tuple[str, ...]]:
-        """Describe what blocks the way to ``entity``, which is unreachable; also return what it names.
+        """Return a text about what blocks the way to ``entity``, and the names of things in the text.
 
-        If no single obstacle does, or if the search is too long, say how near the player gets.
+        No player can reach ``entity``. If no single obstacle blocks the way, or if the search takes
+        too long, the text says how near the player gets, and there are no names.
         """
         nearest = f"the player gets no nearer to it than {self._reach.distances[entity]:.1f} m"
         try:
@@ -181,9 +183,10 @@ class _ObstacleSearch:
             return nearest, ()
 
     def _describe_barrier(self, entity: str) -> tuple[str, tuple[str, ...]] | None:
-        """Describe the barrier that blocks the way to ``entity``, and why it stays shut.
+        """Return a text about the barrier that blocks the way to ``entity``, and why it stays shut.
 
-        Also return the names in the description. None if no barrier blocks the way.
+        Also return the names of the barrier and of its switch. Return None if no single barrier
+        blocks the way.
         """
         shut = [barrier for barrier in self._level.barriers if barrier.name not in self._reach.barriers]
         unlocked_by = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
@@ -197,9 +200,9 @@ class _ObstacleSearch:
         return None
 
     def _describe_high_solid(self, entity: str) -> tuple[str, tuple[str, ...]] | None:
-        """Describe the solid that blocks the way to ``entity`` because it is too high to jump onto.
+        """Return a text about the solid that blocks the way to ``entity`` because it is too high to jump onto.
 
-        Also return the names in the description. The search tries ever higher jumps. None if there
+        Also return the name of the solid. The search tries ever higher jumps. Return None if there
         is no such solid.
         """
         lift = normal = highest_lift(PlayerKind())

@@ -52,7 +52,7 @@ It follows from the physics: contact with an edge counts as ground if its normal
 more than 30 degrees.
 """
 _EDGE_DEPTH: Final = 0.16
-"""The height of a top above the feet when the body touches the top's edge, in metres."""
+"""The feet may be this far below the top of a box while the body touches the top's edge, in metres."""
 _TOUCH: Final = 0.02
 _THROW: Final = 3.0
 _PHYSICS_STEP: Final = 1 / 60
@@ -93,6 +93,7 @@ def compute_reach(
 
     ``lift`` says how much higher the player can get in one jump, in metres, by default
     :func:`highest_lift`. ``without`` names solids and barriers that are removed before the search.
+    ``budget`` limits how much space the search examines.
 
     Raises:
         TltlError: TLT0006, ``budget`` is None, and the level is too large or too complex to search.
@@ -145,8 +146,8 @@ def _compute_reach(level: StealthLevel, lift: float | None, without: Collection[
 def highest_lift(kind: PlayerKind) -> float:
     """Return how much higher than the present ground a player can get in one jump, in metres.
 
-    It is the height of the jump plus the radius of the round end of the player's body, a capsule
-    that slides up an edge.
+    The result is the height of the jump plus the radius of the player's body. The body is a
+    capsule, whose round lower end slides up an edge.
     """
     return highest_jump(kind) + kind.radius
 
@@ -163,7 +164,8 @@ def highest_jump(kind: PlayerKind) -> float:
 class _Search:
     """A search for all places of a level that a player can reach.
 
-    Its state is the ground reached so far, by height, and the space where the feet can be.
+    Its state has two parts: the ground reached so far, as a mask of cells for each height, and the
+    space in which the player's feet can be.
     """
 
     def __init__(
@@ -230,9 +232,10 @@ class _Search:
         return self._space
 
     def _walk(self, free: Space, height: float, fresh: CellMask) -> None:
-        """Add to the newly reached ground ``fresh`` all ground that can be walked to from there.
+        """Add to ``fresh`` all further ground that can be walked to from it.
 
-        ``fresh`` is a mask of cells, modified in place. All this ground is at ``height``.
+        ``fresh`` is a mask of cells of newly reached ground; it is modified in place. All this
+        ground is at ``height``.
         """
         same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
         same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
@@ -240,11 +243,11 @@ class _Search:
         self._ground[height] |= fresh
 
     def _flight(self, free: Space, height: float, ground: CellMask) -> tuple[tuple[slice, slice], Space]:
-        """Return the space that a jump or a fall from ``ground`` at ``height`` can reach.
+        """Return the part of ``free`` that a jump or a fall from ``ground`` at ``height`` can reach.
 
-        It is a part of ``free``. The result is a window of rows and columns, and a mask of the
-        space in this window. The mask has the slabs from the lowest one up to the greatest height
-        of a jump.
+        The result is a window of rows and columns, and a mask of the space in this window. The
+        first axis of the mask is the height, in slabs (intervals of heights): from the lowest slab
+        up to the greatest height of a jump.
         """
         grid = self.grid
         times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self._lift + _ROUNDING]])
@@ -261,7 +264,7 @@ class _Search:
     def _time(self, drop: float) -> float:
         """Return the longest time, in seconds, of a jump that ends ``drop`` metres below its start.
 
-        The jump first lifts the feet by the greatest lift of this search.
+        The jump first lifts the feet by this search's ``lift``.
         """
         speed, gravity, fastest = sqrt(2 * self._kind.gravity * self._lift), self._kind.gravity, self._kind.fall_speed
         until_fastest = (speed + fastest) / gravity
@@ -285,7 +288,10 @@ class _Top:
 
 
 def _mover_top(mover: Mover, gravity: float) -> _Top:
-    """Return where a player can stand on a mover, for all positions of the mover on its path."""
+    """Return where a player can stand on a mover (a moving box), over all its positions on its path.
+
+    ``gravity`` limits how high the mover throws the player.
+    """
     lows = [min(point[axis] for point in mover.path) - mover.size[axis] / 2 for axis in range(3)]
     highs = [max(point[axis] for point in mover.path) + mover.size[axis] / 2 for axis in range(3)]
     swept = Box((lows[0], lows[1], lows[2]), (highs[0], highs[1], highs[2]))

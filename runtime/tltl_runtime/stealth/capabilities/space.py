@@ -2,9 +2,9 @@
 
 The ground plan is cut into square cells, and the height into slabs. A slab ends at every height
 where an obstacle begins or ceases to be in the way, so heights are exact. A box of space is one
-cell in one slab. It counts as free unless the body certainly fits nowhere in it, so no free space
-is left out. The body is that of a crouched player, 5 cm narrower than in the game, with two round
-ends.
+cell in one slab. It counts as free if the body may fit anywhere in it, so the search finds all
+space that is really free. The body is that of a crouched player, 5 cm narrower than in the game,
+with two round ends.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ class SpaceBudgetError(Exception):
 
 
 class Budget:
-    """Counts the cells of space that a search examines.
+    """Counts the cells of space that a search examines, up to a limit.
 
-    :meth:`spend` raises SpaceBudgetError as soon as there are more than ``most``.
+    :meth:`spend` raises SpaceBudgetError as soon as the count exceeds ``most``.
     """
 
     def __init__(self, most: int) -> None:
@@ -160,8 +160,8 @@ class SpaceGrid:
     def _blocked_heights(self, box: Box, shorter: float) -> tuple[float, float]:
         """Return the least and the greatest height of the feet at which ``box`` blocks the body.
 
-        The ends of the body are round. At the distance of the box from the body's axis, each end is
-        shorter by ``shorter`` metres than at the axis.
+        The body has round ends, so it is shorter at some distance from its axis than at the axis.
+        At the distance of the box, each end is ``shorter`` metres shorter.
         """
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
@@ -175,8 +175,8 @@ def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], v
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
     """Return the part of ``free`` that is connected with ``seeds`` through faces of its boxes.
 
-    Each round of the search spreads along whole lines of each axis in turn, so even a way around
-    many corners takes few rounds.
+    ``seeds`` and ``free`` are masks. Each round of the search spreads along whole lines of each
+    axis in turn, so even a way around many corners takes few rounds.
     """
     budget.spend(3 * free.size)
     reached: Space = seeds & free
@@ -193,9 +193,10 @@ def flood(free: Space, seeds: Space, budget: Budget) -> Space:
 
 
 def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
-    """Number the runs of free boxes along the last axis; a run is a row without a gap.
+    """Number the runs along the last axis of ``free``; a run is a sequence of free boxes without a gap.
 
-    Return an array that has the number of its run for each free box, and the count of numbers.
+    Return an array of the shape of ``free`` with the number of the run of each free box, and the
+    count of numbers. Boxes that are not free have meaningless numbers.
     """
     starts = ~free
     starts[..., 0] = True
@@ -206,8 +207,8 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
 def distances(mask: CellMask, most: int) -> NDArray[np.float64]:
     """Return the distance, in cells, from each cell to the nearest true cell of ``mask``.
 
-    It is the distance between the nearest points of the two cells. The result is infinite where the
-    distance is ``most`` or more.
+    A distance is measured between the nearest points of the two cells. It is infinite where it
+    would be ``most`` or more.
     """
     rows, columns = mask.shape
     places = np.arange(columns, dtype=np.float64)

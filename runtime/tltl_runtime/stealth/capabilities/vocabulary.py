@@ -1,4 +1,4 @@
-"""The vocabulary of specs for a level: signals with types and ranges, and params."""
+"""What specs can use of a level: its signals, with types and ranges, and values of parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def available_signals(level: StealthLevel) -> dict[str, AvailableSignal]:
 
 
 def params(level: StealthLevel) -> dict[str, float]:
-    """Return the values that a level defines for params of specs, by name.
+    """Return the values that a level defines for parameters of specs, by name.
 
     There is one, ``level_size``: the length of the diagonal of the level's bounds, in metres.
     """
