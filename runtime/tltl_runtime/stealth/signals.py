@@ -98,7 +98,7 @@ def level_signals(level: StealthLevel) -> dict[str, LevelSignal]:
 def signal_list(level: StealthLevel) -> str:
     """Return a text that lists the names of a level's signals, for messages.
 
-    An example is ```health`, `time`; `active(…)` of s1, s2``.
+    An example is "`health`, `time`; `active(…)` of s1, s2".
     """
     aliases = dict(level.signals)
     plain = [name for name, signal in level_signals(level).items() if name in aliases or not signal.arguments]

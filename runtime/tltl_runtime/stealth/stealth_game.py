@@ -235,7 +235,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return check_replay(episode)
 
     def figures(self, episode: Episode) -> GameFigures:
-        """Return the health at the end of an episode, and the number of steps in which enemies saw the player."""
+        """Return the health at the end of an episode, and at how many moments an enemy saw the player."""
         return figures(episode)
 
     def cause(self, episode: Episode) -> Cause:

@@ -1,1 +1,1 @@
-"""The enemies: what they see, decide and do. Begin with `enemy`."""
+"""The enemies: what they see, what they decide and what they do. Begin with `enemy`."""

@@ -20,7 +20,7 @@ TreeNode = Callable[[Any], int]
 
 
 def selector(*children: TreeNode) -> TreeNode:
-    """Make a node that runs its children from the left, at each tick, until one does not fail.
+    """Make a node that runs its children in order, at each tick, until one of them does not fail.
 
     The node's status is that of this child; the node fails if all children fail.
     """
@@ -36,7 +36,7 @@ def selector(*children: TreeNode) -> TreeNode:
 
 
 def sequence(*children: TreeNode) -> TreeNode:
-    """Make a node that runs its children from the left, at each tick, as long as they succeed.
+    """Make a node that runs its children in order, at each tick, as long as they succeed.
 
     The node's status is that of the first child that does not succeed. The node succeeds if all
     children succeed.
@@ -53,7 +53,7 @@ def sequence(*children: TreeNode) -> TreeNode:
 
 
 def condition(test: Callable[[Any], bool]) -> TreeNode:
-    """Make a node that succeeds if ``test`` holds for the actor, else fails."""
+    """Make a node that succeeds at a tick if ``test`` holds for the actor, else fails."""
 
     def tick(actor: Any) -> int:
         return SUCCESS if test(actor) else FAILURE

@@ -1,7 +1,7 @@
 """The branches of the enemies' behaviour tree.
 
-All enemies have chase, search, return and patrol; some have optional branches as well. A branch
-only sets where its enemy, the *guard*, goes. The guard moves after the tick of the tree.
+All enemies have the branches chase, search, return and patrol; some have optional branches as well.
+A branch only sets the goal of its enemy, the *guard*. The guard moves after the tick of the tree.
 """
 
 from __future__ import annotations
@@ -27,8 +27,7 @@ So a player who walks away stays in reach.
 class Branch:
     """A branch of the enemies' behaviour tree.
 
-    At each tick of the tree, some branches can run; of these, the one with the lowest ``rank``
-    does.
+    At each tick, the tree runs the branch with the lowest ``rank`` among those that can run.
     """
 
     name: str
@@ -44,8 +43,8 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], TreeNode]], Callable[[], TreeNode]]:
     """Return a decorator that registers a branch of the enemies' behaviour tree.
 
-    The decorated function must make the node of the branch. ``rank`` and ``added`` are those of
-    :class:`Branch`. The decorator raises ValueError if the name is taken.
+    The decorated function must make the branch's node of the tree. ``rank`` and ``added`` are those
+    of :class:`Branch`. The decorator raises ValueError if the name is taken.
     """
 
     def register(make: Callable[[], TreeNode]) -> Callable[[], TreeNode]:
@@ -63,7 +62,7 @@ def added_branches() -> tuple[str, ...]:
 
 
 def tree(branches: tuple[str, ...]) -> TreeNode:
-    """Build a tree from the branches that all enemies have and the optional ``branches``.
+    """Build a behaviour tree from the branches that all enemies have and the optional ``branches``.
 
     Raises ValueError if ``branches`` contains a name that is not an optional branch.
     """
@@ -76,7 +75,7 @@ def tree(branches: tuple[str, ...]) -> TreeNode:
 
 @branch("chase", rank=10)
 def chase() -> TreeNode:
-    """Make a node that runs to the player while the guard knows where the player is.
+    """Make a node that runs to the player while the enemy (the guard) knows where the player is.
 
     The guard stops within its attack range.
     """
@@ -100,7 +99,10 @@ def chase() -> TreeNode:
 
 @branch("search", rank=20)
 def search() -> TreeNode:
-    """Make a node that goes where the player was last seen, and looks around there for a while."""
+    """Make a node for an enemy that has lost the player.
+
+    The enemy goes where it last saw the player, and looks around there for a while.
+    """
 
     def lost(guard: EnemyGuard) -> bool:
         return guard.search_left > 0.0
@@ -132,7 +134,7 @@ def search() -> TreeNode:
 
 @branch("return", rank=40)
 def return_to_route() -> TreeNode:
-    """Make a node that walks back to the nearest point of the guard's route."""
+    """Make a node that walks back to the nearest point of the enemy's route."""
 
     def is_off(guard: EnemyGuard) -> bool:
         return guard.is_off_route
@@ -150,10 +152,10 @@ def return_to_route() -> TreeNode:
 
 @branch("check_gaps", rank=50, added=True)
 def check_gaps() -> TreeNode:
-    """Make a node that runs to a narrow place off the route, after each leg of the guard's patrol.
+    """Make a node that runs to a narrow place off the route, after each leg of the enemy's patrol.
 
     :meth:`~tltl_runtime.stealth.enemies.enemy.EnemyGuard.next_gap` chooses the place. The speed is
-    the mean of the speeds of a walk and of a chase: at walking speed, the guard would leave its
+    the mean of the walking speed and the chasing speed: at walking speed, the enemy would leave its
     route unwatched for too long.
     """
 
@@ -173,7 +175,7 @@ def check_gaps() -> TreeNode:
 
 @branch("patrol", rank=60)
 def patrol() -> TreeNode:
-    """Make a node that walks the guard's route in a loop."""
+    """Make a node that walks the enemy's route in a loop."""
 
     def walk(guard: EnemyGuard) -> bool:
         guard.mode = "patrol"

@@ -66,7 +66,7 @@ class Enemies:
         self._standing = 0
 
     def reset(self, rng: np.random.Generator) -> None:
-        """Put every enemy at its start and shut all barriers; ``rng`` is the random source."""
+        """Put every enemy at its start and shut all barriers; ``rng`` gives the enemies random numbers."""
         self._shut = set(range(len(self.level.barriers)))
         floor = self._update_floor()
         self.guards = tuple(EnemyGuard(enemy, floor, rng) for enemy in self.level.enemies)
@@ -88,7 +88,7 @@ class Enemies:
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
         """Advance all enemies by ``dt`` seconds.
 
-        ``movers`` are the current boxes of the level's movers, which block sight.
+        ``movers`` are the current boxes of the level's movers (moving boxes), which block sight.
         """
         self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
@@ -107,7 +107,7 @@ class Enemies:
 
     @property
     def modes(self) -> tuple[EnemyMode, ...]:
-        """The enemies' modes, such as ``patrol`` or ``chase``."""
+        """The enemies' modes: ``patrol``, ``chase``, ``search`` or ``return``."""
         return tuple(guard.mode for guard in self.guards)
 
     @property
@@ -195,8 +195,8 @@ class EnemyGuard:
     def state(self) -> tuple[object, ...]:
         """The guard's pose and current task.
 
-        Guards in equal states move equally while they see no player. Exceptions are guards that
-        search or that have optional branches, because these draw random numbers.
+        Two guards in equal states move equally while they see no player. Guards that search or have
+        optional branches are exceptions, because they draw random numbers.
         """
         return (self.x, self.y, self.yaw, self.mode, self.leg, self.is_off_route, self.search_left > 0.0)
 
@@ -227,14 +227,14 @@ class EnemyGuard:
         return self._next_waypoint() == (self.x, self.y)
 
     def nearest_leg(self) -> int:
-        """Return the index of the point of the guard's route that is nearest to the guard."""
+        """Return the index of the point of the guard's route that is nearest to the guard, as a straight line."""
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:
-        """Pick a narrow place off the route, at random among the three nearest unvisited ones.
+        """Pick a gap, a narrow place off the route: at random, one of the three nearest unvisited gaps.
 
-        When all have been visited, all count as unvisited again. Return None if the floor has no
-        such place.
+        When all gaps have been visited, all count as unvisited again. Return None if the floor has
+        no gap.
         """
         if self._gaps_of is not self.floor:
             self._gaps_of = self.floor
@@ -261,7 +261,8 @@ class EnemyGuard:
     def _look(self, player: PlayerView, boxes: Sequence[Corners]) -> None:
         """Update what the guard sees and knows, and whether the player is in reach.
 
-        A guard that knows the player's position turns its head: it sees in all directions.
+        ``boxes`` block sight. A guard that knows the player's position turns its head: it sees in
+        all directions.
         """
         dt, kind = self.dt, self.kind
         px, py, pz = player.position
@@ -306,7 +307,8 @@ class EnemyGuard:
     def _move(self, dt: float) -> None:
         """Walk towards the goal for ``dt`` seconds, around corners.
 
-        First turn towards the way. If it is still more than 45 degrees to the side, do not walk.
+        First turn towards the next point of the path. If this point is then still more than 45
+        degrees to the side, do not walk.
         """
         left = self._speed * dt
         turned = False
@@ -335,7 +337,7 @@ class EnemyGuard:
                 self._turn(atan2(y - self.y, x - self.x), dt)
 
     def _turn(self, yaw: float, dt: float) -> float:
-        """Turn towards ``yaw`` for ``dt`` seconds; return the angle that is left, in radians."""
+        """Turn towards ``yaw`` for ``dt`` seconds; return the angle that is still missing, in radians."""
         missing = remainder(yaw - self.yaw, 2 * pi)
         most = self.kind.turn_speed * dt
         turn = min(max(missing, -most), most)

@@ -1,6 +1,7 @@
-"""Arrays over the cells of a floor that enemies walk on.
+"""Functions that compute arrays over the cells of a floor that enemies walk on.
 
-They tell neighbours, first moves of shortest paths, nearest cells, and narrow places.
+The arrays say which cells are neighbours, how shortest paths begin, which cells are nearest, and
+where the floor is narrow.
 """
 
 from __future__ import annotations
@@ -25,8 +26,9 @@ _NO_PATH: Final = 255
 def neighbours(number: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the cell to which each of the 8 moves leads from each cell, int64 [8, cells].
 
-    ``number`` [rows, columns] numbers the cells row by row; it is -1 where there is no cell. For a
-    move that is impossible, the result is ``cells``, one more than the greatest number.
+    ``number`` [rows, columns] numbers the cells row by row; it is -1 where there is no cell. The
+    result is the number of a cell, or, for a move that is impossible, ``cells`` (one more than the
+    greatest number).
     """
     rows, columns = np.nonzero(number >= 0)
     padded = np.pad(number, 1, constant_values=-1)
@@ -77,8 +79,9 @@ def _unpack_bits(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
 def nearest_numbers(number: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return for each cell the number of the nearest numbered cell, int64 [rows, columns].
 
-    In ``number`` [rows, columns], -1 marks cells without a number. Numbers spread by one cell per
-    round, straight before diagonal, so the result is approximate.
+    In ``number`` [rows, columns], -1 marks cells without a number. At least one cell must have a
+    number. Numbers spread by one cell per round, straight before diagonal, so the result is
+    approximate.
     """
     number = number.copy()
     while (number < 0).any():

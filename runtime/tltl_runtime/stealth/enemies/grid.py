@@ -2,9 +2,10 @@
 
 The floor is cut into cells of 0.25 m. A cell is walkable if its centre lies outside every obstacle
 grown by the enemies' radius on each side. A grown obstacle is at least 0.7 m wide, so no step to a
-neighbouring cell can jump over it: a step that crosses the obstacle has an end inside it or, if it
-is diagonal, a cell beside it. Therefore a step between walkable neighbours is free along its whole
-length, provided that a diagonal step passes between two walkable cells.
+neighbouring cell can jump over it. A straight step that crosses an obstacle begins or ends in a
+cell that is not walkable. So does a diagonal step, or it passes between two cells of which one is
+not walkable. Therefore a step between walkable neighbours is free along its whole length, provided
+that a diagonal step passes between two walkable cells.
 
 :class:`Grid` computes the next steps from all cells to a goal when the goal is first needed, for
 512 goals at once, with one bit per goal. This takes 10 to 100 ms. A cache of at most 64 MB per
@@ -33,7 +34,7 @@ RADIUS: Final = 0.35
 """The radius of an enemy, including the distance that it keeps from walls, in metres."""
 HEIGHT: Final = 1.8
 STEP: Final = 0.1
-"""Boxes that are no higher than this do not stop enemies, in metres."""
+"""Boxes whose tops are at most at this height, in metres, do not stop enemies."""
 NARROW: Final = 2.0
 """A passage that is at most this wide, in metres, is a gap."""
 GAP_SPACING: Final = 2.0
@@ -47,7 +48,7 @@ _TOUCH: Final = 1e-6
 
 @lru_cache(maxsize=16)
 def grid_of(level: StealthLevel) -> Grid:
-    """Return the grid of a level, cached per process."""
+    """Return the grid of a level: its floors, and paths on them. It is cached per process."""
     return Grid(level)
 
 
@@ -66,7 +67,7 @@ class Grid:
         self._steps_to_goals: OrderedDict[tuple[frozenset[int], int], NDArray[np.uint8]] = OrderedDict()
 
     def floor(self, shut: Collection[int]) -> Floor:
-        """Return the floor while the barriers with these indices are shut.
+        """Return the floor while the barriers with the indices ``shut`` are shut.
 
         Lasers count as barriers here: no enemy walks into a laser.
         """
@@ -164,7 +165,10 @@ class Floor:
         return self._furthest_straight(a, self._cell_path(entry, self.nearest(b, self._area[entry])))
 
     def path(self, a: Place, b: Place) -> list[Place]:
-        """Return the centres of cells on a path from ``a`` to ``b``; empty if there is no path."""
+        """Return the centres of the cells on a shortest path from ``a`` to ``b``.
+
+        Return an empty list if there is no path.
+        """
         entry = self.entry(a)
         goal = self.entry(b)
         if entry is None or goal is None or self._area[entry] != self._area[goal]:
@@ -172,7 +176,7 @@ class Floor:
         return [self.centres[cell] for cell in self._cell_path(entry, goal)]
 
     def entry(self, place: Place) -> int | None:
-        """Return the number of the nearest cell to whose centre a straight walk from a place leads.
+        """Return the number of the nearest cell whose centre an enemy at a place can reach in a straight line.
 
         The cell is at most two columns and two rows away. Return None if there is no such cell.
         """
@@ -210,7 +214,7 @@ class Floor:
         return min(self.centres, key=lambda centre: hypot(centre[0] - place[0], centre[1] - place[1]))
 
     def prepare(self) -> None:
-        """Compute the steps between all pairs of cells now, as many as the cache can hold."""
+        """Compute the shortest paths between all pairs of cells now, and keep as many as the cache can hold."""
         for chunk in range(-(-len(self.centres) // GOALS)):
             self._grid.steps_to_goals(self, chunk)
 
@@ -246,7 +250,7 @@ class Floor:
         return 0 if entry is None else self._area[entry]
 
     def _cell_path(self, entry: int, goal: int) -> list[int]:
-        """Return the cells from ``entry`` to ``goal``, both included.
+        """Return the numbers of the cells on a shortest path from ``entry`` to ``goal``, both included.
 
         Return only ``entry`` if there is no path.
         """
@@ -300,8 +304,8 @@ class Floor:
     def _areas(self, free: NDArray[np.bool_], starts: Sequence[Place]) -> NDArray[np.int64]:
         """Return the number of the area of each cell, int64 [rows, columns].
 
-        An area is a set of connected cells. The number is -1 for a cell that cannot be reached from
-        any of ``starts``.
+        ``free`` is a mask of the walkable cells. An area is a set of connected cells. The number is
+        -1 for a cell that cannot be reached from any of ``starts``.
         """
         areas = np.full(free.shape, -1, dtype=np.int64)
         rows, columns = np.nonzero(free)
@@ -327,10 +331,11 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """Return for each cell whether it is clear of obstacles, and then a last element, False.
+        """Return a bool for each cell: whether the whole cell is clear of obstacles.
 
-        The index -1, which stands for "no cell", finds this last element. Cells of the last row and
-        column are also False: a position between such a cell and the bounds counts as in the cell.
+        The list has a further last element, False, which the index -1 ("no cell") finds. The bool
+        is also False for cells of the last row and column: a position between such a cell and the
+        bounds counts as in the cell.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)

@@ -24,7 +24,7 @@ def corners(box: Box) -> Corners:
 
 
 def crosses(ax: float, ay: float, bx: float, by: float, rectangles: Sequence[Rectangle]) -> bool:
-    """Whether the line segment from point a to point b passes through the inside of a rectangle."""
+    """Whether the line segment from (``ax``, ``ay``) to (``bx``, ``by``) passes through the inside of a rectangle."""
     west, east = (ax, bx) if ax < bx else (bx, ax)
     south, north = (ay, by) if ay < by else (by, ay)
     dx, dy = bx - ax, by - ay
@@ -66,10 +66,11 @@ def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple
 
 
 def _overlap(start: float, delta: float, low: float, high: float, enter: float, leave: float) -> tuple[float, float]:
-    """Return the interval of times at which ``start + time * delta`` is between low and high.
+    """Return the interval of times at which ``start + time * delta`` is between ``low`` and ``high``.
 
-    Only times from ``enter`` to ``leave`` count. If ``delta`` is 0, return all of these: the
-    callers have already excluded boxes beside the line.
+    Only times from ``enter`` to ``leave`` count. If there is no such time, the result begins after
+    its end. If ``delta`` is 0, return ``enter`` and ``leave``: the callers have already excluded
+    boxes beside the line.
     """
     if delta > 0.0:
         return max(enter, (low - start) / delta), min(leave, (high - start) / delta)

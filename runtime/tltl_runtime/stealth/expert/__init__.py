@@ -1,1 +1,1 @@
-"""A scripted player that finishes levels. Begin with `expert`."""
+"""A scripted player that completes levels. Begin with `expert`."""

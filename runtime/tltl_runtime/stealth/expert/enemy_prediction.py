@@ -1,9 +1,9 @@
 """Predict what the enemies will do, from what a player can see of them.
 
-There is a set of models for each enemy. A model is one of the game's own guards with the enemy's
-route and parameters, but with other random numbers. After each time step, only the models that did
-what the enemy did are kept, and copies of them replace the others. If no model did, all models are
-moved to the enemy's pose, and new goals are guessed for them.
+There is a set of models for each enemy. A model is a simulated enemy, an object of the game's own
+class, with the enemy's route and parameters but with other random numbers. After each time step,
+only the models that did what the enemy did are kept, and copies of them replace the others. If no
+model did, all models are moved to the enemy's pose, and new goals are guessed for them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _BURIED: Final = -1000.0
 
 @record
 class Outlook:
-    """The predictions of all models for one enemy.
+    """The predictions of all models for one enemy, over some time steps ("decisions").
 
     ``poses`` are float64 [models, decisions, 4]: x, y, yaw, and whether the enemy knows the
     player's position (1 or 0). An enemy that knows the position sees in all directions. ``shares``
@@ -50,7 +50,7 @@ class Outlook:
 
 
 class Watch:
-    """Watches the enemies of a level, to predict them. Pass each snapshot to ``see`` once."""
+    """Watches the enemies of a level, to predict them. Pass the snapshot of each time step to ``see`` once."""
 
     def __init__(self, level: StealthLevel, seed: int = 0) -> None:
         self.level = level
@@ -69,7 +69,7 @@ class Watch:
         self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
-        """Update the models from a snapshot; return whether all models of some enemy were wrong."""
+        """Update the models from a snapshot; return whether all models of any one enemy were wrong."""
         surprised = False
         if snapshot.time > self._time:
             player = player_view(snapshot.player)
@@ -95,10 +95,7 @@ class Watch:
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """Predict each enemy for the next ``decisions`` time steps.
-
-        The prediction is as if no enemy saw the player during these steps.
-        """
+        """Predict each enemy of the level for the next ``decisions`` time steps, as if it saw no player."""
         x, y, _ = self._player
         unseen = PlayerView((x, y, _BURIED))
         return [self._outlook(models, decisions, unseen) for models in self.models]
@@ -122,7 +119,7 @@ class Watch:
         return Outlook(poses, shares / shares.sum())
 
     def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: EnemyMode) -> EnemyGuard:
-        """Move a model to its enemy's ``pose``; give it a task that fits the enemy's ``mode``."""
+        """Move a model to its enemy's ``pose``, and return it; its new task fits the enemy's ``mode``."""
         before = model.mode
         model.x, model.y, model.yaw = pose
         model.forget_path()
@@ -142,7 +139,7 @@ class Watch:
         return model
 
     def _guess(self, model: EnemyGuard) -> None:
-        """Guess where a patrolling model goes: a point of its route, or a narrow place off it."""
+        """Guess where a model of a patrolling enemy goes: to a point of its route, or a narrow place off it."""
         model.leg = int(self._rng.integers(len(model.route)))
         model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
 

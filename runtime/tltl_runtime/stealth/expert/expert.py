@@ -1,4 +1,4 @@
-"""A scripted player that finishes levels.
+"""A scripted player that completes levels.
 
 It knows the level and the spec, and sees what a player sees.
 """
@@ -55,7 +55,7 @@ class Expert:
         self._sneaks = False
 
     def act(self) -> Action:
-        """Return the next action; stay if the automaton has no goal for the player."""
+        """Return the next action. If the automaton has no goal for the player, the action is to stay."""
         snapshot = self._game.snapshot()
         goal = self.goal(snapshot)
         if goal is None:
@@ -67,7 +67,10 @@ class Expert:
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._destination)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
-        """Return the position to reach next; None if the automaton has no goal for the player."""
+        """Return the position that the player should reach next, so that the automaton gets nearer to acceptance.
+
+        Return None if there is no such position.
+        """
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
         positions = places(self.level, snapshot)
@@ -77,8 +80,8 @@ class Expert:
     def _next_place(self, snapshot: Snapshot, goal: Point) -> Point:
         """Return ``goal`` if a route leads there, else the nearest switch that helps.
 
-        A switch helps if it opens a shut barrier and a route leads to it. Return ``goal`` if no
-        switch does.
+        A switch helps if it opens a shut barrier and a route leads to the switch. If no switch
+        helps, return ``goal``.
         """
         here, routes = snapshot.player.position, routes_of(self.level, shut_barriers(snapshot))
         if routes.leads(here, goal):
@@ -94,7 +97,7 @@ class Expert:
         return min(candidates, key=lambda place: dist(here, place), default=goal)
 
     def _is_on_floor(self, snapshot: Snapshot, goal: Point) -> bool:
-        """Whether the route to a goal is on the floor and passes no mover."""
+        """Whether the route to a goal stays on the floor and passes no mover (a moving box)."""
         here = snapshot.player.position
         legs = routes_of(self.level, shut_barriers(snapshot)).field_from(here, goal).legs(here)
         return all(leg.kind in ("walk", "crouch") and not self._meets_mover(leg) for leg in legs)

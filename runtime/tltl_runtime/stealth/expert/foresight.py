@@ -2,8 +2,8 @@
 
 A *body* is a predicted state of the player. A *decision* is a time step, for which an action is
 chosen. The search compares bodies that stand on the ground, by the time that has passed and the
-time that is left on their route. A jump or a fall is one move: the search simulates it until the
-body lands.
+time that is left on their route. A jump or a fall is one move: the search simulates the move until
+the body lands.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _ARRIVED: Final = 0.1
 
 @record
 class HeldAction:
-    """An action to play once and to repeat while in the air, at most ``hold`` times in all.
+    """An action to play once, and then to repeat while the player is in the air.
 
-    Afterwards the player falls straight down.
+    It is played at most ``hold`` times in all. Afterwards the player falls straight down.
     """
 
     action: Action
@@ -52,7 +52,10 @@ class ActionPlan:
 
 @record
 class _Bodies:
-    """Bodies [n], predicted states of the player on the ground at one time, and their history."""
+    """The bodies of the search at one time, n predicted states of the player on the ground.
+
+    A "decision" is a time step. Each field is an array with one entry for each body.
+    """
 
     poses: Poses
     costs: Floats
@@ -73,9 +76,9 @@ class _Bodies:
         return _Bodies(self.poses.take(indices), *(getattr(self, name)[indices] for name in _COLUMNS))
 
     def scores(self) -> Floats:
-        """Return the score of each body, in seconds.
+        """Return the score of each body, in seconds; a lower score is better.
 
-        Of bodies at the same time, those with lower scores are better.
+        Only scores of bodies at the same time can be compared.
         """
         return self.costs + self.left - _STAMINA * self.poses.stamina
 
@@ -84,12 +87,12 @@ _COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
-    """A search for the player's best actions in the next ``ahead`` decisions.
+    """A search for the player's best actions in the next ``ahead`` decisions (time steps).
 
     After each decision, the search continues from the ``kept`` best predicted states (bodies) of
     the player. ``field`` has the routes to the goal, ``moves`` are the moves to choose from.
-    ``movers`` are the boxes that movers sweep in each decision, for ``ahead + LONGEST_FALL``
-    decisions.
+    ``movers`` has, for each of the next ``ahead + LONGEST_FALL`` decisions, the boxes that movers
+    (moving boxes) sweep in it.
     """
 
     def __init__(
@@ -108,7 +111,7 @@ class Foresight:
         self._ahead, self._kept = ahead, kept
 
     def plan(self, player: PlayerState) -> ActionPlan:
-        """Return the best plan.
+        """Return the best plan for the player's next time steps.
 
         The plan is empty if no move leads to a place from which a route leads to the goal.
         """
@@ -130,10 +133,11 @@ class Foresight:
         return self._trace(passed, *end)
 
     def _apply_moves(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
-        """Simulate every move from every body, and return the bodies that are then on the ground.
+        """Simulate every move from every body until the body stands on the ground.
 
-        The result has groups of bodies that land at the same time, each after the number of
-        decisions until then. ``time`` is when the moves begin, in decisions from now.
+        ``time`` is when the moves begin, in decisions (time steps) from now. Return pairs: a number
+        of decisions, and the bodies that land after this number. Only the best of these bodies are
+        in the pair.
         """
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
@@ -163,9 +167,10 @@ class Foresight:
         return landed
 
     def _best(self, bodies: _Bodies) -> _Bodies:
-        """Return the ``kept`` best bodies, at most one standing and one crouching in each cube.
+        """Return the ``kept`` best bodies.
 
-        Cubes of space have sides of a quarter of a metre.
+        If several bodies are in one cube of space, a quarter of a metre wide, only the best
+        standing and the best crouching one count.
         """
         poses = bodies.poses
         order = bodies.scores().argsort(kind="stable")
@@ -174,7 +179,7 @@ class Foresight:
         return bodies.take(order[np.sort(first)[: self._kept]])
 
     def _trace(self, passed: Mapping[int, _Bodies], time: int, row: int) -> ActionPlan:
-        """Return the plan that leads to the body in this ``row`` of ``passed[time]``.
+        """Return the plan that leads to the body at index ``row`` of ``passed[time]``.
 
         ``passed`` has the bodies from which the search continued, by time.
         """

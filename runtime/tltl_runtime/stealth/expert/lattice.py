@@ -1,4 +1,4 @@
-"""The floor as a lattice of places, and the effect of each action in one decision.
+"""The floor as a lattice of places, and the effect of each action in one time step (a decision).
 
 A place is a point of the floor where the player fits between the things that stand there.
 Neighbouring places are 0.4 m apart. An action moves the player by an exact displacement, which
@@ -33,10 +33,7 @@ Costs = NDArray[np.float32]
 
 
 def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
-    """Return the distinct actions without a jump, and their displacements in metres.
-
-    The displacements are [actions, 2].
-    """
+    """Return the distinct actions without a jump, and their displacements, [actions, 2] in metres."""
     kind = PlayerKind()
     actions: list[Action] = []
     displacements: list[tuple[float, float]] = []
@@ -56,7 +53,7 @@ SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 @lru_cache(maxsize=64)
 def lattice_of(level: StealthLevel, shut: frozenset[int]) -> Lattice:
-    """Return the lattice of a level while the barriers with these indices are shut.
+    """Return the lattice of a level while the barriers with the indices ``shut`` are shut.
 
     It is cached per process.
     """
@@ -97,7 +94,10 @@ class Lattice:
         self._forbidden[self._shares.sum(-1) == 0] = FAR
 
     def feasible(self, places: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return whether each action is possible at ``places`` [n, 2]: bool [actions, n]."""
+        """Return whether each action is possible at ``places`` [n, 2], as bool [actions, n].
+
+        An action is possible if the player meets no obstacle in the next time step.
+        """
         feasible = np.zeros((len(ACTIONS), len(places)), dtype=bool)
         for crouched in (0, 1):
             actions = np.flatnonzero(crouched == CROUCHED)
@@ -109,7 +109,7 @@ class Lattice:
     def values(self, value: Costs, places: NDArray[Any]) -> Costs:
         """Interpolate ``value``, which has a number for each lattice place, at ``places`` [m, 2].
 
-        The result is [m]. It is FAR where no place of the lattice is near.
+        The result is [m]. It is ``FAR`` where no place of the lattice is near.
         """
         corners, shares = self._interpolation(places)
         values: Costs = (value[corners] * shares).sum(-1)
@@ -119,9 +119,9 @@ class Lattice:
     def least_costs(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
         """Return the cost of the cheapest action at each place of the lattice.
 
-        The cost of an action is its ``extra`` [actions] plus the cost at the point where it ends.
-        The cost at a point is interpolated from ``crouched`` [places] if the action crouches, else
-        from ``standing`` [places].
+        The cost of an action is its ``extra`` [actions] plus the cost at the point where the action
+        ends. The cost at a point is interpolated from ``crouched`` [places] if the action crouches,
+        else from ``standing`` [places].
         """
         both = np.concatenate((standing, crouched))
         costs: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
@@ -131,10 +131,10 @@ class Lattice:
         return least
 
     def decisions_to(self, goal: Point, within: float) -> Costs:
-        """Return how many decisions (time steps) a walk from each place to the goal takes.
+        """Return for each place how many time steps a walk to the goal takes.
 
-        The walk ends at most ``within`` metres from the goal. The value is FAR where there is no
-        path.
+        The walk ends at most ``within`` metres from the goal. The number is ``FAR`` where there is
+        no path.
         """
         at_goal = np.hypot(*(self.places - goal[:2]).T) <= within
         decisions: Costs = np.where(at_goal, np.float32(0), FAR)
@@ -149,10 +149,10 @@ class Lattice:
         return decisions
 
     def _interpolation(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
-        """Return the four places around each point [m, 2], and their weights, [m, 4] each.
+        """Return the four lattice places around each of the points ``ends``, and their weights.
 
-        The nearer a place of the lattice is, the greater is its weight. Where the player does not
-        fit, there is no place, and the weight is 0.
+        ``ends`` is [m, 2], both results are [m, 4]. The nearer a place is, the greater is its
+        weight. The weight is 0 for a place where the player does not fit.
         """
         position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)

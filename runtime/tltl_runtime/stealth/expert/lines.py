@@ -1,4 +1,7 @@
-"""Lines of sight: at which places of a lattice an enemy sees a standing or a crouched player."""
+"""Lines of sight: at which places an enemy sees a standing or a crouched player.
+
+The places are those of :class:`~tltl_runtime.stealth.expert.lattice.Lattice`.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ _ASIDE: Final = 0.15
 
 @lru_cache(maxsize=64)
 def lines_of(level: StealthLevel, shut: frozenset[int]) -> LinesOfSight:
-    """Return the lines of sight of a level while the barriers with these indices are shut.
+    """Return the lines of sight of a level while the barriers with the indices ``shut`` are shut.
 
     They are cached per process.
     """
@@ -30,7 +33,7 @@ def lines_of(level: StealthLevel, shut: frozenset[int]) -> LinesOfSight:
 
 
 class LinesOfSight:
-    """Lines of sight to the places of a lattice, computed on demand; movers do not block them."""
+    """Lines of sight to the places of a lattice, computed on demand. Moving boxes do not block them."""
 
     def __init__(self, level: StealthLevel, shut: frozenset[int]) -> None:
         boxes = [solid.box for solid in level.solids if solid.box.high[2] > 0.0]
@@ -43,10 +46,11 @@ class LinesOfSight:
         self._cache: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
-        """Return how much of each place an enemy with its eyes at ``x``, ``y`` sees.
+        """Return how well an enemy with its eyes at ``x``, ``y`` sees a player at each place.
 
-        The result is float32 [2, places], for a standing and for a crouched player: the share, in
-        [0, 1], of the five points of the place at which the enemy would see the player.
+        The result is float32 [2, places], first for a standing, then for a crouched player. Each
+        place has five points: its middle and four around it. The value is the share of these
+        points, in [0, 1], at which the enemy would see the player.
         """
         key = (round(x / ROUNDED), round(y / ROUNDED))
         shares = self._cache.get(key)

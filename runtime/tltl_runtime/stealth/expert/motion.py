@@ -1,8 +1,8 @@
 """A prediction of :mod:`~tltl_runtime.stealth.world.physics` for thousands of bodies at once.
 
-A body is a copy of the player: a capsule, which boxes push out. Its predicted motion agrees with
-the physics to within a few centimetres. A body touches a mover if the mover comes within 6 cm of it
-in the same decision (time step).
+A body is a copy of the player: a capsule, which boxes push out. The predicted motion agrees with
+the physics to within a few centimetres. A body touches a mover (a moving box) if the mover comes
+within 6 cm of the body in the same decision (time step).
 """
 
 from __future__ import annotations
@@ -53,14 +53,14 @@ _FIELDS: Final = ("x", "y", "z", "vz", "crouching", "grounded", "stamina")
 
 
 def poses_of(state: PlayerState) -> Poses:
-    """Return the player's ``state`` as the states of a single body."""
+    """Return the player's ``state`` as :class:`Poses` with one body."""
     x, y, z = state.position
     values = (x, y, z, state.velocity[2], state.crouching, state.grounded, state.stamina)
     return Poses(*(np.array([value]) for value in values))
 
 
 def concatenate(parts: Sequence[Poses]) -> Poses:
-    """Return the states of the bodies of all ``parts``, in one record."""
+    """Return the bodies of all ``parts``, in this order, in one :class:`Poses`."""
     return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
 
 
@@ -81,10 +81,10 @@ class Motion:
         self._boxes = _Boxes(corners[:, :3].T, corners[:, 3:].T)
 
     def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
-        """Return the states of the bodies one decision later, and which bodies touched a mover.
+        """Return the states of the bodies one time step later, and which bodies touched a mover.
 
         ``actions`` [n, 5] are the actions of the bodies. ``movers`` are the boxes that the movers
-        sweep in this decision.
+        (moving boxes) sweep in this time step.
         """
         kind = self.kind
         boxes = self._boxes_near(poses)
@@ -128,7 +128,7 @@ class Motion:
         return dx * speed, dy * speed, np.where(sprints, np.maximum(0.0, poses.stamina - spent), refilled)
 
     def _boxes_near(self, poses: Poses) -> _Boxes:
-        """Return the boxes that any of the bodies can touch in one decision."""
+        """Return the boxes that any of the bodies can touch in one time step."""
         reach = self.kind.radius + self.kind.sprint_speed * DECISION + _TOUCH
         low, high = self._boxes.low, self._boxes.high
         near = (low[0] < poses.x.max() + reach) & (high[0] > poses.x.min() - reach)
@@ -136,7 +136,7 @@ class Motion:
         return _Boxes(low[:, near], high[:, near])
 
     def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
-        """Return how far a stair in the way lifts each body, in metres; 0 if there is no stair."""
+        """Return how far a stair lifts each body, in metres; 0 if there is no stair in the body's way."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
         low, high = boxes.low, boxes.high
@@ -176,7 +176,10 @@ class Motion:
     def _push_out(
         self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats, boxes: _Boxes
     ) -> None:
-        """Move bodies out of the boxes and remove their speed into the boxes, all in place."""
+        """Move the bodies out of the boxes that they overlap, and stop their motion into these boxes.
+
+        The positions and speeds are modified in place.
+        """
         depth, normal = self._contacts(x, y, z, height, boxes)
         touched = np.flatnonzero((depth > 0.0).any(axis=1))
         if not touched.size:
@@ -198,8 +201,8 @@ class Motion:
     def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
         """Return how far each capsule overlaps each box, and the unit vectors out of the boxes.
 
-        The overlap is in metres, negative if capsule and box are apart. The shapes of the results
-        are [n, boxes] and [3, n, boxes].
+        The overlap is in metres, negative if the capsule and the box are apart. The shapes of the
+        results are [n, boxes] and [3, n, boxes].
         """
         radius = self.kind.radius
         low, high = boxes.low, boxes.high
@@ -215,7 +218,10 @@ class Motion:
 
 
 def _meets(x: Floats, y: Floats, z: Floats, height: Floats, radius: float, box: Box) -> Truths:
-    """Return for each capsule of ``radius`` whether it overlaps a box."""
+    """Return for each capsule of ``radius`` and ``height`` whether it overlaps a box.
+
+    ``x``, ``y`` and ``z`` are the positions of the feet.
+    """
     dx = np.maximum(np.maximum(box.low[0] - x, x - box.high[0]), 0.0)
     dy = np.maximum(np.maximum(box.low[1] - y, y - box.high[1]), 0.0)
     dz = np.maximum(np.maximum(box.low[2] - (z + height - radius), z + radius - box.high[2]), 0.0)

@@ -1,4 +1,4 @@
-"""Predict where movers will be, from their paths and from the places where snapshots show them."""
+"""Predict where movers (moving boxes) will be, from their paths and from their places in snapshots."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TOLERANCE: Final = 1e-6
 
 
 class Clocks:
-    """The clocks of a level's movers: how far each mover is in its cycle, in seconds.
+    """The clocks of a level's movers (moving boxes): how far each mover is in its cycle, in seconds.
 
     A clock stands still while the player blocks the mover.
     """
@@ -29,7 +29,7 @@ class Clocks:
         self._time = 0.0
 
     def see(self, snapshot: Snapshot) -> None:
-        """Update the clocks from a snapshot; call this after each time step."""
+        """Update the clocks from the current snapshot; call this after each time step."""
         passed = snapshot.time - self._time
         self._time = snapshot.time
         for index, (path, place) in enumerate(zip(self._paths, snapshot.movers, strict=True)):
@@ -40,9 +40,9 @@ class Clocks:
             self._clocks[index] += elapsed
 
     def swept_boxes(self, first: int, last: int | None = None) -> list[Box]:
-        """Return the box that each mover sweeps in the time steps ``first`` to ``last``.
+        """Return for each mover the bounding box of its motion in the time steps ``first`` to ``last``.
 
-        Time steps are counted from now. By default, ``last`` is ``first``.
+        Time steps are counted from now, the next one is 0. By default, ``last`` is ``first``.
         """
         boxes = []
         for mover, path, clock in zip(self._movers, self._paths, self._clocks, strict=True):
@@ -53,12 +53,12 @@ class Clocks:
 
 
 def swept_bounds(mover: Mover) -> Box:
-    """Return the bounding box of all positions that a mover takes on its path."""
+    """Return the bounding box of all positions that a mover (a moving box) takes on its path."""
     return _hull([box_around(place, mover.size) for place in mover.path])
 
 
 def _hull(boxes: Sequence[tuple[Point, Point]]) -> Box:
-    """Return the bounding box of boxes that are given by their corners."""
+    """Return the bounding box of boxes, each given by its low and its high corner."""
     lows, highs = [box[0] for box in boxes], [box[1] for box in boxes]
     return Box(
         (min(low[0] for low in lows), min(low[1] for low in lows), min(low[2] for low in lows)),

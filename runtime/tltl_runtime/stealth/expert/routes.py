@@ -1,8 +1,10 @@
-"""Route times from everywhere to a goal: walking, crouching, climbing, leaping and dropping.
+"""The fastest routes to a goal from everywhere in a level.
 
-Edges connect the places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` by what a player
-can do, as if there were no movers and no enemies. Times are approximate, but routes are safe: an
-edge exists only if the body passes with room to spare.
+Routes are paths in a graph. The vertices are the places of
+:class:`~tltl_runtime.stealth.expert.surfaces.Surfaces`, where a player can stand. The edges are
+what a player can do: walk, crouch, climb, leap and drop. The graph ignores movers (moving boxes)
+and enemies. Times are approximate, but routes are safe: an edge exists only if the body passes with
+room to spare.
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ _KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
 
 @record
 class Leg:
-    """A piece of a route: ``kind`` says how to get to ``place``."""
+    """A piece of a route: ``kind`` says how to get to its end, ``place``."""
 
     kind: Kind
     place: Point
@@ -51,7 +53,7 @@ class Leg:
 
 @record
 class RouteField:
-    """The routes to a goal from all places.
+    """The routes to a goal from all places where a player can stand.
 
     ``seconds`` [layers, rows, columns] is the time from each place to the goal; it is infinite if
     there is no route. ``towards`` [places] is the flat index of the next place on the route, or -1
@@ -67,7 +69,7 @@ class RouteField:
     def legs(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
         """Return the legs of the route from the place nearest to ``start`` to the goal.
 
-        Leave out what comes after about ``metres`` of the route.
+        Leave out the legs after the first ``metres`` of the route.
         """
         place = self.surfaces.nearest(start)
         legs = []
@@ -81,9 +83,10 @@ class RouteField:
         return tuple(legs)
 
     def seconds_from(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
-        """Return the seconds to the goal from points on the ground: all arrays are [n].
+        """Return the seconds to the goal from points on the ground; all arrays are [n].
 
-        The route from a point begins at the best of the places nearby.
+        The route from a point begins at the best of the places nearby. The result is infinite if
+        none of them has a route.
         """
         surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
         _, rows, columns = self.seconds.shape
@@ -115,7 +118,7 @@ class Routes:
         self._fields: dict[object, RouteField] = {}
 
     def field(self, goal: Point) -> RouteField:
-        """Return the routes from everywhere to ``goal``."""
+        """Return the routes to ``goal`` from everywhere. They are cached."""
         if goal not in self._fields:
             self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
         return self._fields[goal]
@@ -125,10 +128,10 @@ class Routes:
         return bool(np.isfinite(self.field(goal).seconds.flat[self.surfaces.nearest(start)]))
 
     def field_from(self, start: Point, goal: Point) -> RouteField:
-        """Return the routes to ``goal`` if one leads there from ``start``.
+        """Return the routes to ``goal`` if there is a route from ``start``.
 
-        Otherwise return the routes to the place nearest to ``goal`` that can be reached from
-        ``start``.
+        Otherwise return the routes to another place: the one nearest to ``goal`` among those that
+        can be reached from ``start``.
         """
         field = self.field(goal)
         place = self.surfaces.nearest(start)
@@ -143,7 +146,10 @@ class Routes:
         return self._fields[key]
 
     def _field(self, goals: NDArray[np.intp]) -> RouteField:
-        """Return the fastest routes to any of ``goals``, by Dijkstra's algorithm from the goals."""
+        """Return the fastest routes to any of ``goals``, by Dijkstra's algorithm, which begins at the goals.
+
+        ``goals`` are flat indices of places.
+        """
         seconds: Any = [inf] * self.surfaces.places.size
         towards, kinds = [-1] * len(seconds), [0] * len(seconds)
         queue = [(0.0, goal) for goal in goals.tolist()]
@@ -209,7 +215,8 @@ class Routes:
     def _climbs(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Yield groups of edges for jumps from ``layer`` up to the higher layer ``target``.
 
-        A jump leads to a place at least two cells away.
+        A layer is a height at which players can stand. Each group is for another distance, from two
+        cells on.
         """
         surfaces = self.surfaces
         begin = surfaces.places[layer] & surfaces.standing[layer] & surfaces.standing[target]
@@ -222,7 +229,7 @@ class Routes:
     def _drops(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Yield groups of edges for steps off a ledge in ``layer``, down to the layer ``target``.
 
-        Each group is for another distance.
+        A layer is a height at which players can stand. Each group is for another distance.
         """
         surfaces = self.surfaces
         fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
@@ -236,7 +243,7 @@ class Routes:
     def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Yield groups of edges for jumps across a gap, to a ``target`` layer that is not higher.
 
-        Each group is for another distance.
+        A layer is a height at which players can stand. Each group is for another distance.
         """
         surfaces = self.surfaces
         column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
@@ -255,8 +262,9 @@ class Routes:
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Return pairs of places: the flat indices of the first places, and those of the second.
 
-        The first place of a pair is in ``layer``, within the mask ``begin`` [rows, columns]. The
-        second is in the layer ``target``, ``steps`` cells away in ``direction``.
+        The first place of a pair is in ``layer``, a height at which players can stand, within the
+        mask ``begin`` [rows, columns]. The second is in the layer ``target``, ``steps`` cells away
+        in ``direction``.
         """
         _, rows, columns = self.surfaces.places.shape
         places = begin & _shift(self.surfaces.places[target], direction, steps)
@@ -275,7 +283,7 @@ class Routes:
 
 @lru_cache(maxsize=32)
 def routes_of(level: StealthLevel, shut: frozenset[int]) -> Routes:
-    """Return the routes of a level while the barriers with these indices are shut.
+    """Return the routes of a level while the barriers with the indices ``shut`` are shut.
 
     They are cached per process.
     """
@@ -288,9 +296,9 @@ def shut_barriers(snapshot: Snapshot) -> frozenset[int]:
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
-    """Yield each number of cells in ``direction`` whose length is at most ``reach`` metres.
+    """Yield distances in ``direction``: each as a number of cells, and as its length in metres.
 
-    The numbers begin with ``least``. Each comes with the length in metres.
+    The numbers are ``least``, ``least + 1``, and so on, up to a length of ``reach`` metres.
     """
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
@@ -305,7 +313,7 @@ def _clamp(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
 def _shift(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
     """Return a mask in which each cell has the value of the cell ``steps`` away in ``direction``.
 
-    It is False where that cell is beyond the border.
+    A cell is False if the other cell is beyond the border.
     """
     dy, dx = direction[0] * steps, direction[1] * steps
     rows, columns = cells.shape

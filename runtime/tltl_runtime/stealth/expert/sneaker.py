@@ -1,10 +1,10 @@
 """Walk to a place on the floor, unseen.
 
-Every few decisions, :mod:`~tltl_runtime.stealth.expert.enemy_prediction` predicts the poses of the
-enemies. Dynamic programming backwards from the end of the predicted time then gives the cost of the
-best route from each place: the number of decisions (time steps), plus a price for each decision in
-sight of an enemy. The player takes the action whose exact displacement leads to the least remaining
-cost.
+Every few decisions (time steps), :mod:`~tltl_runtime.stealth.expert.enemy_prediction` predicts the
+poses of the enemies. Dynamic programming, backwards from the end of the predicted time, then gives
+the cost of the best route from each place. This cost is the number of decisions, plus a price for
+each decision in sight of an enemy. The player takes the action whose exact displacement leads to
+the least remaining cost.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
 _HORIZON: Final = 80
-"""The number of decisions for which the enemies are predicted."""
+"""The number of decisions (time steps) for which the enemies are predicted."""
 _REPLAN: Final = 5
 """The plan is computed again after this many decisions."""
 _PRICE: Final = 12.0
@@ -83,7 +83,7 @@ class Sneaker:
         return self._choose(lattice, snapshot)
 
     def _choose(self, lattice: Lattice, snapshot: Snapshot) -> Action:
-        """Return the best action at the player's exact position, by the current plan's costs."""
+        """Return the best action at the player's exact position, by the costs in the current plan."""
         player, kind = snapshot.player, PlayerKind()
         place = np.array([player.position[:2]])
         free = lattice.feasible(place)[:, 0]
@@ -96,11 +96,11 @@ class Sneaker:
         return ACTIONS[int(costs.argmin())]
 
     def _make_plan(self, lattice: Lattice, lines: LinesOfSight, decisions: Costs) -> list[tuple[Costs, Costs]]:
-        """Return a plan: for each decision, the costs of standing and of crouching at each place.
+        """Return a plan: for each time step, the costs of standing and of crouching at each place.
 
-        A cost is that of being at the place at the end of the decision, plus that of the rest of
-        the route. ``decisions`` is the length of the route from each place, in decisions, if there
-        were no enemies.
+        A cost has two parts: the price of being seen at the place at the end of the time step, and
+        the cost of the rest of the route. ``decisions`` is the number of time steps that the route
+        from each place would take without enemies.
         """
         seen = self._sight_prices(lattice, lines, self._watch.outlook(_HORIZON))
         at_goal = decisions <= 0.0
@@ -113,9 +113,9 @@ class Sneaker:
         return plan[::-1]
 
     def _sight_prices(self, lattice: Lattice, lines: LinesOfSight, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
-        """Return the price of the risk of being seen at each place at the end of each decision.
+        """Return the price of the risk of being seen at each place, at the end of each predicted time step.
 
-        The result is float32 [decisions, 2, places], for a standing and for a crouched player.
+        The result is float32 [steps, 2, places], for a standing and for a crouched player.
         """
         price = np.zeros((_HORIZON, 2, len(lattice.places)), dtype=np.float32)
         x, y = lattice.places.T.astype(np.float32)

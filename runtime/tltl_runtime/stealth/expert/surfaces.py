@@ -27,12 +27,12 @@ _TOUCH: Final = 1e-6
 
 
 class Surfaces:
-    """The places of a level while the barriers with the indices ``shut`` are shut.
+    """The places of a level where a player can stand while the barriers with the indices ``shut`` are shut.
 
     ``heights`` [layers] are the heights of the tops, upwards; ``xs`` [columns] and ``ys`` [rows]
     are the centres of the cells, all in metres. These masks say for each cell in each layer:
 
-    - ``places``: whether it is a place.
+    - ``places``: whether the player can stand there, at least crouched: the cell is on top of a box.
     - ``standing``: whether a standing body has room above it.
     - ``crouched``: whether a crouched body has room above it.
     - ``leaping``: whether a body that jumps upright has room above it.
@@ -63,7 +63,7 @@ class Surfaces:
         self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
 
     def near(self, point: Point, radius: float) -> NDArray[np.intp]:
-        """Return the places within ``radius`` metres of a point, as flat indices."""
+        """Return the places within ``radius`` metres of a point, as flat indices into ``places``."""
         return self._flat[self._squares(point) <= radius * radius]
 
     def nearest(self, point: Point) -> int:
@@ -71,7 +71,7 @@ class Surfaces:
         return int(self._flat[self._squares(point).argmin()])
 
     def point(self, place: int) -> Point:
-        """Return the position of a place, given its flat index."""
+        """Return the position of a place: the centre of its cell, on the ground. ``place`` is its flat index."""
         layer, row, column = np.unravel_index(place, self.places.shape)
         return float(self.xs[column]), float(self.ys[row]), float(self.heights[layer])
 
@@ -107,7 +107,10 @@ class Surfaces:
         return ~taken
 
     def _buried_cells(self, boxes: list[Box]) -> Cells:
-        """Return a mask of the cells whose centres are inside a box, however low the box is."""
+        """Return a mask of the cells whose centres, at the height of the layer, are inside a box.
+
+        Even boxes no higher than a stair count.
+        """
         buried = self._no_cells()
         for box in boxes:
             rows, columns = self._over(box)
@@ -116,7 +119,7 @@ class Surfaces:
         return buried
 
     def _over(self, box: Box) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Return masks of the rows and of the columns whose centres are above a box."""
+        """Return masks of the rows and of the columns whose centres are inside the ground plan of a box."""
         rows = (self.ys >= box.low[1]) & (self.ys <= box.high[1])
         columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
         return rows, columns

@@ -26,7 +26,7 @@ _DIRECTIONS: Final = tuple((x, y) for x, y in product(range(3), range(3)) if x o
 _WALKS: Final = (STAY, *((x, y, 0, 0, sprint) for x, y in _DIRECTIONS for sprint in (0, 1)))
 _CROUCHES: Final = ((0, 0, 0, 1, 0), *((x, y, 0, 1, 0) for x, y in _DIRECTIONS))
 _HOLDS: Final = (2, 3, LONGEST_FALL)
-"""For how many decisions a jump may keep its direction; then the player falls straight down."""
+"""For how many time steps a jump may keep its direction; then the player falls straight down."""
 
 _NEAR: Final = 3.0
 """The search considers jumps, drops and movers up to this distance from the player, in metres."""
@@ -34,18 +34,18 @@ _BOXES: Final = 5.0
 """The search considers boxes up to this distance from the player, in metres."""
 _SHORT: Final = (8, 16)
 _LONG: Final = (14, 32)
-"""The number of decisions to search ahead, and the number of bodies to keep after each.
+"""The number of time steps to search ahead, and the number of predicted states to keep after each.
 
 ``_LONG`` is for places where more moves than walks are possible, ``_SHORT`` for all others.
 """
 _REPLAN: Final = 6
-"""The search is repeated after this many decisions."""
+"""The search is repeated after this many time steps."""
 _ASTRAY: Final = 0.08
 """The search is repeated when the player is this far from its predicted position, in metres."""
 
 
 class Walker:
-    """Walks to a goal as if there were no enemies; ``act`` returns the next action."""
+    """Walks to a goal as if there were no enemies. ``act`` returns the next action."""
 
     def __init__(self, level: StealthLevel) -> None:
         self.level = level
@@ -88,7 +88,7 @@ class Walker:
         return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: RouteField, snapshot: Snapshot) -> list[HeldAction]:
-        """Return the moves that the search tries on the next part of the route."""
+        """Return the moves that the search for the next actions may use on the next part of the route."""
         player = snapshot.player
         legs = field.legs(player.position, _NEAR)
         movers = any(_horizontal_distance(box, player.position) <= _NEAR for box in self._clocks.swept_boxes(0, 8))
@@ -105,10 +105,10 @@ class Walker:
 
 
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
-    """Return the directions of actions that are within 45 degrees of a leg of a route.
+    """Return the directions in which a player should move on a route, as choices of an action for x and y.
 
     The route begins at ``start``. Each of ``legs`` is a pair: whether the leg counts, and the point
-    where it ends. The function ignores legs that do not count.
+    where it ends. The result has each direction that is within 45 degrees of a leg that counts.
     """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
