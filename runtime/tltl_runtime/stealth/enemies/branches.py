@@ -43,8 +43,8 @@ _BRANCHES: Final[dict[str, Branch]] = {}
 def branch(name: str, *, rank: int, added: bool = False) -> Callable[[Callable[[], TreeNode]], Callable[[], TreeNode]]:
     """Return a decorator that registers a branch of the enemies' behaviour tree.
 
-    The decorated function must make the branch's node of the tree. ``rank`` and ``added`` are those
-    of :class:`Branch`. The decorator raises ValueError if the name is taken.
+    The decorated function must return the branch's node of the tree. ``rank`` and ``added`` are
+    those of :class:`Branch`. The decorator raises ValueError if the name is taken.
     """
 
     def register(make: Callable[[], TreeNode]) -> Callable[[], TreeNode]:

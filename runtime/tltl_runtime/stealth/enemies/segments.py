@@ -68,9 +68,9 @@ def distance_to_segment(p: tuple[float, float], a: tuple[float, float], b: tuple
 def _overlap(start: float, delta: float, low: float, high: float, enter: float, leave: float) -> tuple[float, float]:
     """Return the interval of times at which ``start + time * delta`` is between ``low`` and ``high``.
 
-    Only times from ``enter`` to ``leave`` count. If there is no such time, the result begins after
-    its end. If ``delta`` is 0, return ``enter`` and ``leave``: the callers have already excluded
-    boxes beside the line.
+    Only times from ``enter`` to ``leave`` count. If there are none, the first number is not less
+    than the second. If ``delta`` is 0, return ``enter`` and ``leave``: the callers have already
+    excluded boxes beside the line.
     """
     if delta > 0.0:
         return max(enter, (low - start) / delta), min(leave, (high - start) / delta)

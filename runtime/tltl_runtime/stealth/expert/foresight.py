@@ -137,7 +137,7 @@ class Foresight:
 
         ``time`` is when the moves begin, in decisions (time steps) from now. Return pairs: a number
         of decisions, and the bodies that land after this number. Only the best of these bodies are
-        in the pair.
+        in the pair. Bodies that do not land in time, or have no route to the goal, are left out.
         """
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)

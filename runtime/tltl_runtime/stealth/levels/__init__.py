@@ -1,1 +1,1 @@
-"""Read level files, check them, and apply overlays. Begin with `file`."""
+"""Read level files, check them, and apply overlays (files with small changes). Begin with `file`."""

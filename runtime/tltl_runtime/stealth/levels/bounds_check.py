@@ -20,7 +20,7 @@ _Boxes = list[tuple[str, Box]]
 
 
 def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Diagnostic]:
-    """Return TLT0806 for things outside the bounds, and TLT0807 for things inside an obstacle.
+    """Return TLT0806 for each thing outside the bounds, and TLT0807 for each thing inside an obstacle.
 
     Diagnostics point to places in the level's files: ``places`` has those of the things, and
     ``start`` is that of the player's start.
@@ -59,7 +59,7 @@ def _check_bounds(
 def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: Label) -> Iterator[Diagnostic]:
     """Yield TLT0807 for each thing that overlaps the player's start.
 
-    Movers count at their initial positions.
+    Movers (moving boxes) count at the positions at which an episode begins.
     """
     begins = [
         (mover.name, Box(*box_around(MoverPath(mover).position_at(mover.offset), mover.size))) for mover in level.movers
@@ -71,7 +71,10 @@ def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: 
 
 
 def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each switch or exit that is inside a solid, with the first such solid."""
+    """Yield TLT0807 for each switch or exit that is inside a solid.
+
+    If it is inside several solids, the diagnostic names only the first.
+    """
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
             title = f"`{goal}` is inside `{name}`, where no player can stand"
@@ -99,9 +102,9 @@ def _player_box(level: StealthLevel) -> Box:
 
 
 def _body_box(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
-    """Return the bounding box of a body.
+    """Return the bounding box of a body with this ``radius`` and ``height`` that stands at ``feet``.
 
-    It begins 1 cm above the feet, so that a body does not overlap the ground under it.
+    The box begins 1 cm above the feet, so that a body does not overlap the ground under it.
     """
     x, y, z = feet
     return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))

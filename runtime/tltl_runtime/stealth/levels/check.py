@@ -1,4 +1,4 @@
-"""Check the names in a level: specs must be able to use them, and what they refer to must exist."""
+"""Check the names in a level: whether specs can use them, and whether what they refer to exists."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from tltlc.api import Diagnostic, SourceFile, replace
 
 
 def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0804 for each name that a spec cannot declare as an entity."""
+    """Return TLT0804 for each name that no spec can declare as an entity, such as a keyword.
+
+    ``places`` knows where the level's files contain the names.
+    """
     from tltlc.api import syntax
 
     diagnostics = []
@@ -34,11 +37,11 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
 
 
 def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0805 for each name in the level's files that refers to nothing in the level.
+    """Return TLT0805 for each name that the level's files refer to and that does not exist in the level.
 
     Also return TLT0805 for each barrier that nothing opens, or that more than one thing opens.
     """
-    # Leave out the aliases: the names that they stand for are checked here.
+    # Leave out the aliases of signals: this function checks the names that they stand for.
     signals = readers(replace(level, signals=()))
     known = {
         "switch": [switch.name for switch in level.switches],

@@ -15,13 +15,14 @@ LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
 
 SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
-"""The folders of the levels' specs: in an installed package, and in a checkout."""
+"""The folders of the shipped levels' specs: in an installed package, and in a checkout."""
 
 
 def read_default_spec(table: CheckedTable, level: Path) -> LevelSpec | None:
-    """Return the spec that the key ``spec`` of a level names.
+    """Return the spec that the key ``spec`` in a level's file names.
 
-    ``level`` is the path of the level's file. The spec's file is beside the level or in the package.
+    ``table`` is the table with that key, and ``level`` the path of the level's file. The spec's
+    file is beside the level or in the package.
 
     - If there is no key, return None.
     - If the value of the key is wrong, log TLT0803 and return None.
@@ -49,7 +50,7 @@ def read_default_spec(table: CheckedTable, level: Path) -> LevelSpec | None:
 
 
 def is_packaged(spec: str) -> bool:
-    """Whether the path ``spec`` is in a folder of the shipped levels' specs."""
+    """Whether the file at the path ``spec`` is directly in a folder of the shipped levels' specs."""
     return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
 
 

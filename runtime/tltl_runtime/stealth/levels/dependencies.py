@@ -20,7 +20,8 @@ _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
 def level_dependencies(level: Path, variant: Variant) -> Iterator[Path]:
     """Yield the files of the level, the assets and overlays of the variant, and the level's spec.
 
-    The files need not load: if the level's file is not TOML, every quoted text in it counts as a
+    Assets are files that levels share; overlays are files with small changes to assets. The files
+    may contain errors: if the level's file is not TOML, every quoted text in it counts as a
     possible name. Also yield each path where a new file would be used instead of an existing one.
     """
     yield level
@@ -51,9 +52,9 @@ def level_dependencies(level: Path, variant: Variant) -> Iterator[Path]:
 def file_candidates(level: Path, variant: Variant, name: str) -> Iterator[Path]:
     """Yield the paths at which one of a level's files may be.
 
-    ``level`` is the path of the level's own file. ``name`` is the name of the file in the field
-    ``files`` of the level. The file may be the level's own file, a file beside that or in the
-    package, or an overlay that ``variant`` adds.
+    ``level`` is the path of the level's own file. ``name`` is the name that the level's field
+    ``files`` lists, such as ``assets/guard.toml``. The file may be the level's own file, a file
+    beside that or in the package, or an overlay that ``variant`` adds.
     """
     if name == level.name:
         yield level
@@ -64,10 +65,12 @@ def file_candidates(level: Path, variant: Variant, name: str) -> Iterator[Path]:
 
 
 def _shared_files(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
-    """Yield the files of the assets or overlays with these names.
+    """Yield the files of the assets or overlays called ``names``.
 
-    ``folder`` is ``assets`` or ``overlays``; ``places`` are the paths that contain such a folder.
-    If not ``sure``, some of ``names`` may name something else: skip those without a file.
+    ``folder`` is ``assets`` or ``overlays``; ``places`` are the paths that contain such a folder,
+    in order of precedence. For each name, yield the paths up to the first file that exists, or all
+    paths if none exists. If not ``sure``, a name may mean something else: skip it if no file
+    exists.
     """
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]

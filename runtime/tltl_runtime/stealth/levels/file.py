@@ -1,7 +1,8 @@
 """Read level files: TOML files written by designers (``docs/levels.md`` describes every key).
 
-A level is a file ``NAME.toml`` with the folders ``assets/`` and ``overlays/`` beside it. Assets and
-overlays that are missing there are looked up among the levels that come with the package.
+A level is a file ``NAME.toml``. Beside it are the folders ``assets/``, with files that levels
+share, and ``overlays/``, with files of small changes to assets. An asset or overlay that is missing
+there is looked up among the levels that come with the package.
 """
 
 from __future__ import annotations
@@ -51,16 +52,17 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 
 @fileio.resource_limits()
 def changes(name_or_path: str, variant: str | Variant) -> tuple[str, ...]:
-    """Return the descriptions of a variant's overlays, in the order in which they are applied.
+    """Return the descriptions of a variant's overlays, in the order in which the overlays are applied.
 
-    Raises the errors of :func:`load_level`.
+    An overlay is a file with small changes to what the level uses. Raises the errors of
+    :func:`load_level`.
     """
     return level_and_changes(name_or_path, variant)[1]
 
 
 @fileio.resource_limits()
 def level_and_changes(name_or_path: str, variant: str | Variant) -> tuple[StealthLevel, tuple[str, ...]]:
-    """Return the results of :func:`load_level` and :func:`changes`."""
+    """Return the result of :func:`load_level`, and that of :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
@@ -69,8 +71,9 @@ def level_and_changes(name_or_path: str, variant: str | Variant) -> tuple[Stealt
 def load_level(name_or_path: str, variant: str | Variant = "v0") -> StealthLevel:
     """Load a shipped level, by name, or one from a ``.toml`` file, in one of its variants.
 
-    ``VARIANT+OVERLAY`` is a variant with one more overlay, ``VARIANT+A+B`` with two more. An
-    overlay is a name, as in the list of a variant, or the path of a ``.toml`` file
+    An overlay is a file with small changes to what the level uses. ``VARIANT+OVERLAY`` is a variant
+    with one more overlay, ``VARIANT+A+B`` with two more. An overlay is given by a name, as in the
+    level's list for a variant, or by the path of a ``.toml`` file
     (:func:`~tltl_runtime.game.level_name.parse_variant`).
 
     :func:`read_level` also returns warnings.
@@ -89,9 +92,10 @@ def load_level(name_or_path: str, variant: str | Variant = "v0") -> StealthLevel
 
 @fileio.resource_limits()
 def read_level(name_or_path: str, variant: str | Variant = "v0") -> tuple[StealthLevel, tuple[Diagnostic, ...]]:
-    """Return the result of :func:`load_level`, and warnings.
+    """Return the result of :func:`load_level`, and warnings about the level.
 
-    A warning, TLT0809, says that the path of a mover or an enemy looks like a mistake.
+    A warning, TLT0809, says that the path of a mover (a moving box) or an enemy looks like a
+    mistake. Raises the errors of :func:`load_level`.
     """
     loading = _Loading(level_path(name_or_path))
     level = loading.level(variant)
@@ -99,9 +103,9 @@ def read_level(name_or_path: str, variant: str | Variant = "v0") -> tuple[Stealt
 
 
 def level_path(name_or_path: str) -> Path:
-    """Return the path of a level's file, which may not exist.
+    """Return the path of a level's file. A path that ends in ``.toml`` is returned as it is.
 
-    Raises TltlError: TLT0800, no shipped level has that name.
+    The file may not exist. Raises TltlError: TLT0800, no shipped level has that name.
     """
     if name_or_path.endswith(".toml"):
         return Path(name_or_path)
@@ -119,7 +123,7 @@ def level_path(name_or_path: str) -> Path:
 
 
 def shared_names(level: Path, folder: str) -> tuple[str, ...]:
-    """Return the names of the files in ``folder`` beside a level's file and in the package.
+    """Return the names, without ``.toml``, of the files in ``folder`` beside a level's file and in the package.
 
     ``folder`` is ``assets`` or ``overlays``.
     """
@@ -129,7 +133,7 @@ def shared_names(level: Path, folder: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _known_tree(source: SourceFile) -> Tree:
-    """Return the tree of a text, and keep it: a run loads levels often, and parsing takes most of the time."""
+    """Parse a TOML file. The result is cached: a run loads levels often, and parsing takes most of the time."""
     return read_tree(source)
 
 
@@ -147,7 +151,10 @@ class _Loading:
         self.variants = self._variants()
 
     def level(self, variant: str | Variant) -> StealthLevel:
-        """Return the level in a variant; parse a text as in :func:`load_level`."""
+        """Return the level in a variant. A text, such as ``v0+OVERLAY``, is parsed as in :func:`load_level`.
+
+        Raises the errors of :func:`load_level`.
+        """
         if isinstance(variant, str):
             variant = parse_variant(variant)
         if variant.name not in self.variants:
@@ -211,9 +218,10 @@ class _Loading:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, if a level has too many things, counting the points of paths.
+        """Raise TltlError, TLT0006, if the ``groups`` of things together are too large for a level.
 
-        The limit is :data:`tltlc.io.limits.LEVEL`.
+        Each point of a path or route counts as one more thing. The limit is
+        :data:`tltlc.io.limits.LEVEL`.
         """
         points = sum(len(getattr(thing, "path", ())) + len(getattr(thing, "route", ())) for thing in chain(*groups))
         if sum(map(len, groups)) + points > (fileio.limits.LEVEL.values or 0):
@@ -229,7 +237,11 @@ class _Loading:
         return Entry(_known_tree(source), Label(source, _first_line(source)))
 
     def _variants(self) -> dict[str, tuple[str, ...]]:
-        """Return the overlays of each variant; by default only ``v0``, without overlays."""
+        """Return the names of the overlays of each variant, by the variant's name.
+
+        A file that lists no variants has only ``v0``, without overlays. Raises a TltlError if the
+        list has errors.
+        """
         table = self.table.table("variants", needed=False)
         if table is None:
             return {"v0": ()}
@@ -260,10 +272,10 @@ class _Loading:
         return box
 
     def _assets(self, variant: Variant) -> tuple[list[CheckedTable], dict[str, CheckedTable]]:
-        """Return the ``[[use]]`` tables of the level's file, and the assets it uses, by name.
+        """Return the ``[[use]]`` tables of the level's file, and the assets that it uses, by name.
 
-        The overlays that the level lists for the variant, and then the added ones, are applied to the
-        assets.
+        An asset is a file that levels share. The overlays that the level lists for the variant, and
+        then the added ones, are applied to the assets.
         """
         uses = self.table.tables("use")
         references = [(use, "asset") for use in uses]
@@ -302,18 +314,18 @@ class _Loading:
         return [item for item in items if isinstance(item, Entry)]
 
     def _overlay_path(self, name: str) -> Path | None:
-        """Return the path of an overlay that an argument adds to a variant.
+        """Return the path of an overlay that a caller adds to a variant, by name or by path.
 
         If there is no overlay of this name, log TLT0800 and return None.
         """
         return Path(name) if name.endswith(".toml") else self._find_shared("overlays", name)
 
     def _find_shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
-        """Find the file of an asset or overlay, beside the level or in the package.
+        """Return the path of an asset's or overlay's file, beside the level or in the package.
 
-        If there is no such file, log an error and return None. The error is TLT0805 at ``label``,
-        the place where a file names the asset or overlay. If ``label`` is None, an argument names
-        it, and the error is TLT0800.
+        ``folder`` is ``assets`` or ``overlays``. If there is no such file, log an error and return
+        None. The error is TLT0805 at ``label``, the place where a file names the asset or overlay.
+        If ``label`` is None, a caller names it, and the error is TLT0800.
         """
         for place in (self.path.parent / folder, LEVELS / folder):
             if fileio.is_file(path := place / f"{name}.toml") and path.parent == place:
@@ -329,7 +341,8 @@ class _Loading:
     ) -> tuple[list[Solid], list[Mover], list[Region]]:
         """Return the solids, movers and regions of all parts that the level uses.
 
-        A part is an asset: a group of solids and movers that levels share.
+        A part is a group of solids and movers from an asset, a file that levels share. Each of the
+        tables ``uses`` places one part in the level.
         """
         solids: list[Solid] = []
         prefixes: dict[str, CheckedTable] = {}

@@ -19,10 +19,8 @@ _THINNEST: Final = 1e-3
 def fault(level: StealthLevel) -> str | None:
     """Return a description of the first fault that keeps a level from being drawn and played.
 
-    Return None if there is no fault.
-
-    Invalid names, and things without enough room, are not faults here: only level files are
-    checked for them.
+    Return None if there is no fault. Invalid names, and things without enough room, are not faults
+    here: they are checked when a level file is read.
     """
     return next(_faults(level), None)
 

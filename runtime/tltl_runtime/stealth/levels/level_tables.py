@@ -65,7 +65,7 @@ class NamedParts:
     """Each reference: the kind of thing that it names, the name, and the reference's label."""
 
     def add(self, name: str, table: CheckedTable, position_key: str) -> None:
-        """Record the labels of a thing's name and position; log TLT0804 if the name is taken.
+        """Record where a thing's name and position are; log TLT0804 if the name is taken.
 
         ``position_key`` is the key of ``table`` that has the position.
         """
@@ -77,20 +77,21 @@ class NamedParts:
         self.positions.setdefault(name, table.label_of(position_key))
 
     def name_labels(self, name: str) -> tuple[Label, ...]:
-        """Return the label of a thing's name; an empty tuple if no file contains the name."""
+        """Return the label (the place in a file) of a thing's name; an empty tuple if no file contains the name."""
         return (self.names[name],) if name in self.names else ()
 
     def position_labels(self, *names: str) -> tuple[Label, ...]:
-        """Return the labels of the positions of the things with these names.
+        """Return the labels (places in files) of the positions of the things with these names.
 
-        The outer walls have no labels.
+        Things without a place in a file, such as the outer walls, are left out.
         """
         return tuple(self.positions[name] for name in names if name in self.positions)
 
     def refer(self, kind: str, table: CheckedTable, key: str, names: tuple[str, ...]) -> None:
-        """Record that the value of ``key`` in ``table`` names these things of a ``kind``.
+        """Record that the value of ``key`` in ``table`` is ``names``, which name things of this ``kind``.
 
-        :func:`~tltl_runtime.stealth.levels.check.check_references` checks later that they exist.
+        :func:`~tltl_runtime.stealth.levels.check.check_references` checks later that the things
+        exist.
         """
         self.references.extend((kind, name, table.label_of(key)) for name in names)
 
@@ -98,8 +99,9 @@ class NamedParts:
 def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
     """Read the walls, low obstacles, platforms and stairs of a level or a part.
 
-    ``shift`` is the position of a part in the level; ``prefix`` begins the names of the part's
-    things. ``places`` records where the file names the solids.
+    A part is a group of solids and movers that levels share. ``shift`` is the position of a part in
+    the level; ``prefix`` begins the names of the part's things. ``places`` records where the file
+    names the solids.
     """
     solids = []
     for kind in _SOLIDS:
@@ -119,13 +121,19 @@ def solids(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.
 
 
 def box(table: CheckedTable, shift: Point = (0.0, 0.0, 0.0)) -> Box:
-    """Read a box from the keys ``at``, the middle of its base, and ``size`` of a table."""
+    """Read a box from two keys of a table: ``at``, the middle of its base, and ``size``.
+
+    ``shift`` is added to its position.
+    """
     (x, y, z), (dx, dy, dz) = _shift(table.point("at"), shift), table.size()
     return Box(_round((x - dx / 2, y - dy / 2, z)), _round((x + dx / 2, y + dy / 2, z + dz)))
 
 
 def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
-    """Return one box per step; each box reaches down to the height at which the stairs begin."""
+    """Return one box for each step; each box reaches down to the height at which the stairs begin.
+
+    If nobody can walk up the stairs, log TLT0803 and return an empty list.
+    """
     foot, top = _shift(table.point("from"), shift), _shift(table.point("to"), shift)
     width = table.number("width", low=0.7, high=50.0)
     steps = table.whole("steps", low=1, high=40)
@@ -154,7 +162,7 @@ def _stairs(table: CheckedTable, name: str, shift: Point) -> list[Solid]:
 
 
 def movers(table: CheckedTable, places: NamedParts, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
-    """Read the movers of a level or a part; ``shift`` and ``prefix`` are as in :func:`solids`.
+    """Read the movers (moving boxes) of a level or a part; ``shift`` and ``prefix`` are as in :func:`solids`.
 
     In files, the points of a path are for the middle of the mover's base, not for its centre.
     """
@@ -198,7 +206,7 @@ def barriers(table: CheckedTable, places: NamedParts) -> list[Barrier]:
 
 
 def unlocks(table: CheckedTable, places: NamedParts) -> list[Unlock]:
-    """Read the unlocks of a level, each of which opens a random barrier."""
+    """Read the unlocks of a level: a switch that opens a random one of several barriers."""
     unlocks = []
     for item in table.tables("unlock"):
         unlock = Unlock(item.text("switch"), item.names("barriers"))
@@ -225,7 +233,10 @@ def exits(table: CheckedTable, places: NamedParts) -> list[Exit]:
 
 
 def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: NamedParts) -> list[Enemy]:
-    """Read the enemies of a level; ``kinds`` are the valid enemy kinds, by asset name."""
+    """Read the enemies of a level. ``kinds`` are the valid enemy kinds, by name.
+
+    An enemy of another kind is left out.
+    """
     enemies = []
     for item in table.tables("enemy"):
         name, kind, route = item.text("name"), item.text("kind"), item.points("route", 1)
@@ -237,7 +248,7 @@ def enemies(table: CheckedTable, kinds: dict[str, EnemyKind], places: NamedParts
 
 
 def enemy_kind(table: CheckedTable, name: str) -> EnemyKind:
-    """Read an asset of type ``enemy``. In files, angles are in degrees."""
+    """Read a kind of enemy from the asset ``name``, a file of type ``enemy``. In files, angles are in degrees."""
     kind = EnemyKind(
         name=name,
         sight_range=table.number("sight_range", low=0.0, high=100.0),
@@ -276,7 +287,8 @@ def start(table: CheckedTable) -> Start:
 def sensors(table: CheckedTable | None, entities: tuple[str, ...], places: NamedParts) -> Sensors:
     """Read the agent's sensors.
 
-    The defaults are all ``entities``, the signals in ``_VARIABLES``, and no map.
+    The defaults are all ``entities``, the signals in ``_VARIABLES``, and no map. If ``table`` is
+    None, return the defaults.
     """
     if table is None:
         return Sensors(entities, _VARIABLES, None)

@@ -1,6 +1,6 @@
-"""Overlays: small changes to the assets that levels share.
+"""Overlays: files of small changes to assets (files that levels share).
 
-They are files in the folder ``overlays`` beside a level, and variants list them by name.
+They are in the folder ``overlays`` beside a level. The variants of the level list them by name.
 """
 
 from __future__ import annotations
@@ -19,9 +19,8 @@ def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict
     - ``[change.ASSET.THING]`` replaces values of a thing in the asset.
     - ``[add.ASSET]`` appends to lists of the asset.
 
-    If an asset does not have a key that the overlay changes, TLT0808 is added to ``log``, so that a
-    misspelled change cannot pass unnoticed. For an unknown key of the overlay itself, it is
-    TLT0802.
+    If an asset does not have a key that the overlay changes, add TLT0808 to ``log``, so that a
+    misspelled change cannot pass unnoticed. If the overlay itself has an unknown key, add TLT0802.
     """
     changed = dict(assets)
     for key, entry in overlay.items():

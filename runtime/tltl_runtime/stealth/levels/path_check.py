@@ -1,4 +1,4 @@
-"""Warn about paths of movers and enemies that are valid but probably mistakes (TLT0809)."""
+"""Warn about paths of movers (moving boxes) and enemies that are valid but probably mistakes (TLT0809)."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from tltl_runtime.support.checked_table import CheckedTable
 
 
 def named_regions(table: CheckedTable) -> tuple[Region, ...]:
-    """Return the regions that the level itself names, under ``[[region]]``."""
+    """Return the regions that the level's file names, under ``[[region]]``."""
     regions = []
     for item in table.tables("region"):
         regions.append(Region(item.text("name"), box(item)))
@@ -19,7 +19,11 @@ def named_regions(table: CheckedTable) -> tuple[Region, ...]:
 
 
 def part_regions(name: str, solids: Sequence[Solid], movers: Sequence[Mover]) -> Iterator[Region]:
-    """Yield the region of a part: the bounding box of its solids and movers, if it has any."""
+    """Yield one region called ``name``: the bounding box of a part's solids and of its movers' paths.
+
+    A part is a group of solids and movers (moving boxes) that levels share. If it is empty, yield
+    nothing.
+    """
     boxes = [solid.box for solid in solids] + [_mover_box(mover, point) for mover in movers for point in mover.path]
     if boxes:
         lows, highs = zip(*(box.low for box in boxes), strict=True), zip(*(box.high for box in boxes), strict=True)

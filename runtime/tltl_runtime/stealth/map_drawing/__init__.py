@@ -1,1 +1,1 @@
-"""Maps of levels as SVG, and recorded episodes as data, for pages."""
+"""Maps of levels as SVG, and recorded episodes as data, for HTML reports."""

@@ -8,7 +8,7 @@ from tltl_runtime.stealth.rendering.plan import BARRIERS, EXIT, MOVER, ROUTE, SO
 
 
 def colours() -> dict[str, str]:
-    """Return the colours by name, as ``#rrggbb``."""
+    """Return the colours of things on a map, as ``#rrggbb``, by names such as ``barrier-laser``."""
     return {
         **SOLIDS,
         **{f"barrier-{kind}": colour for kind, colour in BARRIERS.items()},

@@ -1,7 +1,7 @@
 """The map of a level as an inline SVG: everything that does not move.
 
-The page's script draws onto the map what moves, and trajectories. The units are centimetres from
-the north-western corner of the level's bounds, x eastwards, y southwards. Functions draw the map
+A script in the HTML page then adds trajectories and what moves. The units are centimetres from the
+north-western corner of the level's bounds, x eastwards, y southwards. Functions draw the map
 instead of a template, because nearly every attribute is computed.
 """
 
@@ -42,9 +42,10 @@ _SIGNS: Final = {
 
 
 def level_map(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """Draw the map of a level. The page's script fills its layers ``heat``, ``trajectories``, ``ends`` and ``live``.
+    """Return the map of a level as SVG. The things and regions in ``mentions`` are highlighted.
 
-    Things and regions that the report mentions are highlighted.
+    The map has empty layers ``heat``, ``trajectories``, ``ends`` and ``live``, which the script of
+    the HTML page fills.
     """
     scale = MapScale(level.bounds)
     title, ground = f"Map of {level.name} {level.variant}", _ground(level, scale, mentions)
@@ -52,7 +53,7 @@ def level_map(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
 
 
 def map_key(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """Return the legend of a map, with the signs that occur on it."""
+    """Return the legend of a level's map as HTML, with the signs that occur on the map."""
     solids, barriers = ({entity.kind for entity in entities} for entities in (level.solids, level.barriers))
     present = {
         "switch": level.switches,
@@ -67,7 +68,7 @@ def map_key(level: StealthLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
 
 
 def map_data(level: StealthLevel) -> dict[str, Any]:
-    """Return the data that the page's script needs to draw onto the map of a level, as JSON.
+    """Return the data that the page's script needs to draw onto the map of a level, as JSON data.
 
     ``blocks``, barriers and ``movers`` (moving boxes) may block sight. Each block is a rectangle on
     the map and two heights. ``reach`` and ``angle`` describe an enemy's cone of sight, and ``eyes``
@@ -159,5 +160,5 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
 
 
 def _block(scale: MapScale, box: Box) -> list[int]:
-    """Return the rectangle of a box on the map, then the heights of its bottom and top, in centimetres."""
+    """Return the rectangle of a box on the map, then the heights of its bottom and top, all in centimetres."""
     return [*scale.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

@@ -13,8 +13,8 @@ from tltl_runtime.stealth.level import StealthLevel
 def map_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
     """Place the names of the things and regions of a level on its map.
 
-    Switches, exits, barriers, enemies and regions always have names. Solids and movers have names
-    only if the report ``mentions`` them.
+    Switches, exits, barriers, enemies and regions are always named. Solids and movers (moving
+    boxes) are named only if they are in ``mentions``.
     """
     obstacles = [scale.rect(solid.box) for solid in level.solids if solid.kind in ("wall", "low")]
     obstacles += [scale.rect(barrier.box) for barrier in level.barriers]
@@ -22,7 +22,7 @@ def map_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iter
 
 
 def _thing_labels(level: StealthLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
-    """Yield the names of things at their default positions."""
+    """Yield the names of things at their default positions on the map."""
     small = [(switch.name, scale.at(switch.position)) for switch in level.switches]
     small += [(exit_.name, scale.at(exit_.position)) for exit_ in level.exits]
     wide = [(barrier.name, scale.middle(barrier.box)) for barrier in level.barriers]

@@ -14,12 +14,13 @@ from tltl_runtime.stealth.recordings.episode import Episode
 
 
 def recording_data(index: int, episode: Episode) -> dict[str, Any]:
-    """Return an episode as JSON data for the report page; ``index`` is its number within its case.
+    """Return an episode as JSON data for the report page.
 
-    For an episode of n steps, each list has n + 1 values, the first before step 1; lists about atoms
-    have n. Lengths are in centimetres on the map, angles in degrees, times in milliseconds, health
-    and robustness in hundredths, progress in thousandths. The functions of
-    :mod:`~tltl_runtime.game.packing` encode the values.
+    ``index`` is the number of the episode within its test case. For an episode of n steps, each
+    list has n + 1 values, the first before step 1; lists about atoms have n. Lengths are in
+    centimetres on the map, angles in degrees, times in milliseconds, health and robustness in
+    hundredths, progress in thousandths. The functions of :mod:`~tltl_runtime.game.packing` encode
+    the values.
     """
     snapshots, bounds = episode.snapshots, episode.level.bounds
     return {
@@ -56,7 +57,7 @@ def recording_data(index: int, episode: Episode) -> dict[str, Any]:
 
 
 def _yaw_steps(yaws: Sequence[float]) -> str:
-    """Encode yaw angles, given in radians, in degrees.
+    """Encode yaw angles, which are given in radians, as text in degrees.
 
     Where the angles would jump by a full turn, whole turns are added, so that the page can
     interpolate.

@@ -1,8 +1,9 @@
 """The semantic map: the cell types around the agent at the height of its body.
 
 The map does not turn with the agent: its first axis goes north (y), its second east (x), and the
-agent is in the middle cell. It takes 2 µs to cut the part that stands still out of the level's
-voxels, and about 2 µs for each mover or enemy in the map.
+agent is in the middle cell. What stands still is cut out of arrays of the whole level
+(:class:`~tltl_runtime.stealth.observation.voxels.Voxels`), which takes 2 µs. Each mover or enemy in
+the map takes about 2 µs more.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ _TOUCH: Final = 1e-6
 
 
 class SemanticMap:
-    """The semantic map of a level; ``sensor`` describes it, by default the level's own map sensor.
+    """The semantic map of a level: the types of the cells around the player.
 
-    Raises ValueError if there is neither a ``sensor`` nor a map sensor of the level, or if a cell
-    type is unknown.
+    ``sensor`` gives the size of the map and its types; by default, it is the level's own map
+    sensor. Raises ValueError if there is neither, or if a cell type is unknown.
     """
 
     def __init__(self, level: StealthLevel, sensor: MapSensor | None = None) -> None:
@@ -56,7 +57,7 @@ class SemanticMap:
         self._layers = self.voxels.layers(self._shut)
 
     def set_open(self, barrier: int, opened: bool) -> None:
-        """Show the barrier with this index as open or shut in the map."""
+        """Show the barrier with this index as open or shut from now on."""
         (self._shut.discard if opened else self._shut.add)(barrier)
         self._layers = self.voxels.layers(self._shut)
 
@@ -106,7 +107,7 @@ class SemanticMap:
         return layers
 
     def _stamp(self, ids: NDArray[np.uint8], a: float, b: float, c: float, d: float, number: int) -> None:
-        """Write ``number`` into the cells that overlap a rectangle.
+        """Write ``number`` into the cells of ``ids`` that overlap a rectangle.
 
         The rectangle's west, south, east and north sides are ``a``, ``b``, ``c`` and ``d``, in
         metres from the map's south-west corner.

@@ -14,18 +14,18 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError
 
 DEFAULT_MAP: Final = MapSensor(CELL_TYPES, 0.5, 15)
-"""The values of keys that the mapping for ``map`` leaves out, if the level has no map."""
+"""The default values of the map sensor, if the level itself has no map."""
 
 _CELL: Final = f"give a width from {CELL_WIDTH[0]:g} to {CELL_WIDTH[1]:g} m"
 _EXTENT: Final = f"give an odd number of cells from {MAP_EXTENT[0]} to {MAP_EXTENT[1]}, so that one is in the middle"
 
 
 def choose_sensors(level: StealthLevel, choice: SensorChoice | None = None) -> Sensors:
-    """Return the sensors that the agent uses: ``choice``, or those of the level if it is None.
+    """Return the sensors that the agent uses: ``choice``, or the level's own if ``choice`` is None.
 
-    ``choice`` is a record or a mapping. The level's own sensors decide what a mapping leaves out.
-    ``{"map": None}`` removes the map; ``{"map": {"cell": 1.0}}`` keeps the level's map but changes
-    its cells.
+    ``choice`` is a record or a mapping. For the keys that a mapping leaves out, the level's own
+    sensors are used. ``{"map": None}`` removes the map; ``{"map": {"cell": 1.0}}`` keeps the
+    level's map but changes the width of its cells.
 
     Raises:
         TltlError: one TLT0815 for each mistake.

@@ -1,9 +1,9 @@
-"""The immovable boxes of a level, as layers of cells from which semantic maps are cut.
+"""What stands still in a level, as layers of cells from which semantic maps are cut.
 
 A level is cut into square cells and, every quarter of a metre in height, into layers. A layer is
 for a body whose feet are at its height. For each cell it says what the body would meet there, from
 its head down to the ground on which it stands. There is one set of layers for a standing body and
-one for a crouched body, so a low passage is free only in the second. A cell has the type of an
+one for a crouched body, so a low passage is free only in the second set. A cell has the type of an
 object that overlaps it, however little. If several objects overlap the cell, it has the type that
 comes last in CELL_TYPES.
 """
@@ -60,9 +60,10 @@ class VoxelGrid:
 class Voxels:
     """The layers of a level, one set for each set of shut barriers.
 
-    Each layer has a margin of ``margin`` empty cells around the level, so that a map at the border
-    can be cut out of it, too. ``ids`` has the number of each type in the layers. Raises ValueError
-    for a type that is not in CELL_TYPES.
+    A layer says what a body at one height would meet in each cell. It has a margin of ``margin``
+    empty cells around the level, so that a map at the border can be cut out of the layer, too.
+    ``ids`` has the number of each type in the layers. Raises ValueError for a type that is not in
+    CELL_TYPES.
     """
 
     def __init__(self, level: StealthLevel, sensor: MapSensor) -> None:
@@ -86,7 +87,7 @@ class Voxels:
         self._layers: dict[frozenset[int], Layers] = {}
 
     def layers(self, shut: Collection[int]) -> Layers:
-        """Return the layers while the barriers with these indices are shut.
+        """Return the layers while the barriers with the indices ``shut`` are shut.
 
         They are cached and read-only.
         """
@@ -126,5 +127,8 @@ class Voxels:
 
 
 def _cell_range(low: float, high: float, origin: float, cell: float) -> slice:
-    """Return the range of cells that overlap the inside of an interval."""
+    """Return the range of cells that overlap the inside of the interval from ``low`` to ``high``.
+
+    Cells are ``cell`` wide, and the first one begins at ``origin``.
+    """
     return slice(max(0, floor((low - origin) / cell + _TOUCH)), max(0, ceil((high - origin) / cell - _TOUCH)))

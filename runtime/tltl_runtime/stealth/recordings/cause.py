@@ -22,7 +22,10 @@ _RECENT: Final = 3.0
 
 
 def cause(episode: Episode) -> Cause:
-    """Return why an episode ended, for example which enemy killed the player."""
+    """Return why an episode ended, for example which enemy killed the player.
+
+    Only the recording is used.
+    """
     if not episode.success:
         death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
         if death is not None:
@@ -52,7 +55,7 @@ def _death_cause(episode: Episode, death: int) -> Cause:
 
 
 def _violation_cause(episode: Episode) -> Cause:
-    """Return the cause of a violation: the atoms on which the last transition depended."""
+    """Return the cause of a violation: the atoms that caused the last transition, with their truth values."""
     broken = _broken_atoms(episode)
     by = tuple(name for name, _ in broken)
     words = [f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken]
@@ -62,7 +65,7 @@ def _violation_cause(episode: Episode) -> Cause:
 def _broken_atoms(episode: Episode) -> list[tuple[str, bool]]:
     """Return the atoms that caused a violation, with their truth values.
 
-    If the player died, atoms that read the health are preferred.
+    If the player died, prefer atoms that read the signal ``health``.
     """
     is_dead = episode.snapshots[-1].health <= 0.0
     return broken_atoms(episode, _reads_health if is_dead else lambda atom: False)
@@ -111,10 +114,10 @@ def _remaining_text(episode: Episode) -> str:
 
 
 def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dict[str, float]:
-    """Return the damage, in health per second, of each enemy and laser between two snapshots.
+    """Return the damage that each enemy and laser did between two snapshots, in health per second, by name.
 
-    The result is by name. The computation is that of the game, but reads snapshots. In the game,
-    enemies attack before they move, and lasers burn before switches open them.
+    The computation is that of the game, but reads snapshots. In the game, enemies attack before
+    they move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
     height = kind.crouched_height if after.player.crouching else kind.height
@@ -135,7 +138,7 @@ def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dic
 def _unreachable_goals(episode: Episode) -> tuple[str, ...] | None:
     """Return the next goals of the spec if the player can reach none of them.
 
-    Return an empty tuple if the player can reach one, and None if there are no next goals.
+    Return an empty tuple if the player can reach any of them, and None if there are no next goals.
     """
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}

@@ -19,8 +19,8 @@ class Episode:
 
     If the level is reset with ``seed`` and ``actions`` are played, the same episode results, bit
     for bit. Arrays of length n + 1 begin with the moment of the reset. ``end`` is ``limit`` if the
-    limit of the spec or of the environment came before the verdict was settled, and ``stopped`` if
-    the player left.
+    step limit of the spec or of the environment came before the verdict was final, and ``stopped``
+    if the player left.
     """
 
     level: StealthLevel
@@ -43,7 +43,7 @@ class Episode:
     progress: NDArray[np.float64]
     """(n + 1,), the best progress so far, in [0, 1]."""
     rewards: NDArray[np.float64]
-    """(n,), the reward of each decision."""
+    """(n,), the reward of each time step."""
     verdict: str
     """The verdict of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
     success: bool

@@ -8,7 +8,7 @@ from tltl_runtime.support.number_text import share
 
 
 def figures(episode: Episode) -> GameFigures:
-    """Return the health at the end, and for how long enemies saw the player."""
+    """Return the health at the end, and at how many moments an enemy saw the player."""
     health, seen = episode.snapshots[-1].health, seen_steps(episode)
     text = f"{share(health)}, in sight of an enemy for {seen} steps"
     return GameFigures({"health": health, "seen_steps": seen}, (("health", text),))
@@ -20,7 +20,7 @@ def seen_steps(episode: Episode) -> int:
 
 
 def was_chased(episode: Episode) -> bool:
-    """Return whether an enemy chased the player."""
+    """Return whether an enemy chased the player at any moment."""
     return any("chase" in shot.modes for shot in episode.snapshots)
 
 

@@ -44,9 +44,10 @@ class AxisNames:
 
 @record
 class Meta:
-    """The content of the array ``meta``, which is JSON.
+    """The content of the array ``meta`` of an episode's file, which is JSON.
 
-    It has everything in an episode that is neither in another array nor in the spec's artefact.
+    It has everything in an episode that is neither in another array nor in the compiled spec, which
+    is in the file, too.
     """
 
     format: str
@@ -81,19 +82,19 @@ def read_episode(path: str | os.PathLike[str]) -> Episode:
     Raises:
         TltlError: TLT0001, the file cannot be read; TLT0820, it is not an episode or is damaged;
             TLT0821, it has another version; TLT0822, its contents are inconsistent; TLT0601 to
-            TLT0604, its artefact is invalid.
+            TLT0604, the compiled spec in it is invalid.
     """
     name = os.fspath(path)
     return from_bytes(fileio.read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(episode: Episode) -> bytes:
-    """Return the bytes that :func:`write_episode` writes."""
+    """Return the bytes that :func:`write_episode` writes for an episode."""
     return archive_bytes(to_json(_meta(episode)), episode.fspa, to_arrays(episode, _modes(episode)))
 
 
 def from_bytes(data: bytes, name: str) -> Episode:
-    """Return the episode in the bytes of a file; messages call the file ``name``.
+    """Return the episode that is stored in the bytes of a file; messages call the file ``name``.
 
     Raises the errors of :func:`read_episode`, except TLT0001.
     """
@@ -163,7 +164,7 @@ def _read_meta(archive: RecordingArchive, name: str) -> Meta:
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """Raise TLT0822 if an index is out of range, or if names do not fit the level and the spec."""
+    """Raise TLT0822 if an index is out of range, the seed is negative, or names do not fit the level and spec."""
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

@@ -9,10 +9,10 @@ from tltlc.api import Diagnostic
 
 
 def resimulate(episode: Episode) -> int | None:
-    """Play the actions again from the seed; return the first step that differs in any bit.
+    """Play an episode's actions again from its seed; return the first step that differs in any bit.
 
     Return None if no step differs. Step 0 is the moment of the reset. A step differs if its
-    snapshot differs, or one of the spec's signals that the game supplies.
+    snapshot differs, or if a signal of the spec that the game supplies differs.
 
     Raises:
         TltlError: TLT0730, pybullet is not installed.

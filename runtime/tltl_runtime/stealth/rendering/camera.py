@@ -63,9 +63,9 @@ class Camera:
 def camera(level: StealthLevel, view: View, player: Point, aspect: float) -> Camera:
     """Return the camera of a view.
 
-    ``aspect`` is the picture's width over its height, ``player`` the position of the player's feet.
-    ``third_person`` follows the player from the south; ``top_down`` and ``overview`` (from the
-    south, oblique) show the entire level.
+    ``aspect`` is the picture's width divided by its height, ``player`` the position of the player's
+    feet. The view ``third_person`` follows the player from the south. The views ``top_down`` and
+    ``overview`` (from the south, oblique) show the entire level.
     """
     if view == "third_person":
         return Camera(_add(player, _FOLLOW), _add(player, _AHEAD), _FIELD)
@@ -90,8 +90,8 @@ def check_size(size: object) -> tuple[int, int]:
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:
     """Return for each pixel the vector from the camera towards what the pixel shows.
 
-    The part of each vector along the direction of view is one metre long. The result is (height,
-    width, 3).
+    Each vector is so long that it advances one metre along the direction of view. The result is
+    (height, width, 3).
     """
     ahead, right, up = _axes(camera)
     half = tan(np.radians(camera.field) / 2)
@@ -118,7 +118,10 @@ def pixels(camera: Camera, points: NDArray[np.float64], width: int, height: int)
 
 
 def _top_down(level: StealthLevel, aspect: float) -> Camera:
-    """Return a camera above the level, so high that the floor and the tops of the walls fit."""
+    """Return a camera above the level, so high that the floor and the tops of the walls fit.
+
+    ``aspect`` is the picture's width divided by its height.
+    """
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     needed = max(high[1] - low[1], (high[0] - low[0]) / aspect) * _MARGIN
@@ -127,7 +130,10 @@ def _top_down(level: StealthLevel, aspect: float) -> Camera:
 
 
 def _overview(level: StealthLevel, aspect: float) -> Camera:
-    """Return a camera to the south and above, as near as it can be to show the whole level."""
+    """Return a camera to the south and above, as near as it can be to show the whole level.
+
+    ``aspect`` is the picture's width divided by its height.
+    """
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
     corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])

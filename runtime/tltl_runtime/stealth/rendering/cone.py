@@ -41,9 +41,10 @@ class SightField:
         self._seen = np.where(crouched, 1.0, np.where(standing, _ONLY_STANDING, 0.0)).astype(np.float32)
 
     def visibility(self, places: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return how well the enemy would see players at positions (n, 2): (n,), in [0, 1].
+        """Return how well the enemy would see players at positions (n, 2), as (n,) in [0, 1].
 
-        At the borders of what the enemy sees, the values are interpolated.
+        The values are 0, 0.5 (only a standing player) or 1; at borders between them, they are
+        interpolated.
         """
         x, y = places[:, 0] - np.float32(self.eyes[0]), places[:, 1] - np.float32(self.eyes[1])
         radius = np.hypot(x, y)
@@ -57,7 +58,7 @@ class SightField:
     def _free(
         self, x: NDArray[np.float64], y: NDArray[np.float64], head: float, boxes: Iterable[Box]
     ) -> NDArray[np.bool_]:
-        """Return for each offset ``x``, ``y`` from the enemy's eyes whether it sees a head there.
+        """Return for each offset ``x``, ``y`` from the enemy's eyes whether the enemy sees a head there.
 
         ``head`` is the height of the head, in metres; ``boxes`` block the sight.
         """

@@ -54,8 +54,8 @@ def frames(
 ) -> Iterator[Picture]:
     """Yield one RGB picture of ``size`` (width, height) for each of ``times``.
 
-    ``times`` are rising seconds since the reset. At a time between two snapshots, the positions of
-    bodies are interpolated, and the automaton is in the state of the earlier snapshot.
+    ``times`` are in seconds since the reset, in rising order. At a time between two snapshots, the
+    positions of bodies are interpolated, and the automaton is in the state of the earlier snapshot.
     """
     width, height = size
     font = ImageFont.truetype(str(_FONT), _TEXT)
@@ -67,7 +67,11 @@ def frames(
 
 
 def _moment(episode: Episode, time: float) -> Moment:
-    """Return the number of time steps that are over at ``time``, and the snapshot at that time."""
+    """Return the number of time steps that are over at ``time``, and the snapshot at that time.
+
+    Between two recorded snapshots, the result is interpolated. ``time`` is in seconds since the
+    reset.
+    """
     shots = episode.snapshots
     row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
     since = time - shots[row].time
@@ -89,7 +93,7 @@ def _draw_view(episode: Episode, moments: Sequence[Moment], view: View, size: tu
 
 
 def _draw_plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
-    """Yield the level's plan for each moment, with all bodies and the player's path so far."""
+    """Yield a picture of the level from above for each moment, with all bodies and the player's path so far."""
     empty, pixel = backdrop(episode.level, size)
     trail = Image.fromarray(empty)
     draw = ImageDraw.Draw(trail)
@@ -105,10 +109,9 @@ def _draw_plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, in
 
 
 def _populate(picture: Image.Image, pixel: Pixel, level: StealthLevel, shot: Snapshot, colour: str) -> None:
-    """Draw what can move on a picture of the level's plan; the player gets this ``colour``.
+    """Draw on a plan what can move: the shut barriers, the movers, the enemies and the player.
 
-    These are the shut barriers, the movers, the enemies and the player. ``pixel`` converts a
-    position in the level to a pixel.
+    The player is drawn in this ``colour``. ``pixel`` converts a position in the level to a pixel.
     """
     draw = ImageDraw.Draw(picture)
     metre = pixel((1.0, 0.0, 0.0))[0] - pixel((0.0, 0.0, 0.0))[0]
@@ -131,7 +134,10 @@ def _corners(pixel: Pixel, low: Point, high: Point) -> tuple[float, ...]:
 
 
 def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radius: float, colour: str) -> None:
-    """Draw a body from above, with a line in the direction of its yaw."""
+    """Draw a body from above, as a disc with a line in the direction of its ``yaw``.
+
+    ``at`` and ``radius`` are in pixels.
+    """
     x, y = at
     draw.line((x, y, x + 2 * radius * cos(yaw), y - 2 * radius * sin(yaw)), fill=_PAPER, width=2)
     draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour, outline=_PAPER)
@@ -173,7 +179,10 @@ def _add_strip(
 
 
 def _break_lines(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
-    """Break a text into lines of ``width`` pixels for a film's strip; cut off what does not fit."""
+    """Break a text into lines at most ``width`` pixels wide, for a film's strip.
+
+    Cut off what does not fit on two lines.
+    """
     lines: list[str] = []
     while text and len(lines) < len(_LINES):
         line = text

@@ -41,5 +41,5 @@ def _point(before: Point, after: Point, share: float) -> Point:
 
 
 def _angle(before: float, after: float, share: float) -> float:
-    """Interpolate a yaw along the shorter turn."""
+    """Interpolate between two yaws, in radians, along the shorter turn."""
     return before + share * ((after - before + pi) % (2 * pi) - pi)

@@ -1,7 +1,7 @@
 """Paint layers over a picture: a floor pattern, fields of sight, glass, background.
 
 The depth of a pixel tells which position in the world the pixel shows. A layer is painted over the
-pixels whose positions it covers. Pictures contain floats from 0 to 1.
+pixels whose positions it covers. Pictures contain floats in [0, 1].
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Canvas:
         self.picture[rows, columns] *= np.where(tile % 2 == 1, np.float32(_TILE_SHADE), np.float32(1.0))[:, None]
 
     def edges(self, bodies: NDArray[np.int32]) -> None:
-        """Draw thin dark lines between bodies.
+        """Draw thin dark lines where bodies meet in the picture.
 
         ``bodies`` [height, width] has the number of the body at each pixel.
         """
@@ -76,9 +76,10 @@ class Canvas:
         self.picture[region] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
     def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
-        """Paint the floor that an enemy sees, in this ``colour`` and ``strength``.
+        """Paint the part of the floor that an enemy sees, in this ``colour`` and ``strength``.
 
-        The strength is half where the enemy sees only standing players.
+        ``strength`` is the opacity, in [0, 1]. It is half where the enemy sees only standing
+        players.
         """
         x, y, _ = field.eyes
         reach = field.reach
@@ -90,7 +91,10 @@ class Canvas:
         self._blend(region, np.array(colour, np.float32), strength * seen)
 
     def glass(self, low: Point, high: Point, colour: Sequence[float], strength: float) -> None:
-        """Paint a translucent box; bodies in front of the box hide it."""
+        """Paint a translucent box with the corners ``low`` and ``high``; bodies in front of the box hide it.
+
+        ``strength`` is the opacity, in [0, 1].
+        """
         corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         region = self._region(corners)
         lines = self.lines[region]
@@ -108,7 +112,7 @@ class Canvas:
         self.picture[region] = self.picture[region] * (1 - share) + colour * share
 
     def _region(self, points: Sequence[Point]) -> PixelRegion:
-        """Return the smallest region of the picture that shows all these points."""
+        """Return the smallest rectangle of the picture that shows all these points, as rows and columns."""
         positions = pixels(self.camera, np.array(points, np.float64), self.width, self.height)
         left, top = np.floor(positions.min(axis=0)).astype(int)
         right, bottom = np.ceil(positions.max(axis=0)).astype(int) + 1

@@ -34,7 +34,10 @@ _COLUMN: Final = 2.0
 
 
 def draw_level(level: StealthLevel, reach: Reach) -> bytes:
-    """Draw the plan of a level as a PNG. Red covers all places where no player can stand."""
+    """Draw the plan of a level (a map from above) as a PNG.
+
+    Red covers all places where no player can stand.
+    """
     width, height = plan_size(level.bounds)
     legend = _legend(level)
     columns = max(1, int(width / _COLUMN))
@@ -46,7 +49,10 @@ def draw_level(level: StealthLevel, reach: Reach) -> bytes:
 
 
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
-    """Draw the plan of an episode as a PNG: see :func:`~tltl_runtime.game.plan.draw_path`."""
+    """Draw the player's path in an episode on the plan of its level, as a PNG.
+
+    See :func:`~tltl_runtime.game.plan.draw_path`.
+    """
     plan = Plan(episode.level.bounds, lambda figure: level_axes(figure, episode.level, start=False))
     death = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
     path = [shot.player.position for shot in episode.snapshots]
@@ -56,7 +62,7 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
 def backdrop(
     level: StealthLevel, size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Return a picture of a level's plan without what moves, and a function for positions in it.
+    """Return a picture of a level's plan without bodies that move, and a function for positions in it.
 
     The picture is (height, width, 3). The function converts a position in the level to a pixel of
     the picture: x and y from the upper left.
@@ -75,7 +81,7 @@ def backdrop(
 
 
 def _add_reach(axes: Any, reach: Reach) -> None:
-    """Paint red on a plan all cells in which no player can reach ground to stand on."""
+    """Paint red, on a plan, all cells in which no player can reach ground to stand on."""
     rows, columns = reach.ground.shape
     west, south = reach.origin
     red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
@@ -103,16 +109,16 @@ def _legend(level: StealthLevel) -> list[Any]:
 
 
 def exit_mark() -> Line2D:
-    """Return the entry for exits in legends, a star."""
+    """Return the entry for exits in a plan's legend, a star."""
     return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
 
 
 def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: bool = True) -> Any:
-    """Draw a level in new axes of a figure, with the metre as the unit, and return the axes.
+    """Draw a level from above in new axes of a figure, with the metre as the unit, and return the axes.
 
-    With ``moving``, the plan shows the beginning: barriers are drawn as shut, and movers and
-    enemies are named at their initial positions. With ``start``, it shows the player's start. If
-    text of full size does not fit, only switches and exits are named.
+    With ``moving``, the plan shows the beginning of an episode: barriers are drawn as shut, and
+    movers (moving boxes) and enemies are named at their initial positions. With ``start``, it shows
+    the player's start. If text of full size does not fit, only switches and exits are named.
     """
     scale = text_scale(figure, level.bounds)
     roomy, letters = scale == 1.0, 8 * scale

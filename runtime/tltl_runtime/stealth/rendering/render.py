@@ -41,11 +41,12 @@ _OVERHEAD: Final = 1.0
 
 
 class Renderer:
-    """Draws snapshots of a level, ``width`` by ``height`` pixels.
+    """Draws snapshots of a level as pictures of ``width`` by ``height`` pixels.
 
-    Each pixel is the mean of ``samples`` by ``samples`` smaller ones. Raises ValueError for a size
-    that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects, also if ``samples``
-    makes it too large.
+    The picture is drawn ``samples`` times as wide and as high, and then each pixel is the mean of
+    ``samples`` by ``samples`` of its pixels. Raises ValueError if
+    :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects the size, or the size times
+    ``samples``.
     """
 
     def __init__(self, level: StealthLevel, width: int = 640, height: int = 480, samples: int = 1) -> None:
@@ -80,7 +81,7 @@ class Renderer:
         return (picture.clip(0.0, 1.0) * 255 + 0.5).astype(np.uint8)
 
     def names(self, snapshot: Snapshot, view: View = "third_person") -> list[tuple[str, float, float]]:
-        """Return the names of the entities in the picture, each with its position in pixels.
+        """Return the names of the entities that the picture shows, each with its x and y in pixels.
 
         Open barriers have no names.
         """
@@ -142,7 +143,7 @@ class Renderer:
                 canvas.field(field, _SIGHT[snapshot.modes[index]], 0.42)
 
     def _paint_glass(self, canvas: Canvas, snapshot: Snapshot, glass: list[Obstacle]) -> None:
-        """Paint the lasers and the obstacles that are drawn as glass, from far to near."""
+        """Paint the shut lasers and the obstacles that are drawn as glass, from far to near."""
         panes = [(obstacle.box, obstacle.colour, _GLASS) for obstacle in glass]
         panes += [
             (barrier.box, _LASER, 0.5)
@@ -155,8 +156,8 @@ class Renderer:
     def _is_glass(self, box: Box, eye: Camera, view: View, snapshot: Snapshot) -> bool:
         """Whether to draw a box as glass.
 
-        It is glass if it hides the player, or if it hides much of the level: the south wall, or a
-        box overhead in the view from above.
+        A box is glass if it hides the player, or if it hides much of the level: the south wall, or
+        in the view from above a box overhead.
         """
         if view == "top_down" and box.low[2] > _OVERHEAD:
             return True

@@ -1,7 +1,7 @@
 """The bodies in pictures: a pybullet client without physics, which shows snapshots.
 
-Bodies have no collision shapes here, and each box is a body. A body that must not be seen is moved
-far below the level. TinyRenderer cannot draw translucent objects, such as lasers. So they are not
+Bodies have no collision shapes here, and each box is a body. To hide a body, the scene moves it far
+below the level. TinyRenderer cannot draw translucent objects, such as lasers. So they are not
 bodies, and :mod:`tltl_runtime.stealth.rendering.paint` draws them.
 """
 
@@ -134,7 +134,10 @@ class Scene:
         return self._body(shape, _middle(box))
 
     def _lathe(self, profile: Sequence[tuple[float, float]], colour: Colour, place: Point = _AWAY) -> int:
-        """Create a body of revolution about z; ``profile`` has (radius, z) from bottom to top."""
+        """Create a body of revolution about the z axis; return its id.
+
+        ``profile`` has pairs (radius, z), from bottom to top.
+        """
         vertices, normals, indices = _revolve(tuple(profile))
         shape = pybullet.createVisualShape(
             pybullet.GEOM_MESH,
@@ -147,7 +150,7 @@ class Scene:
         return self._body(shape, place)
 
     def _person(self, radius: float, height: float, colour: Colour) -> tuple[int, int]:
-        """Create an upright capsule and a visor on its front.
+        """Create an upright capsule, and a visor on its front; return their ids.
 
         The origin of both is between the feet.
         """
@@ -164,7 +167,7 @@ class Scene:
         return self._lathe(foot + head, colour), self._body(visor, _AWAY)
 
     def _switch(self, place: Point, radius: float) -> tuple[int, int]:
-        """Create a plate as large as the switch's radius, with a button in its middle."""
+        """Create a plate as large as the switch's radius, with a button in its middle; return their ids."""
         plate = [(radius, 0.0), (radius, 0.02), (0.0, 0.02)]
         button = [(0.28, 0.02), (0.28, 0.16), (0.2, 0.2), (0.0, 0.2)]
         return self._lathe(plate, SHUT_SWITCH, place), self._lathe(button, SHUT_SWITCH, place)
@@ -198,10 +201,11 @@ class Scene:
 def _revolve(
     profile: tuple[tuple[float, float], ...], steps: int = 28
 ) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """Return the vertices, normals and triangles of a profile that is turned about the z axis.
+    """Return the mesh of a profile that is turned about the z axis: vertices, normals and triangles.
 
-    It is turned in ``steps`` steps. Edges of the profile stay sharp. The result is cached, because
-    pybullet never frees the lists that it gets: new lists for each scene would leak.
+    ``profile`` has pairs (radius, z). The full turn has ``steps`` steps. Edges of the profile stay
+    sharp. The result is cached, because pybullet never frees the lists that it gets: new lists for
+    each scene would leak.
     """
     vertices: list[list[float]] = []
     normals: list[list[float]] = []

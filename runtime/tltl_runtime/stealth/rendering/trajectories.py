@@ -12,9 +12,9 @@ from tltlc.api import Fspa
 
 
 def draw_trajectories(level: StealthLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
-    """Draw trajectories on the plan of a level, as a PNG: see :func:`~tltl_runtime.game.plan.draw_paths`.
+    """Draw the trajectories of many episodes on the plan of a level (a map from above), as a PNG.
 
-    The legend also says which mark is an exit.
+    See :func:`~tltl_runtime.game.plan.draw_paths`. The legend also says which mark is an exit.
     """
     marks = (exit_mark(),) if level.exits else ()
     return draw_paths(

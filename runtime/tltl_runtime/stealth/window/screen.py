@@ -1,4 +1,4 @@
-"""The rendering of an environment: pictures, or a window that the first picture opens."""
+"""The rendering of an environment: pictures, or a window that opens when the first picture is drawn."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MODES: Final = ("human", "rgb_array")
 
 
 class Screen:
-    """Renders pictures of a level, and shows them in a window in the ``mode`` ``human``.
+    """Renders pictures of a level. In the ``mode`` ``human``, it shows them in a window.
 
     ``size`` is the width and height in pixels. Raises ValueError for an unknown mode or view, and
     for a size that :func:`~tltl_runtime.stealth.rendering.camera.check_size` rejects.

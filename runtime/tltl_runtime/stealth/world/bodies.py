@@ -1,6 +1,6 @@
-"""Create pybullet bodies, and avoid the traps of pybullet.
+"""Create pybullet bodies in a way that avoids pybullet's pitfalls.
 
-:mod:`~tltl_runtime.stealth.world.physics` lists these traps.
+:mod:`~tltl_runtime.stealth.world.physics` lists them.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
-    """Create one static body of at most 16 boxes, and return its id.
+    """Create one body of at most 16 boxes, which stands still, and return its id.
 
-    Its collision group is ``WORLD``.
+    Its collision group is ``WORLD``. Raises ValueError if there are more boxes.
     """
     if len(boxes) > COMPOUND:
         raise ValueError(f"a compound contains at most {COMPOUND} boxes, not {len(boxes)}")
@@ -40,9 +40,9 @@ def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
 
 
 def static_box(client: int, size: Point, place: Point) -> int:
-    """Create a static body of one box centred at ``place``, and return its id.
+    """Create a body of one box centred at ``place``, and return its id.
 
-    Its collision group is ``WORLD``. The body can be moved later.
+    Its collision group is ``WORLD``. The physics does not move the body, but the caller can.
     """
     half = [side / 2 for side in size]
     shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
@@ -50,7 +50,7 @@ def static_box(client: int, size: Point, place: Point) -> int:
 
 
 def capsule(client: int, radius: float, height: float, place: Point) -> int:
-    """Create a dynamic capsule of 1 kg at ``place``, without rotation and friction; return its id.
+    """Create a dynamic capsule of 1 kg at ``place``, without rotation and friction, and return its id.
 
     The capsule collides with nothing until :func:`set_filter` changes that.
     """

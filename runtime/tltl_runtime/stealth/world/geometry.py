@@ -1,4 +1,4 @@
-"""Geometry of axis-aligned boxes and upright capsules: overlap depth and grouping of boxes."""
+"""Geometry of axis-aligned boxes and upright capsules, such as how deep they overlap."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ TOUCH = 0.02
 
 
 def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
-    """Split boxes into groups of at most ``size`` neighbours.
+    """Split boxes into groups of at most ``size`` boxes that are near each other.
 
-    A set of boxes is halved across the longer side of its area until all groups are small enough.
+    The boxes are halved, across the longer side of the area that they cover, until all groups are
+    small enough.
     """
     if len(boxes) <= size:
         return [boxes] if boxes else []
@@ -27,9 +28,9 @@ def group_boxes(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
 
 
 def boxes_by_cell(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
-    """Return the boxes within ``reach`` metres of each square metre of ground.
+    """Return, for each square metre of ground, the boxes within ``reach`` metres of it.
 
-    The key of a square is its south-west corner.
+    The key of a square is its south-west corner. Squares without boxes have no key.
     """
     cells: dict[tuple[int, int], list[Bounds]] = {}
     for low, high in boxes:
@@ -40,14 +41,15 @@ def boxes_by_cell(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], li
 
 
 def depth(feet: Point, height: float, radius: float, low: Point, high: Point) -> float:
-    """Return how far an upright capsule overlaps a box, in metres; negative if they are apart."""
+    """Return how far an upright capsule at ``feet`` overlaps a box, in metres; negative if they are apart."""
     return contact(feet, height, radius, low, high)[0]
 
 
 def contact(feet: Point, height: float, radius: float, low: Point, high: Point) -> tuple[float, Point]:
     """Return how far an upright capsule overlaps a box, and the unit vector out of the box.
 
-    The overlap is in metres, negative if they are apart.
+    The overlap is in metres, negative if the capsule and the box are apart. The capsule stands at
+    ``feet``.
     """
     x, y, z = feet
     bottom, top = z + radius, z + height - radius

@@ -1,4 +1,4 @@
-"""The bodies of the movers of a level: they follow their paths and push the player.
+"""The bodies of the movers (moving boxes) of a level: they follow their paths and push the player.
 
 For Bullet, a mover is a box that is teleported, so it pushes nothing. This module pushes the player
 by setting the player's velocity.
@@ -18,9 +18,9 @@ from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.player import DECISION
 
 _REACH = 1.5
-"""The player can touch a mover within a decision from at most this far away, in metres.
+"""The player can touch a mover within a time step from at most this far away, in metres.
 
-The distance that the mover itself moves in the decision is added.
+To this, add the distance that the mover itself moves in the time step.
 """
 _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
@@ -62,10 +62,10 @@ class MoverBody:
 def push(
     movers: Sequence[MoverBody], seconds: float, player: Capsules, has_room: Callable[[Point, float, MoverBody], bool]
 ) -> None:
-    """Advance each mover and push the player; call this before each physics step of ``seconds``.
+    """Advance the movers and push the player; call this before each physics step of ``seconds``.
 
-    ``has_room`` says whether a capsule at a position is free of everything but the mover. If the
-    push would leave the player no room, the mover waits: otherwise it would press the player
+    ``has_room(feet, height, mover)`` says whether a capsule is free of everything but the mover. If
+    the push would leave the player no room, the mover waits: otherwise it would press the player
     through a wall.
     """
     x, y, z = feet = player.feet()

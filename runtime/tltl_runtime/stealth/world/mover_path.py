@@ -32,8 +32,8 @@ class MoverPath:
     def position_at(self, clock: float) -> Point:
         """Return the centre of the mover after ``clock`` seconds on its path.
 
-        These seconds include the pauses: the mover rests at each point of the path, and then moves
-        to the next one.
+        These seconds include the pauses: at each point of the path, the mover first rests, and then
+        moves to the next point.
         """
         if self._lap <= 0.0:
             return self._first

@@ -41,7 +41,7 @@ _SINK_TOLERANCE = 0.2
 A landing sinks into the floor by up to one physics step of a fall.
 """
 _PARK_INTERVAL = 64
-"""The inactive capsule is moved back after this many decisions; by then it has fallen 1 km."""
+"""The inactive capsule is moved back after this many time steps; by then it has fallen 1 km."""
 
 
 class Random(Protocol):
@@ -54,8 +54,8 @@ class Random(Protocol):
 class WorldError(RuntimeError):
     """Raised if the physics differs from the level, or if the player has no room or leaves the level.
 
-    ``body`` is the name of the body at fault, such as ``player``. The cause is an error in the
-    level or in the physics.
+    ``body`` is the name of the body that the error is about, such as ``player``, and ``step`` the
+    number of the time step.
     """
 
     def __init__(self, level: StealthLevel, step: int, body: str, problem: str) -> None:
@@ -71,9 +71,10 @@ class WorldError(RuntimeError):
 class World:
     """The bodies of a level, in a pybullet client of their own.
 
-    Barriers and movers are identified by their index in the level. Lasers have no body here: they
-    stop neither bodies nor sight. The constructor resets the world, with the player exactly at the
-    start, and checks it (see ``check``).
+    Barriers and movers (moving boxes) are identified by their index in the level. Lasers have no
+    body here: they stop neither bodies nor sight. The constructor resets the world, with the player
+    exactly at the start, and checks it (see ``check``). It raises WorldError if the player has no
+    room, or if the check fails.
     """
 
     def __init__(self, level: StealthLevel, kind: PlayerKind | None = None) -> None:
@@ -122,7 +123,7 @@ class World:
         self._observe(False, self.level.start.yaw, 1.0)
 
     def step(self, action: Sequence[int]) -> None:
-        """Apply an action of the player for one decision, which lasts 0.15 s.
+        """Apply an action of the player for one time step, which lasts 0.15 s.
 
         Raises WorldError if the player leaves the level's bounds.
         """
@@ -151,7 +152,7 @@ class World:
         """Set the player to ``state``, an earlier value of ``player``.
 
         A search can then continue from that state. Movers and barriers stay unchanged, and Bullet's
-        contact cache is not restored. So a decision that is repeated may end some millimetres away
+        contact cache is not restored. So if an action is repeated, it may end some millimetres away
         from its first result.
         """
         self._put(state.crouching, state.position, state.velocity)
@@ -159,15 +160,15 @@ class World:
 
     @property
     def player(self) -> PlayerState:
-        """The state of the player after the last decision, :meth:`reset` or :meth:`put`."""
+        """The state of the player after the last :meth:`step`, :meth:`reset` or :meth:`put`."""
         return self._state
 
     def mover_positions(self) -> tuple[Point, ...]:
-        """Return the centres of the movers, in the order in which the level lists them."""
+        """Return the centres of the movers (moving boxes), in the order in which the level lists them."""
         return tuple(mover.place for mover in self.movers)
 
     def mover_boxes(self) -> list[Bounds]:
-        """Return the lowest and highest corner of each mover, in the order in which the level lists them."""
+        """Return the lowest and highest corner of each mover (moving box), in the order of the level."""
         return [mover.box for mover in self.movers]
 
     def is_open(self, barrier: int) -> bool:
@@ -249,10 +250,11 @@ class World:
     # The player
 
     def _start(self, rng: Random | None) -> Point:
-        """Return a position for the player's feet at which the player has room to begin an episode.
+        """Return a position for the player's feet at the beginning of an episode.
 
         It is a random place at most ``spread`` metres from the level's start, or without ``rng``
-        exactly the start. Raises WorldError if there is no room.
+        exactly the start. Raises WorldError if the player has no room there, even after 100 random
+        tries.
         """
         x, y, z = self.level.start.position
         for _ in range(100 if rng is not None else 1):
@@ -276,7 +278,7 @@ class World:
             raise WorldError(self.level, self.steps, f"{name} player", problem)
 
     def _observe(self, crouching: bool, yaw: float, stamina: float) -> None:
-        """Store the state of the player after a decision.
+        """Read the state of the player from pybullet after a time step, and store it.
 
         The position, the velocity and the contact with the ground come from pybullet, the rest from
         the arguments. Raises WorldError if the player is outside the level's bounds.
@@ -291,7 +293,7 @@ class World:
     # Time
 
     def _movers_near(self) -> list[MoverBody]:
-        """Advance the movers that the player cannot touch in this decision; return the other movers."""
+        """Return the movers that the player can touch in this time step; advance all other movers by the step."""
         near = []
         for mover in self.movers:
             if mover.is_near(self._state.position, self.kind.height):
@@ -301,7 +303,7 @@ class World:
         return near
 
     def _advance(self, near: Sequence[MoverBody]) -> None:
-        """Run the physics of a decision.
+        """Run the physics of a time step.
 
         Without movers ``near``, this is one call of pybullet. Otherwise these movers push the
         player before each physics step.
@@ -326,7 +328,7 @@ class World:
     # The boxes that stop bodies
 
     def _solids_near(self, feet: Point) -> list[Bounds]:
-        """Return the boxes of solids that the player may touch within one decision from ``feet``."""
+        """Return the boxes of solids that the player may touch within one time step from ``feet``."""
         return self._boxes_by_cell.get((floor(feet[0]), floor(feet[1])), [])
 
     def _changing_boxes(self, ignored: MoverBody | None) -> list[Bounds]:

@@ -15,7 +15,7 @@ from tltlc.api import record
 Action = tuple[int, int, int, int, int]
 
 DECISION = 0.15
-"""Seconds from one action to the next."""
+"""Seconds from one action to the next: a decision is a time step of the game."""
 SUBSTEPS = 9
 """Physics steps in a decision."""
 
@@ -27,9 +27,10 @@ SIGN = (0.0, 1.0, -1.0)
 class PlayerKind:
     """The parameters of the player, in metres, seconds and metres per second.
 
-    A jump lifts the feet by 0.97 m, which follows from ``jump_speed`` and ``gravity``. The round
-    end of the capsule slides up the rest of an edge. From a walk or a sprint, the player reaches
-    platforms of 1.0 m, hardly ever those of 1.2 m, and never higher ones.
+    A jump lifts the feet by 0.97 m, which follows from ``jump_speed`` and ``gravity``. The body is
+    a capsule, whose round lower end can also slide up an edge that is a little higher. From a walk
+    or a sprint, the player reaches platforms of 1.0 m, hardly ever those of 1.2 m, and never higher
+    ones.
     """
 
     radius: float = 0.3
@@ -47,7 +48,7 @@ class PlayerKind:
     step_height: float = 0.25
     """The highest stair that the player walks up."""
     fall_speed: float = 8.0
-    """The greatest speed of a fall at the start of a decision.
+    """The greatest speed of a fall at the start of a decision (a time step).
 
     A faster body could pass through a floor when it lands.
     """
@@ -55,7 +56,7 @@ class PlayerKind:
 
 @record
 class PlayerState:
-    """The player at the end of a decision; ``position`` is at the feet, ``stamina`` in [0, 1]."""
+    """The player at the end of a time step; ``position`` is at the feet, ``stamina`` in [0, 1]."""
 
     position: Point
     velocity: Point
@@ -67,9 +68,9 @@ class PlayerState:
 
 @record
 class Control:
-    """The motion that an action requests for one decision.
+    """The motion that an action requests for one time step.
 
-    ``stamina`` is what is left at the end of the decision, in [0, 1].
+    ``stamina`` is the stamina at the end of the time step, in [0, 1].
     """
 
     velocity: tuple[float, float]
@@ -81,8 +82,8 @@ class Control:
 def control(kind: PlayerKind, state: PlayerState, action: Sequence[int], crouching: bool) -> Control:
     """Return the motion that ``action`` requests of a player in ``state``.
 
-    ``crouching`` says whether the player crouches in this decision. Diagonal motion is no faster
-    than straight motion. A sprint needs stamina for a whole decision, and a jump needs ground. A
+    ``crouching`` says whether the player crouches in this time step. Diagonal motion is no faster
+    than straight motion. A sprint needs stamina for a whole time step, and a jump needs ground. A
     crouched player neither sprints nor jumps.
     """
     x, y = SIGN[action[0]], SIGN[action[1]]

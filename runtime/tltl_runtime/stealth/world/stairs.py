@@ -1,6 +1,6 @@
 """Compute how far to lift the player, so that the player walks up stairs.
 
-The physics engine, Bullet, does not lift the player: the velocity, which is set once per decision,
+The physics engine, Bullet, does not lift the player: the velocity, which is set once per time step,
 is horizontal, so the player would stop at the edge of a high stair.
 """
 
@@ -26,8 +26,8 @@ def lift(
 ) -> float:
     """Return how far to lift the player's feet, in metres, so that the player walks up a stair.
 
-    The result is 0 if there is no stair in the way of this decision. ``boxes`` are the boxes that
-    the player could touch.
+    The result is 0 if there is no stair in the way of the next time step. ``boxes`` are the boxes
+    that the player could touch. ``has_room`` says whether a player has room at a point.
     """
     x, y, z = feet
     highest = z + kind.step_height + 2 * TOUCH
