@@ -1,1 +1,4 @@
-"""Monitors as programs in no particular language: declarations, assignments and branches, which backends print."""
+"""Monitors as programs in no particular language, which backends print in languages such as C.
+
+A program has declarations, assignments and branches.
+"""

@@ -2,7 +2,8 @@
 
 Three kinds of subexpressions get temporary variables:
 
-- a ``when``: an ``if`` before the expression assigns its value;
+- a ``when``, an expression that has the value of its first case whose condition is true: an ``if``
+  before the expression assigns the value;
 - an expression that is nested too deep for the parsers of some languages;
 - the base of a power that is written as a product.
 
@@ -62,8 +63,9 @@ _SourceNode = Union[source.Expression, source.Condition]
 class _BranchPath:
     """The conditions that are all true where an expression is computed, as a linked list.
 
-    ``condition`` is the last one, and ``before`` has the others. ``variable`` is the variable of
-    the program that says whether all of them are true. It is None until a statement needs it.
+    ``condition`` is the last condition, and ``before`` has the others (None if there are none).
+    ``variable`` is the variable of the program that says whether all these conditions are true. It
+    is None until a statement needs it.
     """
 
     __slots__ = ("before", "condition", "variable")
@@ -77,9 +79,9 @@ def with_declaration(name: str, statements: Sequence[Statement], *, changes: boo
     """Return ``statements``, changed so that they declare the variable ``name``.
 
     ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``.
-    If the last statement assigns this value, it becomes the declaration. Otherwise, a declaration
-    without a value comes first. ``changes`` says whether the variable is assigned again later, for
-    example when the value of an atom is clamped to [-1, 1].
+    If the last statement assigns this value, a declaration with the value replaces it. Otherwise, a
+    declaration without a value comes first. ``changes`` says whether the variable is assigned again
+    later, for example when the value of an atom is clamped to [-1, 1].
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
@@ -102,8 +104,9 @@ def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
 class ExpressionTranslator:
     """Translates expressions to statements.
 
-    ``signals`` and ``params`` map the names of signals and params to variables. Temporary variables
-    are called ``prefix`` and a number, counted from 1; all have different names.
+    ``signals`` and ``params`` map the names of signals and parameters to variables. Temporary
+    variables are called ``prefix`` and a number: ``t_1``, ``t_2``, and so on. No two of them have
+    the same name.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -123,10 +126,11 @@ class ExpressionTranslator:
     def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to the variable ``name``.
 
-        The statements are one ``if`` with a case for each case of the ``when``. If the condition of
-        a later case needs statements of its own, these are in the ``else``, followed by a further
-        ``if`` for this case and the cases after it. ``depth`` is the number of ``if`` statements
-        that are nested for this reason, from 1.
+        A ``when`` has the value of its first case whose condition is true. It becomes one ``if``
+        with a case for each case of the ``when``. If the condition of a later case needs statements
+        of its own, these are in the ``else``, followed by a further ``if`` for this case and the
+        cases after it. ``depth`` is the number of ``if`` statements that are nested for this
+        reason, from 1.
         """
         condition, value = node.cases[0]
         before: list[Statement] = []
@@ -147,9 +151,10 @@ class ExpressionTranslator:
     ) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to ``name``, without nesting its cases.
 
-        ``first`` are the first cases, as tests with their bodies, and ``rest`` has the cases after
-        them. The first cases are one ``if``. Each later case has an ``if`` of its own, which asks a
-        temporary variable whether no case before it was selected.
+        A ``when`` has the value of its first case whose condition is true. ``first`` are the first
+        cases, as tests with their bodies, and ``rest`` has the cases after them. The first cases
+        become one ``if``. Each later case becomes an ``if`` of its own. A temporary variable says
+        whether no case before it was selected.
         """
         lines: list[Statement] = [Assign(name, Real(0.0))]
         open_ = ProgramVariable(self._declare("bool", lines, changes=True))
@@ -179,11 +184,11 @@ class ExpressionTranslator:
     ) -> _SourceNode: ...
 
     def _split(self, node: _SourceNode, lines: list[Statement], path: _BranchPath | None, depth: int) -> _SourceNode:
-        """Return the node with every ``when`` at the depth :data:`_MOST_BRANCHES` replaced by a variable.
+        """Return the node with a variable for every ``when`` that is nested :data:`_MOST_BRANCHES` deep.
 
-        Appends to ``lines`` the statements that compute these variables; they run only if all
-        conditions in ``path`` are true. ``depth`` is the number of ``when`` expressions around the
-        node.
+        A ``when`` is a conditional expression. The statements that compute these variables are
+        appended to ``lines``. They run only if all conditions in ``path`` are true. ``depth`` is
+        the number of ``when`` expressions around the node.
         """
         if isinstance(node, source.When):
             if depth == _MOST_BRANCHES:
@@ -223,9 +228,9 @@ class ExpressionTranslator:
         return stand_in
 
     def _holds(self, path: _BranchPath, lines: list[Statement]) -> ProgramVariable:
-        """Return a variable that is true if all conditions of the path are.
+        """Return a variable that is true if all conditions of the path are true.
 
-        Appends to ``lines`` the statements that compute it. Paths share the variables of the
+        The statements that compute it are appended to ``lines``. Paths share the variables of the
         conditions that they have in common, and each condition is computed only once.
         """
         new: list[_BranchPath] = []
@@ -252,7 +257,7 @@ class ExpressionTranslator:
     # --- numbers ----------------------------------------------------------------------------------
 
     def _value(self, node: source.Expression, lines: list[Statement]) -> ProgramExpression:
-        """Translate an expression, and append to ``lines`` the statements to run before it."""
+        """Translate an expression; append to ``lines`` the statements that must run before the result."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
         if isinstance(node, source.SignalValue):
@@ -297,7 +302,7 @@ class ExpressionTranslator:
     # --- tests ------------------------------------------------------------------------------------
 
     def _test(self, node: _SourceNode, lines: list[Statement]) -> ProgramExpression:
-        """Translate a condition to a test, and append to ``lines`` the statements to run before it."""
+        """Translate a condition to a test; append to ``lines`` the statements that must run before the test."""
         assert isinstance(node, source.Condition), "and, or, not and cases take conditions"
         if node.op == "not":
             return Not(self._part(node.args[0], lines))
@@ -319,8 +324,8 @@ class ExpressionTranslator:
     def _join(self, node: source.Condition, lines: list[Statement]) -> ProgramExpression:
         """Translate an ``and`` or ``or`` to a test.
 
-        Appends to ``lines`` the statements to run before it. Those that an operand needs run only
-        if the operands before it do not decide the result.
+        The statements that must run before the test are appended to ``lines``. The statements that
+        an operand needs run only if the operands before it do not decide the result.
         """
         tests: list[ProgramExpression] = []
         for part in node.args:
@@ -340,9 +345,9 @@ class ExpressionTranslator:
     # --- variables --------------------------------------------------------------------------------
 
     def _as_variable(self, value: ProgramExpression, lines: list[Statement]) -> ProgramExpression:
-        """Return a variable or a number with this value, to use it several times but compute it once.
+        """Return a variable or a number with this value, so that it can be used often but is computed once.
 
-        Appends to ``lines`` the declaration of the variable, if it is a new one.
+        If the variable is new, its declaration is appended to ``lines``.
         """
         if isinstance(value, (ProgramVariable, Real)):
             return value
@@ -369,7 +374,7 @@ class ExpressionTranslator:
 
 
 def _branch_depth(node: _SourceNode) -> int:
-    """Return how deep ``when`` expressions are nested in a node."""
+    """Return how deep ``when`` expressions (conditional expressions) are nested in a node; 0 for none."""
     if isinstance(node, source.When):
         inside = [*(part for case in node.cases for part in case), node.otherwise]
         return 1 + max(map(_branch_depth, inside))
@@ -385,9 +390,9 @@ def _all_or_any(op: str, tests: list[ProgramExpression]) -> ProgramExpression:
 
 
 def _divide(left: ProgramExpression, right: ProgramExpression) -> ProgramExpression:
-    """Return a quotient: ``/`` if the divisor is a literal other than 0, and a call of ``divide`` otherwise.
+    """Return a quotient: ``/`` if the divisor is a literal other than 0, else a call of ``divide``.
 
-    ``divide`` reports a division by 0.
+    ``divide`` reports a division by 0 when the program runs.
     """
     if isinstance(right, Real) and right.value != 0.0:
         return BinaryNumber("/", left, right)

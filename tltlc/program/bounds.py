@@ -40,7 +40,7 @@ _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<="
 class ValueRange:
     """The interval in which the value of an expression lies. The value is never NaN.
 
-    Both ends are included and may be infinite.
+    Both ends belong to the interval and may be infinite.
     """
 
     low: float
@@ -54,7 +54,7 @@ class ValueRange:
 def range_between(low: float | None, high: float | None) -> ValueRange:
     """Return the interval of a finite value from ``low`` to ``high``.
 
-    For None, the end is the largest finite double on that side.
+    If an end is None, it is the largest finite double on that side.
     """
     return ValueRange(-_MOST if low is None else low, _MOST if high is None else high)
 
@@ -64,9 +64,10 @@ def prove_ranges(
 ) -> tuple[tuple[Statement, ...], ValueRange | None]:
     """Replace ``divide`` by ``/`` where the divisor is never 0, and find the range of a variable.
 
-    Returns the new statements, and the range that the variable ``name`` has after them; None if
-    nothing is known about its value, or if it may be NaN. ``known`` maps the variables that exist
-    before the statements to their ranges.
+    ``divide`` is a function that also reports a division by 0. Return the new statements, and the
+    range of the variable ``name`` after them. The range is None if nothing is known about the
+    value, or if it may be NaN. ``known`` maps the variables that exist before the statements to
+    their ranges.
     """
     facts = _Facts({ProgramVariable(variable): range_ for variable, range_ in known.items()}, frozenset())
     written = facts.statements(statements)
@@ -77,7 +78,7 @@ class _Facts:
     """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
     ``assigned_variables`` has the variables that are assigned in the current body (the statements
-    of a case, or the whole program) but declared outside it.
+    of a case, or the whole program) but are declared outside this body.
     """
 
     def __init__(
@@ -93,7 +94,10 @@ class _Facts:
     # --- statements -------------------------------------------------------------------------------
 
     def statements(self, statements: Iterable[Statement]) -> tuple[Statement, ...]:
-        """Return the statements with rewritten divisions, and update the facts to what is known after them."""
+        """Return the statements with ``/`` instead of ``divide`` where the divisor is never 0.
+
+        Update the facts to what is known after the statements.
+        """
         rewritten: list[Statement] = []
         declared: set[str] = set()
         for statement in statements:
@@ -112,9 +116,10 @@ class _Facts:
         return tuple(rewritten)
 
     def _branches(self, statement: If) -> If:
-        """Return an ``if`` with rewritten divisions, and update the facts to what is known after it.
+        """Return an ``if`` with ``/`` instead of ``divide`` where the divisor is never 0.
 
-        After the ``if``, the range of a variable covers its ranges after all cases.
+        Update the facts to what is known after the ``if``: the range of a variable then covers its
+        ranges at the ends of all cases.
         """
         before = self._copy()
         ends: list[_Facts] = []
@@ -133,7 +138,10 @@ class _Facts:
         return If(tuple(cases), otherwise)
 
     def _assign(self, name: str, range_: ValueRange | None) -> None:
-        """Record that a variable has a new value, and drop the facts about its old one."""
+        """Record that a variable has a new value in ``range_``, and drop the facts about its old value.
+
+        If ``range_`` is None, nothing is known about the new value.
+        """
         variable = ProgramVariable(name)
         self._cache.clear()
         self._ranges.pop(variable, None)
@@ -153,7 +161,7 @@ class _Facts:
     # --- tests ------------------------------------------------------------------------------------
 
     def _assume(self, test: ProgramExpression, holds: bool) -> None:
-        """Update the facts to what is known where a test is true (``holds``) or false."""
+        """Add the facts that follow from a test that is true (``holds``) or false."""
         match test:
             case Not(operand):
                 self._assume(operand, not holds)
@@ -182,7 +190,7 @@ class _Facts:
                 self._narrow(right, ValueRange(max(least, high.low), high.high))
 
     def _narrow(self, node: ProgramExpression, range_: ValueRange) -> None:
-        # If the range is empty, the test never has this result, and its body never runs: the facts do not matter there.
+        # If the range is empty, the test never has this result, and its body never runs. No facts are needed there.
         if range_.low <= range_.high and not isinstance(node, Real):
             self._ranges[node] = range_
 
@@ -216,7 +224,7 @@ class _Facts:
     def range(self, node: ProgramExpression) -> ValueRange | None:
         """Return the range of an expression.
 
-        Returns None if the expression may be NaN or have no value, or if nothing is known about it.
+        Return None if the expression may be NaN or have no value, or if nothing is known about it.
         """
         if node in self._cache:
             return self._cache[node]
@@ -287,9 +295,10 @@ class _Facts:
 def _ends(
     operation: Callable[[float, float], float], left: ValueRange | None, right: ValueRange | None, op: str
 ) -> ValueRange | None:
-    """Return the range of an operation that is monotonic in each operand; None if its result may be NaN.
+    """Return the range of an operation that is monotonic in each operand.
 
-    ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operator, such as ``*``.
+    ``left`` and ``right`` are the ranges of the operands, and ``op`` is the operator, such as
+    ``*``. Return None if the result may be NaN, or if a range is None.
     """
     if left is None or right is None:
         return None

@@ -32,7 +32,7 @@ class Program:
 
     Signals, params, atoms and states have the order that they have in the automaton.
 
-    - ``signals``, ``params`` and ``atoms`` are the names of the variables for their values.
+    - ``signals``, ``params`` and ``atoms`` are the names of the variables with their values.
     - ``values`` has, for each atom, the statements that assign its value.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
@@ -42,8 +42,8 @@ class Program:
       no atom reads the signal, and None if every step reads it.
     - ``atom_comments`` has, for each atom, the text of a comment: the name of the atom. The first atom of
       a predicate also has the documentation of the predicate.
-    - ``exclusive`` has a pair for each group of at least two exclusive atoms: the index of the
-      group in the automaton, and the indices of its atoms.
+    - ``exclusive`` has a pair for each group of at least two exclusive atoms, of which at most one
+      is true at a time: the index of the group in the automaton, and the indices of its atoms.
     - ``states`` has, for each state, the statements that compute a transition from it. They assign
       the variables of :mod:`tltlc.program.states`.
     - ``reward_statements`` compute progress, reward and the end of the episode after a transition.
@@ -66,14 +66,14 @@ class Program:
     ends: tuple[bool, ...]
 
     def computed_in(self, state: int | None) -> list[int]:
-        """Return the indices of the atoms that only this state computes.
+        """Return the indices of the atoms that are computed only in this state.
 
         If ``state`` is None, return the indices of the atoms that every step computes.
         """
         return [index for index, only in enumerate(self.only_in) if only == state]
 
     def bools_read_in(self, state: int | None) -> list[str]:
-        """Return the variables of the bool signals that only this state reads.
+        """Return the variables of the bool signals that are read only in this state.
 
         If ``state`` is None, return the variables of the bool signals that every step reads.
         """
@@ -84,7 +84,7 @@ class Program:
     def reads_sample(self) -> bool:
         """Whether a step reads any signal.
 
-        A step reads all numbers, to check them, but a bool signal only if an atom needs it.
+        A step reads every number, to check it, but a bool signal only if an atom needs it.
         """
         signals = zip(self.fspa.signals, self.read_in, strict=True)
         return any(signal.type != "bool" or only != -1 for signal, only in signals)
@@ -103,8 +103,8 @@ class Program:
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
     """Return the program of an automaton's monitor.
 
-    ``reserved`` are the names that no variable may have: words of the language in which the program
-    will be printed, and names in the template of its file.
+    ``reserved`` are the names that no variable may have: keywords of the language in which the
+    program will be printed, and names in the template of its file.
     """
     names = VariableNames([*reserved, *_OWN])
     # Expressions of deeply nested predicates need a higher recursion limit.
@@ -159,7 +159,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
 def _only_in(
     atoms: Sequence[str], silent: Sequence[bool], transitions: Sequence[tuple[Statement, ...]]
 ) -> tuple[int | None, ...]:
-    """Return which state alone needs each atom, in the form of :attr:`Program.only_in`.
+    """Return for each atom the only state that needs it, in the form of :attr:`Program.only_in`.
 
     ``silent`` says, for each atom, that its computation never gives an error or a notice. Every
     step computes the atoms that are not silent, so that all monitors give the same errors and
@@ -177,10 +177,10 @@ def _only_in(
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """Return which state alone reads each signal, in the form of :attr:`Program.read_in`.
+    """Return for each signal the only state that reads it, in the form of :attr:`Program.read_in`.
 
-    A signal that atoms of several states read has None, as if every step read it. ``values`` has
-    the statements of each atom.
+    If the atoms of several states read a signal, the result for it is None, as if every step read
+    it. ``values`` has the statements of each atom.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
@@ -190,10 +190,11 @@ def _read_in(
 
 
 def _atom_comments(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """Return the text of the comment of each atom (:attr:`Program.atom_comments`).
+    """Return the text of the comment of each atom, for :attr:`Program.atom_comments`.
 
-    The documentation of a predicate is in the comment of only one of its atoms, the first in the
-    generated code. There, the atoms that every step computes come before those of single states.
+    The documentation of a predicate is in the comment of only one of its atoms: the first in the
+    generated code. In this code, the atoms that every step computes come before those of single
+    states.
     """
     atom_comments = [atom.name for atom in fspa.atoms]
     explained = {""}
@@ -212,7 +213,7 @@ def _range(signal: Signal) -> ValueRange:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """Return a prefix for temporary variables with which none of the ``names`` begins."""
+    """Return a prefix for temporary variables such that none of the ``names`` begins with it."""
     number, prefix = 1, f"{TEMPORARY}_"
     while any(name.startswith(prefix) for name in names):
         number += 1

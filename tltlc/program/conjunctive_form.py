@@ -12,21 +12,21 @@ _Literal = TypeVar("_Literal")
 
 
 def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses that are equivalent to ``terms``.
+    """Return the clauses that are equivalent to ``terms``, if they are shorter.
 
-    Returns None if they do not have fewer literals than the terms, or if there are more clauses
-    than :data:`_MOST`. The clauses have the same robustness as the terms: the greatest minimum of a
-    term equals the least maximum of a clause, except for the sign of a zero. Literals keep the
-    order of the terms. No term may be empty.
+    Return None if the clauses do not have fewer literals than the terms, or if there are more
+    clauses than :data:`_MOST`. The robustness stays the same: the maximum over the terms of the
+    least literal is the minimum over the clauses of the greatest literal, except for the sign of a
+    zero. Literals keep the order of the terms. No term may be empty.
     """
     clauses = _clauses(terms)
     return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None
 
 
 def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses: the minimal sets that have at least one literal of every term.
+    """Return the clauses: the minimal sets of literals that share a literal with every term.
 
-    Returns None if there are more clauses than :data:`_MOST`. The method is from C. Berge,
+    Return None if there are more clauses than :data:`_MOST`. The method is from C. Berge,
     Hypergraphs, 1989.
     """
     literals = list(dict.fromkeys(literal for term in terms for literal in term))

@@ -13,16 +13,16 @@ _WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "
 
 
 class VariableNames:
-    """Chooses unique names of variables that are short, readable ASCII identifiers and not in ``reserved``."""
+    """Chooses names of variables: short, readable ASCII identifiers, all different and none in ``reserved``."""
 
     def __init__(self, reserved: Iterable[str]) -> None:
         self._taken = set(reserved)
 
     def new_name(self, name: str, suffix: str = "") -> str:
-        """Return a new name that resembles ``name``.
+        """Return a new name that resembles ``name``: ``"distance(exit)"`` -> ``"distance_exit"``.
 
-        If the name is taken, ``_`` and ``suffix`` are appended. If there is no suffix, or this name
-        is taken too, ``_`` and a number are appended instead.
+        If the name is taken, append ``_`` and ``suffix``. If there is no suffix, or this name is
+        taken too, append ``_`` and a number instead.
         """
         spelt = "".join(_WORDS.get(character, character) for character in name)
         base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
@@ -44,7 +44,7 @@ def printable_line(text: str) -> str:
 
 
 def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
-    """Return the Python code ``head(arguments)tail`` as one line, or as several lines if one is too long."""
+    """Return the lines of the Python code ``head(arguments)tail``: one line, or several if one is too long."""
     line = f"{head}({', '.join(arguments)}){tail}"
     if len(line) <= 110:
         return [line]
@@ -52,13 +52,13 @@ def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]
 
 
 def docstring_text(text: str) -> str:
-    """Return the text escaped for a Python docstring, with its line breaks and indentation."""
+    """Return the text, escaped for a Python docstring. Its line breaks and indentation stay."""
     lines = [" " * (len(line) - len(line.lstrip(" "))) + printable_line(line) for line in text.splitlines()]
     return "\n".join(lines).replace("\\", "\\\\").replace('"', '\\"')
 
 
 def string_literal(text: str) -> str:
-    """Return a Python string literal, in double quotes where that needs no escape."""
+    """Return the text as a Python string literal, in double quotes where they need no escape."""
     quoted = repr(text)
     return f'"{quoted[1:-1]}"' if quoted[0] == "'" and '"' not in quoted else quoted
 

@@ -22,8 +22,8 @@ _DEEPEST: Final = 30
 def split_deep_values(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
     """Return the statements, with parts of deeply nested expressions moved to new variables.
 
-    ``statements`` compute the transition from one state of an automaton. The prefix of the new
-    variables is chosen so that no name in ``taken`` begins with it.
+    ``statements`` compute the transition from one state of an automaton. The names of the new
+    variables begin with a prefix with which no name in ``taken`` begins.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):
@@ -48,9 +48,9 @@ def _split_statements(statements: Sequence[Statement], names: Iterator[str]) -> 
 
 
 def _cut(value: ProgramExpression, lines: list[Statement], names: Iterator[str]) -> tuple[ProgramExpression, int]:
-    """Return the expression with its deep parts replaced by variables, and its new depth.
+    """Return the expression with variables in place of its deep parts, and its new depth.
 
-    Appends the declarations of these variables to ``lines``. Takes their names from ``names``.
+    Append the declarations of these variables to ``lines``, and take their names from ``names``.
     """
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)

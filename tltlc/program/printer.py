@@ -1,6 +1,7 @@
 """Print a program in the syntax of C.
 
-Each other language has a subclass of :class:`Printer` that overrides what it writes differently.
+Each other language has a subclass of :class:`Printer`, with the methods that print something else
+in this language.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ _SHORT = 12
 class Printer:
     """Prints statements and expressions as C code.
 
-    Each other language has a subclass that overrides what it writes differently.
+    Each other language has a subclass, with the methods that print something else in this language.
     """
 
     INDENT: ClassVar[str] = "    "
@@ -85,7 +86,7 @@ class Printer:
         return lines
 
     def declaration(self, statement: Declare) -> str:
-        """Return the code that declares a variable, with its value if it has one yet."""
+        """Return the code that declares a variable, with its first value if the statement has one."""
         value = "" if statement.value is None else f" = {self.text(statement.value)}"
         return f"{self.TYPES[statement.type]} {statement.name}{value}{self.END}"
 
@@ -118,7 +119,7 @@ class Printer:
         return ["}"]
 
     def nothing(self, depth: int) -> list[str]:
-        """Return the lines of a body without statements, indented by ``depth`` levels."""
+        """Return the lines of a body without statements, indented by ``depth`` levels; in C, no lines."""
         return []
 
     def comment(self, text: str) -> list[str]:
@@ -134,10 +135,10 @@ class Printer:
 
     @classmethod
     def items(cls, items: Sequence[str], depth: int = 0) -> str:
-        """Return the items of a list as the text between its brackets.
+        """Return the items of a list as the text between the brackets of the list.
 
-        If they are too long for one line, each has a line of its own, indented one level deeper
-        than ``depth``. If all items are short, several of them share a line.
+        If the items are too long for one line, each has a line of its own, indented one level
+        deeper than ``depth``. But if all items are short, several of them share a line.
         """
         line = ", ".join(items)
         if len(line) <= _LONGEST_LIST:
@@ -154,16 +155,19 @@ class Printer:
     # --- expressions ------------------------------------------------------------------------------
 
     def text(self, node: ProgramExpression, room: int = _OR) -> str:
-        """Return the text of an expression, in parentheses if its binding strength is lower than ``room``."""
+        """Return the text of an expression, in parentheses if its operator binds less tightly than ``room``.
+
+        ``room`` is a binding strength, such as that of ``+``; a higher number binds more tightly.
+        """
         text, binding = self._text_and_binding(node)
         return text if binding >= room else f"({text})"
 
     def name(self, name: str) -> str:
-        """Return the text of a variable, given its name in the program."""
+        """Return a variable as the language writes it, given its name in the program."""
         return name
 
     def real(self, value: float) -> str:
-        """Return a number that is not negative as a floating-point literal."""
+        """Return a floating-point literal for a number that is not negative."""
         return repr(value)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
@@ -171,7 +175,7 @@ class Printer:
         return f"{function}({', '.join(arguments)})"
 
     def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength."""
+        """Return the text of an expression, and how tightly its operator binds."""
         match node:
             case Real(value):
                 # Look at the text, because -0.0 is not less than 0.
@@ -202,10 +206,10 @@ class Printer:
 
 
 def comment_lines(text: str) -> list[str]:
-    """Return a text as lines of a comment, without the marks that begin the comment.
+    """Return a text as lines of a comment, without the marks that begin a comment, such as ``//``.
 
-    Characters that do not print are escaped. No line ends in a backslash, because this would join
-    it to the next line in some languages.
+    Characters that do not print are escaped. No line ends in a backslash, because in some languages
+    a backslash joins the next line to the comment.
     """
     lines = wrap(printable_line(text), _LONGEST_COMMENT, break_long_words=False, break_on_hyphens=False)
     return [re.sub(r"\\$", r"\\ .", line) for line in lines]

@@ -1,7 +1,7 @@
 """The statements that compute the progress and the reward of one step, and whether the episode ends.
 
-They follow Algorithm 1 (:mod:`tltlc.monitor.progress_and_reward`), with the undiscounted terminal
-penalty.
+They do what :mod:`tltlc.monitor.progress_and_reward` does with its default options (Algorithm 1 of
+Gutiérrez-Sánchez et al. 2024).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ BEFORE = "before"
 def statements(fspa: Fspa) -> tuple[Statement, ...]:
     """Return the statements that compute progress, reward and the end of the episode.
 
-    They run after each transition of the automaton.
+    The statements run after each transition of the automaton.
     """
     limit = fspa.limit_steps
     steps, zero = ProgramVariable(STEPS), Real(0.0)
@@ -75,11 +75,11 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
 
 
 def _survived(limit: int | None) -> list[Statement]:
-    """Return statements that compute the progress of a spec with ``judge at limit``.
+    """Return statements that compute the progress of a spec that is judged at its limit of steps.
 
-    The progress is the share of the limit in steps that the episode has survived. It is 1 as soon
-    as the spec is satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the
-    spec is satisfied.
+    The progress is the number of steps so far divided by the limit. It is 1 as soon as the spec is
+    satisfied, and 0 as soon as it is violated. Without a limit, it is 0 until the spec is
+    satisfied.
     """
     cases: list[tuple[ProgramExpression, tuple[Statement, ...]]] = [
         (ProgramVariable(SATISFIED), (Assign(PROGRESS, Real(1.0)),)),

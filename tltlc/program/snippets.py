@@ -17,7 +17,7 @@ _KINDS = {"ratio": "A ratio in"}
 def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
     """Return the comment that begins a file: the name of the spec, its documentation and its formula.
 
-    ``comment`` returns a text as the lines of a comment.
+    ``comment`` converts a text to the lines of a comment.
     """
     about = [comment(f"Monitor of the specification `{fspa.name}`, written by tltlc."), comment(fspa.doc)]
     about.append([line.replace(" ", "     ", 1) for line in comment(str(fspa.formula))])
@@ -26,7 +26,7 @@ def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
 
 
 def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str] = str) -> str:
-    """Return the comment on a signal or param: its documentation and its possible values.
+    """Return the comment on a signal or parameter: its documentation and its possible values.
 
     ``name`` is its name in the generated file. If its name in the spec is different, the comment
     begins with the name in the spec. ``escape`` escapes characters that have a meaning in a
@@ -40,7 +40,7 @@ def field_comment(name: str, field: Signal | Param, escape: Callable[[str], str]
 
 
 def values_sentence(field: Signal | Param) -> str:
-    """Return a sentence with the possible values of a signal or param, in SI units: "In [0, 1].", for example."""
+    """Return a sentence with the possible values of a signal or parameter, in SI units, such as "In [0, 1]."."""
     if field.type == "bool":
         return "True or false."
     return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
@@ -49,9 +49,9 @@ def values_sentence(field: Signal | Param) -> str:
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:
     """Return an example of a sample for a comment: ``{ health: …, seen: true }``.
 
-    It is written as in the language of the generated file. ``key`` returns the name of a signal as
-    this language writes it, and ``equals`` is the text between the name and its value. If the
-    example is too long, the result is the word ``signals``.
+    The example is written as in the language of the generated file. ``key`` returns the name of a
+    signal as this language writes it, and ``equals`` is the text between the name and its value. If
+    the example is too long, return the word ``signals`` instead.
     """
     shown = [f"{key(signal.name)}{equals}{'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
     text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
@@ -80,13 +80,13 @@ def boolean_literal(value: bool) -> str:
 
 
 def paragraphs(*parts: Sequence[str]) -> list[str]:
-    """Return the lines of all parts that are not empty, with an empty line between two parts."""
+    """Return the lines of all parts that are not empty, with an empty line between each two parts."""
     return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
 
 
 def number_literal(value: float | None, otherwise: str = "") -> str:
     """Return a float literal in the syntax that most languages share.
 
-    Returns ``otherwise`` if the value is None.
+    Return ``otherwise`` if the value is None.
     """
     return otherwise if value is None else repr(float(value))

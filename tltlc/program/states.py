@@ -1,6 +1,6 @@
-"""For each state, the statements that find the edge to take, and compute its robustness and the progress.
+"""The statements that compute the transition from each state of the automaton.
 
-Begin with `state_statements`.
+They find the edge to take, its robustness, and the progress. Begin with `state_statements`.
 """
 
 from __future__ import annotations
@@ -45,10 +45,11 @@ _ZERO: Final = Real(0.0)
 
 
 def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """Return the statements that compute the transition from a state, given its number.
+    """Return the statements that compute the transition from the state with the number ``state``.
 
-    They find the edge to take, its robustness, the progress and the limiting atom. ``atoms`` are
-    the names of the variables with the values of the atoms.
+    They find the edge to take, its robustness, the progress, and the limiting atom: the atom that
+    determines how robust the most robust edge towards a goal is. ``atoms`` are the names of the
+    variables with the values of the atoms.
     """
     return _StateCode(tables, state, atoms).statements()
 
@@ -76,7 +77,8 @@ class _StateCode:
     def _edge_statements(self, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when the automaton takes an edge.
 
-        They assign the next state, the robustness of the edge, the progress and the limiting atom.
+        They assign the next state, the robustness of the edge, the progress, and the limiting atom
+        (the atom that determines how robust the most robust edge towards a goal is).
         """
         improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
         lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
@@ -96,9 +98,9 @@ class _StateCode:
         return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
 
     def _progress(self, value: ProgramExpression) -> list[Statement]:
-        """Return the statement that assigns ``value`` to the progress.
+        """Return the statement that assigns ``value`` to the progress, as a list.
 
-        Returns no statement if the spec is judged at its limit: then the progress does not depend
+        Return an empty list if the spec is judged at its limit: then the progress does not depend
         on the edge taken.
         """
         return [Assign(PROGRESS, value)] if self._at_goal else []
@@ -114,7 +116,7 @@ class _StateCode:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
 
         The robustness of a prime implicant is the value of its least literal. If an equivalent
-        minimum of maxima has fewer literals, returns that instead; only the sign of a 0 may differ.
+        minimum of maxima has fewer literals, return that instead; only the sign of a 0 may differ.
         """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
@@ -129,8 +131,9 @@ class _StateCode:
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
         """Return statements that find the most robust of the prime implicants, and its least literal.
 
-        Of prime implicants or literals with the same value, the first one counts. The robustness is
-        assigned to ``NEAREST``, the index of the literal's atom to ``LIMITING``.
+        If several prime implicants or literals have the same value, the first one counts. The
+        statements assign the robustness to ``NEAREST``, and the index of the literal's atom to
+        ``LIMITING``.
         """
         first, *following = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
@@ -146,10 +149,10 @@ class _StateCode:
         return lines if self._at_goal or NEAREST in variables_read(lines) else lines[1:]
 
     def _limiting_statements(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
-        """Return statements that find the first literal of ``prime`` that has a given value.
+        """Return statements that find the first literal of ``prime`` whose value is that of a variable.
 
-        They assign the index of its atom to ``LIMITING``. ``value`` is the name of the variable with
-        the given value.
+        ``value`` is the name of this variable. The statements assign the index of the literal's
+        atom to ``LIMITING``.
         """
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))
@@ -179,8 +182,8 @@ _Literals = Mapping[tuple[int, bool], ProgramExpression]
 def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
     """Return two tables with an expression for each literal over the variables ``atoms``.
 
-    The expressions of the first compute the value of the literal; those of the second test whether
-    the literal is true.
+    An expression in the first table computes the value of the literal, and an expression in the
+    second table tests whether the literal is true.
     """
     values: dict[tuple[int, bool], ProgramExpression] = {}
     tests: dict[tuple[int, bool], ProgramExpression] = {}
@@ -201,9 +204,9 @@ def _size(guard: Guard) -> int:
 
 
 def _fold(function: str, terms: Sequence[ProgramExpression]) -> ProgramExpression:
-    """Return the ``min`` or ``max`` of the terms, as ``function`` says.
+    """Return the minimum or the maximum of the terms; ``function`` is ``min`` or ``max``.
 
-    Returns 1 if there are no terms: the robustness of a guard that is always true.
+    Return 1 if there are no terms: the robustness of a guard that is always true.
     """
     if not terms:
         return Real(1.0)

@@ -52,7 +52,7 @@ class Bool:
 
 @record
 class ProgramVariable:
-    """A variable, by its name in the program, which :class:`tltlc.program.names.VariableNames` has chosen."""
+    """A variable. Its ``name`` is unique in the program (see :class:`tltlc.program.names.VariableNames`)."""
 
     name: str
 
@@ -99,14 +99,14 @@ class Not:
 
 @record
 class All:
-    """The ``and`` of at least two tests, evaluated from left to right up to the first that is false."""
+    """The ``and`` of at least two tests, evaluated from left to right until one of them is false."""
 
     args: tuple[ProgramExpression, ...]
 
 
 @record
 class Any:
-    """The ``or`` of at least two tests, evaluated from left to right up to the first that is true."""
+    """The ``or`` of at least two tests, evaluated from left to right until one of them is true."""
 
     args: tuple[ProgramExpression, ...]
 
@@ -121,8 +121,9 @@ ProgramExpression = Union[Real, Int, Bool, ProgramVariable, Negate, BinaryNumber
 class Declare:
     """The declaration of a variable.
 
-    If ``value`` is None, each path through the program assigns a value later. ``changes`` says
-    whether the program may assign to the variable again after its first value.
+    If ``value`` is None, every path through the program assigns a value before the variable is
+    read. ``changes`` says whether the program may assign to the variable again after its first
+    value.
     """
 
     name: str
@@ -141,9 +142,9 @@ class Assign:
 
 @record
 class If:
-    """Runs the body of the first case whose test is true, or ``otherwise`` if no test is true.
+    """A statement that runs the body of the first case whose test is true.
 
-    A case is a test and its body.
+    A case is a test and its body. If no test is true, ``otherwise`` runs.
     """
 
     cases: tuple[tuple[ProgramExpression, tuple[Statement, ...]], ...]
@@ -152,7 +153,7 @@ class If:
 
 @record
 class CommentLine:
-    """A comment, which may contain any characters."""
+    """A comment, whose text may contain any characters."""
 
     text: str
 

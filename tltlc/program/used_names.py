@@ -37,9 +37,10 @@ def functions_called(statements: Iterable[Statement]) -> frozenset[NumericFuncti
 
 
 def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpression]:
-    """Yield the expressions and all their subexpressions.
+    """Yield the expressions and all their subexpressions, in no particular order.
 
-    Uses a stack and no recursion, so that deeply nested predicates cause no RecursionError.
+    The function uses a stack instead of recursion, so that deeply nested predicates cause no
+    RecursionError.
     """
     stack = list(expressions)
     while stack:
