@@ -104,9 +104,9 @@ def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
 class ExpressionTranslator:
     """Translates expressions to statements.
 
-    ``signals`` and ``params`` map the names of signals and parameters to variables. Temporary
-    variables are called ``prefix`` and a number: ``t_1``, ``t_2``, and so on. No two of them have
-    the same name.
+    ``signals`` and ``params`` map the names of signals and parameters to variables. The names of
+    temporary variables are ``prefix`` and a number: ``t_1``, ``t_2``, and so on, with the prefix
+    ``t_``. No two of them have the same name.
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
@@ -126,8 +126,8 @@ class ExpressionTranslator:
     def _cases(self, name: str, node: source.When, depth: int = 1) -> list[Statement]:
         """Return statements that assign the value of a ``when`` to the variable ``name``.
 
-        A ``when`` has the value of its first case whose condition is true. It becomes one ``if``
-        with a case for each case of the ``when``. If the condition of a later case needs statements
+        A ``when`` has the value of its first case whose condition is true. The ``when`` becomes one
+        ``if``, with a case for each of its cases. If the condition of a later case needs statements
         of its own, these are in the ``else``, followed by a further ``if`` for this case and the
         cases after it. ``depth`` is the number of ``if`` statements that are nested for this
         reason, from 1.
@@ -184,7 +184,7 @@ class ExpressionTranslator:
     ) -> _SourceNode: ...
 
     def _split(self, node: _SourceNode, lines: list[Statement], path: _BranchPath | None, depth: int) -> _SourceNode:
-        """Return the node with a variable for every ``when`` that is nested :data:`_MOST_BRANCHES` deep.
+        """Return the node with a variable for every ``when`` that is nested 20 deep (:data:`_MOST_BRANCHES`).
 
         A ``when`` is a conditional expression. The statements that compute these variables are
         appended to ``lines``. They run only if all conditions in ``path`` are true. ``depth`` is
@@ -345,7 +345,7 @@ class ExpressionTranslator:
     # --- variables --------------------------------------------------------------------------------
 
     def _as_variable(self, value: ProgramExpression, lines: list[Statement]) -> ProgramExpression:
-        """Return a variable or a number with this value, so that it can be used often but is computed once.
+        """Return a variable or a number with this value, which can be used several times but is computed once.
 
         If the variable is new, its declaration is appended to ``lines``.
         """

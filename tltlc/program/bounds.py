@@ -54,7 +54,7 @@ class ValueRange:
 def range_between(low: float | None, high: float | None) -> ValueRange:
     """Return the interval of a finite value from ``low`` to ``high``.
 
-    If an end is None, it is the largest finite double on that side.
+    If an end is None, the least or the greatest finite double takes its place.
     """
     return ValueRange(-_MOST if low is None else low, _MOST if high is None else high)
 
@@ -78,7 +78,8 @@ class _Facts:
     """What is known at a point of a program: ranges of expressions, and pairs ``(a, b)`` with ``a <= b``.
 
     ``assigned_variables`` has the variables that are assigned in the current body (the statements
-    of a case, or the whole program) but are declared outside this body.
+    of a case, or the whole program) but are declared outside this body. The methods also rewrite
+    divisions: ``divide``, which reports a division by 0, becomes ``/``.
     """
 
     def __init__(
@@ -281,7 +282,7 @@ class _Facts:
         return range_
 
     def _at_most(self, left: ProgramExpression, right: ProgramExpression) -> bool:
-        """Whether ``left <= right`` is known.
+        """Whether it is known that ``left <= right``.
 
         It is known if ``left`` is ``a - b``, ``right`` is ``a - c``, and ``c <= b`` is known.
         """

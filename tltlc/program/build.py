@@ -30,10 +30,10 @@ _OWN = (
 class Program:
     """The program of a monitor: names of variables, and statements.
 
-    Signals, params, atoms and states have the order that they have in the automaton.
+    Signals, parameters, atoms and states have the order that they have in the automaton.
 
     - ``signals``, ``params`` and ``atoms`` are the names of the variables with their values.
-    - ``values`` has, for each atom, the statements that assign its value.
+    - ``values`` has, for each atom, the statements that assign its value; none if no state needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
     - ``only_in`` has, for each atom, the number of the only state that needs the atom: the atom is
@@ -159,12 +159,12 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
 def _only_in(
     atoms: Sequence[str], silent: Sequence[bool], transitions: Sequence[tuple[Statement, ...]]
 ) -> tuple[int | None, ...]:
-    """Return for each atom the only state that needs it, in the form of :attr:`Program.only_in`.
+    """Return for each atom the number of the only state that needs it.
 
-    ``silent`` says, for each atom, that its computation never gives an error or a notice. Every
-    step computes the atoms that are not silent, so that all monitors give the same errors and
-    notices. ``atoms`` are the variables of the atoms, and ``transitions`` the statements of each
-    state.
+    The number is -1 if no state needs the atom, and None if every step computes it. ``silent``
+    says, for each atom, that its computation never gives an error or a notice. Every step computes
+    the atoms that are not silent, so that all monitors give the same errors and notices. ``atoms``
+    are the variables of the atoms, and ``transitions`` the statements of each state.
     """
     used = [variables_read(statements) for statements in transitions]
     only_in: list[int | None] = []
@@ -177,10 +177,11 @@ def _only_in(
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """Return for each signal the only state that reads it, in the form of :attr:`Program.read_in`.
+    """Return for each signal the number of the only state that reads it.
 
-    If the atoms of several states read a signal, the result for it is None, as if every step read
-    it. ``values`` has the statements of each atom.
+    The number is -1 if no atom reads the signal. It is None if every step or several states read
+    it. ``only_in`` has the number of the only state that needs each atom, and ``values`` has the
+    statements of each atom.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
@@ -190,11 +191,11 @@ def _read_in(
 
 
 def _atom_comments(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
-    """Return the text of the comment of each atom, for :attr:`Program.atom_comments`.
+    """Return the text of the comment of each atom: its name, and perhaps documentation.
 
     The documentation of a predicate is in the comment of only one of its atoms: the first in the
     generated code. In this code, the atoms that every step computes come before those of single
-    states.
+    states (``only_in``).
     """
     atom_comments = [atom.name for atom in fspa.atoms]
     explained = {""}
@@ -213,7 +214,7 @@ def _range(signal: Signal) -> ValueRange:
 
 
 def _prefix(names: Sequence[str]) -> str:
-    """Return a prefix for temporary variables such that none of the ``names`` begins with it."""
+    """Return a prefix for temporary variables with which none of the ``names`` begins: ``t_``, ``t2_``, …."""
     number, prefix = 1, f"{TEMPORARY}_"
     while any(name.startswith(prefix) for name in names):
         number += 1

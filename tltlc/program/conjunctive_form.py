@@ -12,12 +12,15 @@ _Literal = TypeVar("_Literal")
 
 
 def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses that are equivalent to ``terms``, if they are shorter.
+    """Return clauses that are equivalent to ``terms``, if they are shorter.
 
-    Return None if the clauses do not have fewer literals than the terms, or if there are more
-    clauses than :data:`_MOST`. The robustness stays the same: the maximum over the terms of the
-    least literal is the minimum over the clauses of the greatest literal, except for the sign of a
-    zero. Literals keep the order of the terms. No term may be empty.
+    A term is true if all its literals are; a clause is true if one of its literals is. ``[[a, b],
+    [a, c]]`` gives ``[[a], [b, c]]``. Return None if the clauses do not have fewer literals than
+    the terms, or if there are more clauses than :data:`_MOST`.
+
+    The robustness stays the same, except for the sign of a zero: ``max(min(term) for each term)``
+    is ``min(max(clause) for each clause)``. Literals keep the order of the terms. No term may be
+    empty.
     """
     clauses = _clauses(terms)
     return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None

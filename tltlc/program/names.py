@@ -44,7 +44,7 @@ def printable_line(text: str) -> str:
 
 
 def call_lines(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
-    """Return the lines of the Python code ``head(arguments)tail``: one line, or several if one is too long."""
+    """Return the lines of the Python code ``head(arguments)tail``: one line if it fits, else several."""
     line = f"{head}({', '.join(arguments)}){tail}"
     if len(line) <= 110:
         return [line]

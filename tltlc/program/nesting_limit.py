@@ -22,8 +22,9 @@ _DEEPEST: Final = 30
 def split_deep_values(statements: Sequence[Statement], taken: Collection[str] = ()) -> tuple[Statement, ...]:
     """Return the statements, with parts of deeply nested expressions moved to new variables.
 
-    ``statements`` compute the transition from one state of an automaton. The names of the new
-    variables begin with a prefix with which no name in ``taken`` begins.
+    ``statements`` compute the transition from one state of an automaton. The new variables are
+    called ``part1``, ``part2``, and so on. If a name in ``taken`` begins with ``part``, they are
+    called ``part_1``, ``part_2``, and so on, with further underscores if needed.
     """
     prefix = PART
     while any(name.startswith(prefix) for name in taken):

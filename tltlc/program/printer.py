@@ -1,7 +1,6 @@
 """Print a program in the syntax of C.
 
-Each other language has a subclass of :class:`Printer`, with the methods that print something else
-in this language.
+For each other language, a subclass of :class:`Printer` overrides the methods whose output differs.
 """
 
 from __future__ import annotations
@@ -48,7 +47,7 @@ _SHORT = 12
 class Printer:
     """Prints statements and expressions as C code.
 
-    Each other language has a subclass, with the methods that print something else in this language.
+    For each other language, a subclass overrides the methods whose output differs.
     """
 
     INDENT: ClassVar[str] = "    "

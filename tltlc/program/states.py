@@ -132,8 +132,8 @@ class _StateCode:
         """Return statements that find the most robust of the prime implicants, and its least literal.
 
         If several prime implicants or literals have the same value, the first one counts. The
-        statements assign the robustness to ``NEAREST``, and the index of the literal's atom to
-        ``LIMITING``.
+        statements assign the robustness to the variable ``NEAREST``, and the index of the literal's
+        atom to the variable ``LIMITING``.
         """
         first, *following = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(following))]
@@ -175,7 +175,7 @@ class _StateCode:
 
 
 _Literals = Mapping[tuple[int, bool], ProgramExpression]
-"""An expression for each literal: the index of its atom, and whether the atom is true."""
+"""An expression for each literal. A literal is the index of an atom, and whether the atom must be true."""
 
 
 @lru_cache(maxsize=1)

@@ -94,9 +94,9 @@ class Mover:
 class EnemyKind:
     """The parameters of a kind of enemy.
 
-    A kind is a file that levels share: an edit changes all levels that use it. The behaviour trees
-    of all kinds have the branches patrol, chase, search and return; ``branches`` names further
-    ones.
+    A kind comes from a file that levels share: an edit changes all levels that use it. The
+    behaviour trees of all kinds have the branches patrol, chase, search and return; ``branches``
+    names further ones.
     """
 
     name: str

@@ -19,7 +19,7 @@ from tltlc.api import Diagnostic, Fspa, Spec
 
 
 class StealthLevelCheck(LevelCheck):
-    """Reads one variant of a level, and searches what a player can reach in it.
+    """Reads one variant of a level, and computes what a player can reach in it.
 
     ``sensors`` replace some or all of the level's own.
 

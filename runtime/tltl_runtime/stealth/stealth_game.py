@@ -138,7 +138,10 @@ class StealthGame(Game[StealthLevel, Episode]):
         return choose_sensors(level, choice)
 
     def missing_sensors(self, level: StealthLevel, sensors: Sensors) -> Iterator[str]:
-        """Yield a text for each entity or signal that ``sensors`` names and the level lacks."""
+        """Yield a text for each entity or signal that ``sensors`` names and the level lacks.
+
+        An example of such a text is "the entity `exit`".
+        """
         return missing_sensors(level, sensors)
 
     def landmarks(self, level: StealthLevel) -> dict[str, Point]:
@@ -172,7 +175,7 @@ class StealthGame(Game[StealthLevel, Episode]):
         return reach_warnings(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return TLT0806 if ``error`` says that the player has left the level's bounds, else None."""
+        """Return the error TLT0806 if ``error`` says that the player has left the level's bounds, else None."""
         return player_fault(error)
 
     def make_env(
@@ -228,7 +231,7 @@ class StealthGame(Game[StealthLevel, Episode]):
     def check_replay(self, episode: Episode) -> tuple[Diagnostic, ...]:
         """Play the actions of an episode again, and compare the two episodes.
 
-        Return TLT0824 if they differ in any bit, else an empty tuple.
+        Return an error (TLT0824) if they differ in any bit, else an empty tuple.
         """
         from tltl_runtime.stealth.recordings.replay_check import check_replay
 

@@ -97,10 +97,10 @@ def _check_signals(level: StealthLevel, fspa: Fspa, places: SpecPlaces) -> Itera
 def _check_declaration(
     signal: Signal, available: AvailableSignal, level: StealthLevel, places: SpecPlaces
 ) -> Iterator[Diagnostic]:
-    """Yield TLT0812 if the level's signal does not fit its declaration in the spec.
+    """Yield a diagnostic (TLT0812) if the level's signal does not fit its declaration in the spec.
 
-    ``available`` describes the level's signal, and ``signal`` is the declaration. Another type is an
-    error; values outside the declared range are a warning.
+    ``available`` describes the level's signal, and ``signal`` is the declaration. Another type is
+    an error; values outside the declared range are a warning.
     """
     needs_bool = signal.type == "bool" and available.type != "bool"
     if needs_bool or specs.TYPES[signal.type] != specs.TYPES[available.type]:

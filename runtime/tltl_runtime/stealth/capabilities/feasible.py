@@ -21,7 +21,7 @@ _LIFT_STEP: Final = 0.25
 
 
 def check_reach(level: StealthLevel, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
-    """Return TLT0814 for each entity of a spec that no player can reach.
+    """Return a diagnostic (TLT0814) for each entity of a spec that no player can reach.
 
     The diagnostics are errors if nobody can meet the spec without these entities, else warnings.
     The level must supply everything that the spec uses.

@@ -207,7 +207,7 @@ class _Search:
         return max(height for height, ground in self._ground.items() if ground.any())
 
     def spread(self, opened: Collection[str]) -> Space:
-        """Extend the reached ground as far as possible while the barriers ``opened`` are open.
+        """Extend the reached ground as far as possible while the barriers named in ``opened`` are open.
 
         Return the space in which the player's feet can be.
         """

@@ -2,9 +2,9 @@
 
 The ground plan is cut into square cells, and the height into slabs. A slab ends at every height
 where an obstacle begins or ceases to be in the way, so heights are exact. A box of space is one
-cell in one slab. It counts as free if the body may fit anywhere in it, so the search finds all
-space that is really free. The body is that of a crouched player, 5 cm narrower than in the game,
-with two round ends.
+cell in one slab. It counts as free if there may be room for the body somewhere in the box, so no
+free space is missed. The body is that of a crouched player, 5 cm narrower than in the game, with
+two round ends.
 """
 
 from __future__ import annotations
@@ -173,10 +173,10 @@ def _interval_distances(lows: NDArray[np.float64], highs: NDArray[np.float64], v
 
 
 def flood(free: Space, seeds: Space, budget: Budget) -> Space:
-    """Return the part of ``free`` that is connected with ``seeds`` through faces of its boxes.
+    """Return the free boxes of space that can be reached from ``seeds`` through common faces of boxes.
 
-    ``seeds`` and ``free`` are masks. Each round of the search spreads along whole lines of each
-    axis in turn, so even a way around many corners takes few rounds.
+    ``free``, ``seeds`` and the result are masks. Each round of the search spreads along whole lines
+    of each axis in turn, so even a way around many corners takes few rounds.
     """
     budget.spend(3 * free.size)
     reached: Space = seeds & free

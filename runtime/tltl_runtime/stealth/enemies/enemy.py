@@ -227,7 +227,7 @@ class EnemyGuard:
         return self._next_waypoint() == (self.x, self.y)
 
     def nearest_leg(self) -> int:
-        """Return the index of the point of the guard's route that is nearest to the guard, as a straight line."""
+        """Return the index of the point of the route that is nearest to the guard, measured in a straight line."""
         return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
 
     def next_gap(self) -> Place | None:

@@ -333,9 +333,9 @@ class Floor:
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
         """Return a bool for each cell: whether the whole cell is clear of obstacles.
 
-        The list has a further last element, False, which the index -1 ("no cell") finds. The bool
-        is also False for cells of the last row and column: a position between such a cell and the
-        bounds counts as in the cell.
+        The list has a further last element, False, so that the index -1, which stands for "no
+        cell", gives False. Cells of the last row and column are also False: a position between such
+        a cell and the bounds counts as in the cell.
         """
         x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
         roomy = (columns < self._columns - 1) & (rows < self._rows - 1)

@@ -69,7 +69,7 @@ class Watch:
         self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
-        """Update the models from a snapshot; return whether all models of any one enemy were wrong."""
+        """Update the models from a snapshot; return whether there is an enemy whose models were all wrong."""
         surprised = False
         if snapshot.time > self._time:
             player = player_view(snapshot.player)
@@ -119,7 +119,10 @@ class Watch:
         return Outlook(poses, shares / shares.sum())
 
     def _put(self, model: EnemyGuard, pose: tuple[float, float, float], mode: EnemyMode) -> EnemyGuard:
-        """Move a model to its enemy's ``pose``, and return it; its new task fits the enemy's ``mode``."""
+        """Move a model to its enemy's ``pose``, and give it a task that fits the enemy's ``mode``.
+
+        Return the model.
+        """
         before = model.mode
         model.x, model.y, model.yaw = pose
         model.forget_path()

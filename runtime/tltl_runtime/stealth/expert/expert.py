@@ -26,13 +26,13 @@ _ROOM: Final = 0.5
 
 
 class Expert:
-    """A scripted player of ``env``, which is a TltlEnv over a GameEnv, or wrappers around one.
+    """A scripted player of ``env``, which is a TltlEnv over a GameEnv, or wrappers around such an environment.
 
     Call ``reset`` after each reset of the environment, then ``act`` for each action. The expert
     reads its goal from the automaton, and finds its route from the level and the visible state of
     the game. If a shut barrier is in the way, the expert goes to a switch first. A ``careful``
-    expert avoids the sight of enemies while its route is on the floor and passes no mover;
-    elsewhere it ignores enemies.
+    expert avoids the sight of enemies while its route is on the floor and passes no mover (moving
+    box); elsewhere it ignores enemies.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:

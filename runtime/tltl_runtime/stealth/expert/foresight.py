@@ -54,7 +54,7 @@ class ActionPlan:
 class _Bodies:
     """The bodies of the search at one time, n predicted states of the player on the ground.
 
-    A "decision" is a time step. Each field is an array with one entry for each body.
+    A "decision" is a time step. Each field has one entry for each body.
     """
 
     poses: Poses

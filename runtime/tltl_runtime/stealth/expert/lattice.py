@@ -53,9 +53,9 @@ SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 @lru_cache(maxsize=64)
 def lattice_of(level: StealthLevel, shut: frozenset[int]) -> Lattice:
-    """Return the lattice of a level while the barriers with the indices ``shut`` are shut.
+    """Return the lattice of a level, the places on its floor where the player fits.
 
-    It is cached per process.
+    The barriers with the indices ``shut`` are shut. The lattice is cached per process.
     """
     return Lattice(level, shut)
 

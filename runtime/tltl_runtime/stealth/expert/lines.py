@@ -48,9 +48,10 @@ class LinesOfSight:
     def visible_shares(self, x: float, y: float) -> NDArray[np.float32]:
         """Return how well an enemy with its eyes at ``x``, ``y`` sees a player at each place.
 
-        The result is float32 [2, places], first for a standing, then for a crouched player. Each
-        place has five points: its middle and four around it. The value is the share of these
-        points, in [0, 1], at which the enemy would see the player.
+        The position of the eyes is rounded to multiples of 0.2 m. The result is float32 [2,
+        places], first for a standing, then for a crouched player. Each place has five points: its
+        middle and four around it. The value is the share of these points, in [0, 1], at which the
+        enemy would see the player.
         """
         key = (round(x / ROUNDED), round(y / ROUNDED))
         shares = self._cache.get(key)

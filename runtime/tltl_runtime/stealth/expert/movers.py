@@ -42,7 +42,7 @@ class Clocks:
     def swept_boxes(self, first: int, last: int | None = None) -> list[Box]:
         """Return for each mover the bounding box of its motion in the time steps ``first`` to ``last``.
 
-        Time steps are counted from now, the next one is 0. By default, ``last`` is ``first``.
+        Time steps are counted from now: the next one is 0. By default, ``last`` is ``first``.
         """
         boxes = []
         for mover, path, clock in zip(self._movers, self._paths, self._clocks, strict=True):

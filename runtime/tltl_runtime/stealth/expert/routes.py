@@ -55,10 +55,10 @@ class Leg:
 class RouteField:
     """The routes to a goal from all places where a player can stand.
 
-    ``seconds`` [layers, rows, columns] is the time from each place to the goal; it is infinite if
-    there is no route. ``towards`` [places] is the flat index of the next place on the route, or -1
-    at the goal and where there is no route. ``kinds`` [places] is how to get to the next place, as
-    an index into ``_KINDS``.
+    ``seconds`` [layers, rows, columns] is the time from each place to the goal, where a layer is a
+    height; it is infinite if there is no route. ``towards`` [places] is the flat index of the next
+    place on the route, or -1 at the goal and where there is no route. ``kinds`` [places] is how to
+    get to the next place, as an index into ``_KINDS``.
     """
 
     surfaces: Surfaces
@@ -306,7 +306,7 @@ def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[t
 
 
 def _clamp(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
-    """Return indices, clamped to 0 to ``count`` - 1."""
+    """Return the indices, clamped to the range from 0 to ``count - 1``."""
     return np.minimum(np.maximum(index, 0), count - 1)
 
 

@@ -105,10 +105,12 @@ class Walker:
 
 
 def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, int]]:
-    """Return the directions in which a player should move on a route, as choices of an action for x and y.
+    """Return the directions in which a player should move on a route.
 
-    The route begins at ``start``. Each of ``legs`` is a pair: whether the leg counts, and the point
-    where it ends. The result has each direction that is within 45 degrees of a leg that counts.
+    A direction is a pair of an action's choices for x and y: 0 for none, 1 along the axis, 2
+    against it. The route begins at ``start``. Each of ``legs`` is a pair: whether the leg counts,
+    and the point where it ends. The result has each direction that is within 45 degrees of a leg
+    that counts.
     """
     headings = set()
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):

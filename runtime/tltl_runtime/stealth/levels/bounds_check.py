@@ -20,10 +20,10 @@ _Boxes = list[tuple[str, Box]]
 
 
 def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Diagnostic]:
-    """Return TLT0806 for each thing outside the bounds, and TLT0807 for each thing inside an obstacle.
+    """Return an error for each thing outside the bounds (TLT0806) or inside an obstacle (TLT0807).
 
-    Diagnostics point to places in the level's files: ``places`` has those of the things, and
-    ``start`` is that of the player's start.
+    ``places`` and ``start`` say where the level's files describe the things and the player's start.
+    The diagnostics point there.
     """
     solids = [(solid.name, solid.box) for solid in level.solids]
     barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
@@ -40,7 +40,7 @@ def check_room(level: StealthLevel, places: NamedParts, start: Label) -> list[Di
 def _check_bounds(
     level: StealthLevel, boxes: _Boxes, goals: list[tuple[str, Point]], places: NamedParts, start: Label
 ) -> Iterator[Diagnostic]:
-    """Yield TLT0806 for each thing that is outside the bounds."""
+    """Yield an error (TLT0806) for each thing that is outside the bounds."""
     moving = [(mover.name, Box(*box_around(point, mover.size))) for mover in level.movers for point in mover.path]
     points = [*goals, *((enemy.name, point) for enemy in level.enemies for point in enemy.route)]
     spots = [(name, Box(point, point)) for name, point in points]
@@ -57,9 +57,9 @@ def _check_bounds(
 
 
 def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: Label) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each thing that overlaps the player's start.
+    """Yield an error (TLT0807) for each thing that overlaps the player's start.
 
-    Movers (moving boxes) count at the positions at which an episode begins.
+    Movers (moving boxes) count at their positions at the beginning of an episode.
     """
     begins = [
         (mover.name, Box(*box_around(MoverPath(mover).position_at(mover.offset), mover.size))) for mover in level.movers
@@ -71,9 +71,9 @@ def _check_start(level: StealthLevel, boxes: _Boxes, places: NamedParts, start: 
 
 
 def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each switch or exit that is inside a solid.
+    """Yield an error (TLT0807) for each switch or exit that is inside a solid.
 
-    If it is inside several solids, the diagnostic names only the first.
+    If it is inside several solids, the error names only the first.
     """
     for goal, point in goals:
         if name := _first_overlap(_body_box(point, 0.01, 0.1), solids):
@@ -82,7 +82,7 @@ def _check_goals(goals: list[tuple[str, Point]], solids: _Boxes, places: NamedPa
 
 
 def _check_routes(level: StealthLevel, solids: _Boxes, places: NamedParts) -> Iterator[Diagnostic]:
-    """Yield TLT0807 for each point of an enemy's route where a solid leaves the enemy no room."""
+    """Yield an error (TLT0807) for each point of an enemy's route where a solid leaves the enemy no room."""
     for enemy in level.enemies:
         for point in enemy.route:
             if name := _first_overlap(_body_box(point, RADIUS), solids):

@@ -14,7 +14,7 @@ from tltlc.api import Diagnostic, SourceFile, replace
 
 
 def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0804 for each name that no spec can declare as an entity, such as a keyword.
+    """Return an error (TLT0804) for each name that no spec can declare as an entity, such as a keyword.
 
     ``places`` knows where the level's files contain the names.
     """
@@ -37,9 +37,9 @@ def check_names(names: Iterable[str], places: NamedParts) -> list[Diagnostic]:
 
 
 def check_references(level: StealthLevel, places: NamedParts) -> list[Diagnostic]:
-    """Return TLT0805 for each name that the level's files refer to and that does not exist in the level.
+    """Return an error (TLT0805) for each name that the level's files refer to and that does not exist.
 
-    Also return TLT0805 for each barrier that nothing opens, or that more than one thing opens.
+    Also return one for each barrier that nothing opens, or that more than one thing opens.
     """
     # Leave out the aliases of signals: this function checks the names that they stand for.
     signals = readers(replace(level, signals=()))

@@ -218,7 +218,7 @@ class _Loading:
             raise TltlError(self.log)
 
     def _check_count(self, *groups: Sequence[object]) -> None:
-        """Raise TltlError, TLT0006, if the ``groups`` of things together are too large for a level.
+        """Raise TltlError, TLT0006, if the things in ``groups`` are too many for a level.
 
         Each point of a path or route counts as one more thing. The limit is
         :data:`tltlc.io.limits.LEVEL`.

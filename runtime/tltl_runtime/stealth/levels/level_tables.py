@@ -55,8 +55,8 @@ _VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "s
 class NamedParts:
     """Remembers where the level's files name things, so that later checks can point there.
 
-    A label is a place in a file. ``names`` and ``positions`` map the name of each thing to the
-    label of its name and to that of its position.
+    A label is a place in a file. ``names`` maps the name of each thing to the label of this name,
+    and ``positions`` maps it to the label of the thing's position.
     """
 
     names: dict[str, Label]
@@ -206,7 +206,7 @@ def barriers(table: CheckedTable, places: NamedParts) -> list[Barrier]:
 
 
 def unlocks(table: CheckedTable, places: NamedParts) -> list[Unlock]:
-    """Read the unlocks of a level: a switch that opens a random one of several barriers."""
+    """Read the unlocks of a level. An unlock is a switch that opens a random one of several barriers."""
     unlocks = []
     for item in table.tables("unlock"):
         unlock = Unlock(item.text("switch"), item.names("barriers"))

@@ -116,8 +116,8 @@ def _remaining_text(episode: Episode) -> str:
 def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dict[str, float]:
     """Return the damage that each enemy and laser did between two snapshots, in health per second, by name.
 
-    The computation is that of the game, but reads snapshots. In the game, enemies attack before
-    they move, and lasers burn before switches open them.
+    The function repeats the game's computation with the data in the snapshots. In the game, enemies
+    attack before they move, and lasers burn before switches open them.
     """
     feet, kind = after.player.position, PlayerKind()
     height = kind.crouched_height if after.player.crouching else kind.height
@@ -136,9 +136,9 @@ def _damage_rates(level: StealthLevel, before: Snapshot, after: Snapshot) -> dic
 
 
 def _unreachable_goals(episode: Episode) -> tuple[str, ...] | None:
-    """Return the next goals of the spec if the player can reach none of them.
+    """Return the names of the entities that the player should reach next, if no route leads to any of them.
 
-    Return an empty tuple if the player can reach any of them, and None if there are no next goals.
+    Return an empty tuple if a route leads to any of them, and None if there are no such entities.
     """
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}

@@ -164,7 +164,11 @@ def _read_meta(archive: RecordingArchive, name: str) -> Meta:
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
-    """Raise TLT0822 if an index is out of range, the seed is negative, or names do not fit the level and spec."""
+    """Raise an error (TLT0822) if the arrays, the seed or the names in a file are wrong.
+
+    These are an index out of range, a negative seed, and names that do not fit the level and the
+    spec.
+    """
     limits = [
         ("actions", np.array(BRANCHES)),
         ("states", np.array(len(fspa.states))),

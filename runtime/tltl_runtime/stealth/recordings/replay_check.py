@@ -44,7 +44,7 @@ def resimulate(episode: Episode) -> int | None:
 
 
 def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
-    """Return TLT0824 if :func:`resimulate` finds a difference, else an empty tuple.
+    """Return an error (TLT0824) if :func:`resimulate` finds a difference, else an empty tuple.
 
     The help of the diagnostic says which versions have changed since the recording. Raises the
     errors of :func:`resimulate`.

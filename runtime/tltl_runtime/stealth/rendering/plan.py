@@ -62,7 +62,7 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
 def backdrop(
     level: StealthLevel, size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
-    """Return a picture of a level's plan without bodies that move, and a function for positions in it.
+    """Return a picture of a level's plan without bodies that move, and a function that finds its pixels.
 
     The picture is (height, width, 3). The function converts a position in the level to a pixel of
     the picture: x and y from the upper left.
@@ -149,7 +149,10 @@ def level_axes(figure: Figure, level: StealthLevel, moving: bool = True, start: 
 
 
 def patrol_path(level: StealthLevel, enemy: Enemy) -> list[tuple[float, float]]:
-    """Return the points of an enemy's patrol, around obstacles, with all barriers shut."""
+    """Return the corners of the path on which an enemy walks its route while all barriers are shut.
+
+    The path leads around obstacles and ends where it begins.
+    """
     floor = grid_of(level).floor(range(len(level.barriers)))
     route = [point[:2] for point in (*enemy.route, enemy.route[0])]
     path = route[:1]

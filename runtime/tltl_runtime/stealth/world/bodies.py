@@ -14,7 +14,7 @@ from tltl_runtime.stealth.world.geometry import Bounds
 COMPOUND = 16
 """The greatest number of children in a compound shape: Bullet drops the rest."""
 RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
-"""The collision groups of rays, of the active capsule, of the inactive one, and of all else.
+"""The collision groups of rays, of the active capsule, of the inactive one, and of everything else.
 
 Bullet itself puts rays into the first group.
 """

@@ -20,7 +20,7 @@ from tltl_runtime.stealth.world.player import DECISION
 _REACH = 1.5
 """The player can touch a mover within a time step from at most this far away, in metres.
 
-To this, add the distance that the mover itself moves in the time step.
+This is for a mover at rest. The distance that a mover moves in the time step comes on top.
 """
 _HARDEST_PUSH = 8.0
 """The greatest speed that a mover gives to the player, in metres per second."""
