@@ -222,7 +222,7 @@ class ExpressionTranslator:
             lines.append(If(((test, tuple(self.assign(name, node))),)))
         else:
             lines += with_declaration(name, self.assign(name, node), changes=False)
-        # A blank makes this name different from the names of all signals.
+        # The spaces in this name make it different from the names of all signals.
         stand_in = source.SignalValue(f"computed before: {name}")
         self._signals[stand_in.name] = name
         return stand_in

@@ -52,7 +52,7 @@ class Observer:
         diagonal = dist(level.bounds.low, level.bounds.high)
         sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
         self._sizes = np.array(sizes, dtype=np.float32)
-        # Arrays as limits: numpy's clip takes three times as long with Python floats.
+        # Use arrays as limits: numpy's clip takes three times as long with Python floats.
         self._least, self._most = np.full_like(self._sizes, -1.0), np.ones_like(self._sizes)
         self._map = SemanticMap(level, sensors.map) if sensors.map else None
         self._open: list[bool] = []

@@ -64,7 +64,7 @@ class WorldError(RuntimeError):
         self._arguments = level, step, body, problem
 
     def __reduce__(self) -> tuple[type[WorldError], tuple[StealthLevel, int, str, str]]:
-        # The arguments, not the message, rebuild the error: processes send it to each other.
+        # Unpickle the error from its arguments, not from its message: processes send it to each other.
         return type(self), self._arguments
 
 
