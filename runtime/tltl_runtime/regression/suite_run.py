@@ -1,4 +1,4 @@
-"""Run a suite: judge its cases one after the other.
+"""Run a suite of regression tests: judge its cases one after the other.
 
 Results are cached, so that a stopped run can continue.
 """
@@ -46,12 +46,13 @@ WRITABLE: Final = "make sure that there is room and that you may write there, or
 
 @record
 class FinishedCase:
-    """A case whose report is finished.
+    """A case of a suite with its finished report.
 
-    ``is_cached`` says that an earlier run played the case and nothing has changed since.
-    ``prepared`` is the case as it was played, and ``reference`` are the episodes of the baseline
-    with which it was compared. Both are None if the case could not be played. ``traces`` are the traces
-    of a case of recorded traces, which is not played; None for other cases.
+    ``is_cached`` says that the report is from an earlier run, and that nothing has changed since.
+    ``prepared`` is the case as it was played, and ``reference`` has the episodes of the baseline
+    with which it was compared. Both are None if no policy played the case, for example because its
+    level does not load. ``traces`` has the judged traces of a case of recorded traces; it is None
+    for other cases.
     """
 
     report: CaseReport
@@ -62,16 +63,19 @@ class FinishedCase:
 
     @property
     def case_to_train(self) -> PreparedCase | None:
-        """The case as it was played, if retraining its policy makes sense; else None.
+        """The case as it was played, if its policy should be retrained; else None.
 
-        Retraining makes sense if the case was played and did not pass, its policy was not retrained
-        yet, and there is no ``training_obstacle``.
+        The policy should be retrained if the case was played and did not pass, if there was no
+        retraining yet, and if there is no ``training_obstacle``.
         """
         return None if self.report.retrained or self.training_obstacle else self._unpassed_case
 
     @property
     def training_obstacle(self) -> str | None:
-        """Why retraining cannot help; None if it can, or if the case passed or was not played."""
+        """A clause that says why retraining the policy cannot help; None if it can help.
+
+        It is also None if the case passed, or was not played.
+        """
         prepared = self._unpassed_case
         if prepared is None:
             return None
@@ -87,10 +91,11 @@ class FinishedCase:
 
 
 def check_references(suite: Suite, cases: Sequence[SuiteCase], references: tuple[Reference, ...]) -> None:
-    """Check that the baseline has valid episodes (a reference) for each case that can be played.
+    """Check that ``references``, the baseline, has episodes for each case that can be played.
 
     Raises:
-        TltlError: TLT0903, the baseline lacks a case; TLT0902, the baseline is invalid.
+        TltlError: TLT0903, the baseline has no episodes, or too few, for a case; TLT0902, its
+            episodes were in states that the spec does not have.
     """
     for case in cases:
         if isinstance(case, Case):
@@ -121,19 +126,20 @@ def regress(
 ) -> Generator[FinishedCase]:
     """Judge some cases of a suite in order, and yield each as soon as it is finished.
 
-    ``references`` are the references of the baseline, and ``pool`` says which processes play.
-    ``on_episode`` is called after each episode, and ``on_trace`` after each recorded trace. Results
-    are cached below ``folder``; call this within :func:`lock_run`. A case with a cached result is not
-    played again if nothing that it depends on has changed, unless ``fresh``.
+    ``references`` is the baseline: the recorded episodes that the cases are compared with. ``pool``
+    says which processes play. ``on_episode`` is called after each episode, and ``on_trace`` after
+    each recorded trace. Results are cached below ``folder``, the folder of the run; lock it with
+    :func:`lock_run` during this call. A played case with a cached result is not played again if
+    nothing that it depends on has changed, unless ``fresh``.
 
     A case that cannot be played gets the verdict ``fail``. A case whose level is edited while it is
-    played gets ``review``. After both, the run goes on with the next case.
+    played gets ``review``. The run then goes on with the next case.
 
     Raises:
         TltlError: TLT0903, the baseline lacks a case, or a policy or its spec was replaced
             meanwhile; TLT0902, the episodes of the baseline were in states that the spec does not
-            have; TLT0730, TLT0850 and TLT0852, errors of the workers; TLT0005, the folder cannot be
-            written.
+            have; TLT0007, a process that judges traces ended; TLT0730, TLT0850 and TLT0852, errors
+            of the workers that play; TLT0005, the folder cannot be written.
     """
     if fresh:
         _remove_cached(suite, cases, folder)
@@ -150,7 +156,9 @@ def regress(
 
 
 def _judge_traces(suite: Suite, case: TraceCase, pool: Pool, on_trace: OnTrace) -> FinishedCase:
-    """Judge the recorded traces of a case. Nothing is cached, because this takes little time.
+    """Judge the recorded traces of a case; if they cannot be judged, report that as a failure.
+
+    Nothing is cached, because this takes little time.
 
     Raises:
         TltlError: TLT0007, a worker process ended.
@@ -167,22 +175,29 @@ def _judge_traces(suite: Suite, case: TraceCase, pool: Pool, on_trace: OnTrace) 
 
 
 def _remove_cached(suite: Suite, cases: Sequence[SuiteCase], folder: Path) -> None:
-    """Remove the cached results of the cases, before a ``fresh`` run.
+    """Remove the cached results of the cases from ``folder``, the folder of a run that starts afresh.
 
-    If that run is stopped and continued, the continuation then finds only results of that run.
+    If the run is stopped and continued, it then finds only its own results there.
     """
     for case in cases:
         fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
-    """Return the folder of the case called ``name``, inside ``folder``."""
+    """Return the folder of the case called ``name``, such as ``folder/navigation-v1`` for ``navigation:v1``."""
     names = [case.name for case in suite.cases]
     return folder / slugs(names)[names.index(name)]
 
 
 def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[PreparedCase, Reference] | TltlError:
-    """Set up a case; return it with the episodes to compare with, or the error if it cannot be played."""
+    """Set up a case, and return it with the episodes of the baseline to compare it with.
+
+    If the case cannot be played, return the error instead.
+
+    Raises:
+        TltlError: TLT0903, the baseline has no episodes, or too few, for the case; TLT0902, its
+            episodes were in states that the spec does not have.
+    """
     try:
         prepared = prepare_case(case, suite.seed)
     except TltlError as error:
@@ -201,10 +216,13 @@ def _prepare(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tup
 def _judge(
     suite: Suite, prepared: PreparedCase, reference: Reference, folder: Path, pool: Pool, on_episode: OnEpisode
 ) -> FinishedCase:
-    """Return the result of a case: the cached one if it is up to date, else by playing the case now.
+    """Return the result of a case: the cached result if it is up to date; otherwise, play the case.
+
+    An error in the files of the case becomes the verdict ``fail``, and an edit of its level during
+    play becomes ``review``.
 
     Raises:
-        TltlError: an error for which no file of the case is to blame.
+        TltlError: an error of the workers, or TLT0005, the result cannot be written.
     """
     case, error = prepared.case, suite.error / len(suite.cases)
     own_folder, inputs = case_folder(suite, case.name, folder / CASES), _inputs(prepared, reference, error)
@@ -228,7 +246,7 @@ def _judge(
 
 
 def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
-    """Return the hash of everything that the report on a case depends on."""
+    """Return the hash of everything that the report on a case depends on, for the cache."""
     case, fspa = prepared.case, prepared.setup.fspa
     parts = [
         _VERSION,
@@ -248,15 +266,20 @@ def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
 
 
 def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
-    """Return the cached report if it was made from the same ``inputs``, a hash, and its recordings exist; else None."""
+    """Return the report that is cached in the folder of a case; None if it is missing or out of date.
+
+    It is out of date if the hash of what it was made from is not ``inputs``, or if one of its
+    recordings is missing.
+    """
     report = read_cache(CaseReport, folder / _REPORT, inputs)
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
 def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
-    """Write the report on a case and the recordings of example episodes; return the report.
+    """Write the report on a case and recordings of example episodes to ``folder``; return the report.
 
-    The examples are the first ``_RECORDINGS`` episodes of each finding, and the first success.
+    The examples are the first ``_RECORDINGS`` episodes of each finding (a sentence about what the
+    policy does differently), and the first success.
     """
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}

@@ -1,1 +1,1 @@
-"""The reports on a suite: their sentences and figures, and their formats: JSON, JUnit, GitHub annotations, HTML."""
+"""The report on a suite of regression tests, and its formats: JSON, JUnit, GitHub annotations and HTML."""

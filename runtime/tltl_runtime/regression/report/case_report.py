@@ -1,4 +1,4 @@
-"""The report on a case: verdict, figures, reasons and episodes."""
+"""The report on a case of a regression test: verdict, statistics, reasons and episodes."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from tltlc.api import Diagnostic, TltlError, record
 
 @record
 class TraceNames:
-    """The names of recorded traces, in the order of their indices.
+    """The ``names`` of recorded traces, in the order of their indices.
 
-    ``place`` names the files and folders that they come from.
+    ``place`` lists the files and folders that contain the traces, for example ``traces/old, a.csv``.
     """
 
     place: str
@@ -34,7 +34,11 @@ class TraceNames:
 
 @record
 class CaseTraces:
-    """The recorded traces of a case, ``now`` and in the baseline, and the name of its ``spec``."""
+    """The recorded traces of a case.
+
+    ``now`` are the traces to judge, ``before`` are those of the baseline, and ``spec`` is the name
+    of the spec that judges both.
+    """
 
     spec: str
     now: TraceNames
@@ -48,15 +52,19 @@ class CaseReport:
     - ``causes`` are sentences that justify the verdict.
     - ``certain``, ``rate_interval`` and ``changes`` are as in
       :class:`~tltl_runtime.regression.verdict.verdict.Judgement`.
-    - ``figures`` and ``baseline`` are the statistics of the played episodes and of the baseline's.
+    - ``figures`` are the statistics of the played episodes, ``baseline`` those of the episodes in the
+      baseline.
     - ``explanation`` says what the policy does differently from the baseline.
-    - ``edits`` are sentences about what has changed since the baseline: files, overlays, versions.
-    - ``mentions`` are the things and regions that the causes and edits mention, without those of
-      ``descriptions``: what the designer wrote about the variant's overlays, which are among the edits.
+    - ``edits`` are sentences about what has changed since the baseline: files, overlays (files that
+      change a level), versions of software.
+    - ``descriptions`` are texts in which the designer describes the overlays. They are also in
+      ``edits``.
+    - ``mentions`` names the things and regions of the level that ``causes`` and ``edits`` mention,
+      except those that only ``descriptions`` mention.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
-    - ``episodes`` are the played episodes, or the judged traces.
-    - ``traces`` are the names of the traces of a case of recorded traces, which has no level and no
-      variant: both are empty. It is None for other cases.
+    - ``episodes`` are the played episodes, or the judged traces as episodes.
+    - ``traces`` has the names of the traces of a case of recorded traces. ``level`` and ``variant``
+      of such a case are empty. For other cases, ``traces`` is None.
 
     A case that cannot be played or judged has no figures and no episodes.
     """
@@ -84,9 +92,9 @@ class CaseReport:
     """The result of retraining the policy; None if it was not requested or not needed."""
     traces: CaseTraces | None = None
     chosen_headline: str = ""
-    """The headline; if it is empty, the first reason is the headline."""
+    """The headline; empty if the first of ``reasons`` is the headline."""
     fault_at: tuple[str, int] | None = None
-    """The file and the line, from 1, of the error because of which the case cannot be played."""
+    """The file and the line, from 1, of the error that keeps the case from being played; None without one."""
 
     @property
     def headline(self) -> str:
@@ -144,9 +152,10 @@ def report_on(result: JudgedCase) -> CaseReport:
 
 
 def _edits(result: JudgedCase) -> Iterator[Phrase]:
-    """Describe how the case differs from its baseline: see ``edits`` of :class:`CaseReport`.
+    """Yield the sentences that are ``edits`` in a :class:`CaseReport`.
 
-    If a file was edited after the case was set up, its changed keys are not named.
+    The sentence on a changed file names its changed keys, unless the file was edited again after
+    the case was set up.
     """
     prepared, before = result.prepared, result.reference
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
@@ -156,11 +165,13 @@ def _edits(result: JudgedCase) -> Iterator[Phrase]:
 def headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None) -> str:
     """Return the headline of a case's report: the first of these sentences that applies.
 
-    1. how failed episodes end most often, if that is given and the pass rate may be too low;
-    2. which figure has changed;
-    3. the pass rate.
+    1. ``most_frequent``, which says how failed episodes end most often; only if it is not None and
+       the pass rate may be below the threshold;
+    2. the sentence on a changed figure;
+    3. the sentence on the pass rate.
 
-    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.report.reasons.reasons`.
+    ``statistics`` are the sentences of :func:`~tltl_runtime.regression.report.reasons.reasons`: the
+    first is about the pass rate, the others are about changed figures.
     """
     if most_frequent and judgement.rate_interval[0] < thresholds.pass_rate:
         return most_frequent
@@ -168,7 +179,7 @@ def headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[
 
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
-    """Return the report on a case that cannot be played.
+    """Return the report on a case that cannot be played because of ``error``.
 
     The verdict is ``fail``, because the error is in a file that the case tests, not in the suite.
     """
@@ -187,16 +198,19 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
-    """Return the report on a case whose level was edited while it was played.
+    """Return the report on a case whose level was edited while the case was played.
 
-    Its verdict is ``review``, and it has no figures.
+    The verdict is ``review``, and there are no statistics. ``error`` names the edited files.
     """
     causes = tuple(map(one_line, error.diagnostics))
     return CaseReport(case.name, level_stem(case.level), case.variant.title, "review", causes, certain=False)
 
 
 def one_line(diagnostic: Diagnostic) -> str:
-    """Format a diagnostic in one line, with its file and line."""
+    """Format a diagnostic in one line: ``FILE:LINE: CODE, TITLE: MESSAGE (HELP)``.
+
+    Parts that the diagnostic does not have are left out.
+    """
     location = message = ""
     if diagnostic.labels:
         label = diagnostic.labels[0]
@@ -208,6 +222,6 @@ def one_line(diagnostic: Diagnostic) -> str:
 
 
 def error_location(error: TltlError) -> tuple[str, int] | None:
-    """Return the file and the line, from 1, that an error points to first; None if it points to none."""
+    """Return the first file and line, from 1, that an error points to; None if it points to no file."""
     label = next((diagnostic.labels[0] for diagnostic in error.diagnostics if diagnostic.labels), None)
     return (label.source.name, label.source.position(label.span.start)[0]) if label else None

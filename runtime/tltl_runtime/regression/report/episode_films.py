@@ -35,7 +35,11 @@ _LACKS_PICTURES: Final = "TLT0731"
 
 @record
 class CaseFilms:
-    """The films of a case by the index of the episode, and sentences about those that could not be made."""
+    """The films of some episodes of a case.
+
+    ``pictures`` are animated WebP pictures, by the index of the episode. ``notes`` are sentences
+    about films that could not be made, with the reason.
+    """
 
     pictures: Mapping[int, bytes] = EMPTY
     notes: tuple[str, ...] = ()
@@ -47,10 +51,11 @@ NO_FILMS: Final = CaseFilms()
 def episode_films(
     game: Game[Any, Any], place: tuple[str, str], findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]
 ) -> CaseFilms:
-    """Return films of recorded ``episodes``, those that are examples of ``findings`` first.
+    """Return films of at most ``MOST_FILMS`` of the recorded ``episodes``.
 
-    The game plays the episodes again for them; ``place`` names the level and its variant, as for
-    ``Game.load_level``. There are no films, and no notes, if the game draws none.
+    Examples of ``findings`` are preferred to other episodes. The game plays the episodes again to
+    draw them. ``place`` names the level and its variant, as for ``Game.load_level``. There are
+    neither films nor notes if the game draws no pictures, or if Pillow cannot write WebP.
     """
     if game.films is None or not _can_write():
         return NO_FILMS
@@ -68,7 +73,10 @@ def episode_films(
 
 
 def _examples(findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]) -> list[int]:
-    """Return the episodes to show, in their order: the first example of each finding, and then others."""
+    """Return the indices of at most ``MOST_FILMS`` episodes to show, in ascending order.
+
+    The first example of each finding is preferred. Other episodes fill the remaining places.
+    """
     firsts = (next((index for index in finding.episodes if index in episodes), None) for finding in findings)
     wanted = dict.fromkeys(index for index in chain(firsts, sorted(episodes)) if index is not None)
     return sorted([*wanted][:MOST_FILMS])
@@ -80,7 +88,11 @@ def _note(indices: Sequence[int], why: str) -> str:
 
 
 def _film(films: Films[Any], episode: RecordedEpisode) -> bytes:
-    """Return the film of an episode; raises TltlError if it cannot be played again, or has no pictures."""
+    """Return the film of an episode, as the bytes of a WebP file.
+
+    Raises:
+        TltlError: the episode cannot be played again, or the game draws no pictures of it.
+    """
     rows = np.unique(np.linspace(0, len(episode.actions), MOST_FRAMES).round().astype(int))
     times = episode.times[rows]
     frames = [*films.frames(episode, times.tolist(), films.views[0], _SIZE, "english")]
@@ -89,9 +101,10 @@ def _film(films: Films[Any], episode: RecordedEpisode) -> bytes:
 
 
 def small_film(frames: Sequence[Picture], seconds: Sequence[float]) -> bytes:
-    """Return a film that shows each frame for its ``seconds``, in WebP, with at most ``MOST_BYTES``.
+    """Return a film as the bytes of a WebP file, which shows the i-th frame for ``seconds[i]``.
 
-    A film that is too large gets a lower quality, and then has fewer and fewer of its frames.
+    If the file is larger than ``MOST_BYTES``, the quality is lowered. If that is not enough, every
+    second frame is dropped until the file is small enough or only the last frame is left.
     """
     for quality in _QUALITIES:
         film = _webp(frames, seconds, quality)

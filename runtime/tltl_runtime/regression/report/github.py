@@ -1,4 +1,4 @@
-"""Annotations of changed files with the verdicts of a suite, as commands of GitHub Actions."""
+"""The verdicts of a suite as annotations of files, in the form of workflow commands of GitHub Actions."""
 
 from __future__ import annotations
 
@@ -17,16 +17,18 @@ _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
 
 def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
-    """Yield an ``::error`` for each ``fail`` and a ``::warning`` for each ``review``.
+    """Yield an ``::error`` for each case that fails, and a ``::warning`` for each ``review``.
 
-    An annotation is at the first of these places that exists:
+    The command annotates the first of these places that exists:
 
     1. the file and the line of the error that keeps the case from being played;
-    2. the file of the spec, for recorded traces, or of the level, if no episodes were judged;
-    3. a file that has changed since the baseline: if possible, an overlay instead of the level;
-    4. the suite.
+    2. for recorded traces, the file of the spec;
+    3. if the case was not played to a verdict, the file of the level;
+    4. a file that has changed since the baseline; an overlay (a file that changes a level) is
+       preferred to the level;
+    5. the file of the suite.
 
-    ``root`` is the top of the checkout. Paths inside it are relative to it.
+    ``root`` is the top folder of the checkout. Paths inside it are written relative to it.
     """
     cases = {case.name: case for case in suite.cases}
     for report in reports:
@@ -39,9 +41,9 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
 
 
 def _file_to_annotate(suite: Suite, case: SuiteCase, report: CaseReport) -> Path:
-    """Return the file to annotate for an error without a location.
+    """Return the file to annotate for a case whose error has no location.
 
-    The choice is that of :func:`workflow_commands`.
+    :func:`workflow_commands` lists the choices.
     """
     if isinstance(case, TraceCase):
         return Path(fileio.split_spec_name(case.spec)[0])

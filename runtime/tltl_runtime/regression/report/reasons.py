@@ -27,10 +27,11 @@ def reasons(
     *,
     are_traces: bool = False,
 ) -> Iterator[str]:
-    """Describe the statistics of a verdict: the pass rate and the figures that have changed.
+    """Yield a sentence on the pass rate, then one for each of progress and reward that has changed.
 
-    ``now`` are the episodes that the verdict is about, and ``before`` those of the baseline. Recorded
-    traces are not paired by seeds, so their figures are compared over all of them.
+    ``judgement`` is the verdict on the episodes ``now``. ``before`` are the episodes of the baseline.
+    If the episodes ``are_traces`` (recorded traces), they have no seeds, and the means over all of them
+    are compared.
     """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
@@ -56,7 +57,7 @@ def reasons(
 
 
 def _change_text(figure: str, now: float, before: float) -> str:
-    """Say how the mean of a figure, such as ``progress``, has changed."""
+    """Say how a mean has changed: ``progress is lower, 0.62 on average; before: 0.97``."""
     direction = "lower" if now < before else "higher"
     return f"{figure} is {direction}, {now:.2f} on average; before: {before:.2f}"
 
@@ -64,10 +65,11 @@ def _change_text(figure: str, now: float, before: float) -> str:
 def _uncertain_change_text(
     figure: str, now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], *, paired: bool
 ) -> str:
-    """Say how the mean of a figure has changed, over the seeds that ``now`` and ``before`` share, or over all.
+    """Say how the mean of a figure, such as ``progress``, has changed.
 
-    Reports also show the mean over all episodes of the baseline. If that mean looks different, the
-    sentence mentions it, too.
+    If the episodes ``now`` and ``before`` are ``paired``, the means are over the seeds that both have,
+    otherwise over all episodes. Reports also show the mean over all episodes of the baseline. If
+    that mean looks different, the sentence mentions it, too.
     """
     count = min(len(now), len(before)) if paired else None
     new, old, overall = (
@@ -83,7 +85,7 @@ def _uncertain_change_text(
 def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
     """Yield a sentence for each entity of the spec that no player can reach in the level.
 
-    If several entities cannot be reached for the same reason, describe only the first.
+    If several entities cannot be reached for the same reason, only the first gets a sentence.
     """
     entities = level.game.unreachable_entities(level, fspa)
     first_entities = {entity.diagnostic.help: entity for entity in reversed(entities)}
@@ -95,11 +97,12 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[Phrase]:
 def edits(
     now: Identity, before: Identity, descriptions: Sequence[str], texts: Texts = (), texts_before: Texts = ()
 ) -> Iterator[Phrase]:
-    """Describe how a case differs from its baseline: in files, in overlays, and in versions.
+    """Yield sentences on how a case differs from its baseline: in files, overlays and versions.
 
-    ``now`` and ``before`` identify what was played now and for the baseline. ``descriptions`` are
-    those of the variant's overlays. ``texts`` and ``texts_before`` are the texts of the level's
-    files. If both texts of a changed file are known, the sentence names its changed keys.
+    An overlay is a file that changes a level. ``now`` and ``before`` identify what was played now
+    and for the baseline. ``descriptions`` are the designer's descriptions of the overlays; each is
+    yielded unchanged. ``texts`` and ``texts_before`` have the known texts of the level's files. If
+    both texts of a changed file are known, its sentence names the changed keys.
     """
     old, new = dict(before.files), dict(now.files)
     changed_names = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
@@ -123,5 +126,5 @@ def edits(
 
 
 def _changed_keys(before: str | None, now: str | None) -> ChangedKeys:
-    """Return the changed keys of a file; the description is empty if they are unknown."""
+    """Return the changed keys of a file; their description is empty if one of the texts is unknown."""
     return ChangedKeys("") if before is None or now is None else changed_keys(before, now)

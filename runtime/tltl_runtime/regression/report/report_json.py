@@ -1,4 +1,4 @@
-"""The report on a suite as JSON data."""
+"""The report on a suite of regression tests as JSON data."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def document(
 ) -> dict[str, Any]:
     """Return the report on a suite as JSON data.
 
-    ``complete`` says whether all requested cases were judged and retrained. ``left_out`` are the
+    ``complete`` says whether all requested verdicts and retrainings are there. ``left_out`` are the
     names of the cases that were not run because they do not depend on the changed files.
     """
     verdicts = [report.verdict for report in reports]

@@ -16,19 +16,19 @@ from tltlc.api import record
 Outcome = Literal["learned", "feasible", "no_way"]
 
 OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
-"""The displayed names of outcomes."""
+"""The name of each outcome as reports show it."""
 
 
 @record
 class FinishedRetraining:
     """A finished training that started from a case's policy.
 
-    ``end`` says why it ended: it ``met`` its goal, or a limit of ``steps`` or ``minutes`` was
-    reached. ``steps`` are the decisions of the agent. ``seconds`` include the search before the
-    training. The search took ``searched`` decisions; ``complete`` is False if a limit stopped it.
-    ``searched`` is 0 if there was no search, for which a game must say where the player is.
-    ``shortest`` is the number of steps in the shortest known episode that met the spec, of the
-    search or the agent; None if none is known.
+    ``end`` says why it ended: it ``met`` its goal, or it reached its limit of ``steps`` or
+    ``minutes``. ``steps`` is the number of decisions of the agent. ``seconds`` is the duration,
+    including that of the search for successful episodes before the training. ``searched`` is the
+    number of decisions of the search; 0 if there was none, because the game does not say where the
+    player is. ``complete`` is False if a limit stopped the search. ``shortest`` is the number of
+    steps of the shortest episode, of the search or the agent, that met the spec; None if none did.
     """
 
     end: Literal["met", "steps", "minutes"]
@@ -41,9 +41,9 @@ class FinishedRetraining:
 
 @record
 class BestFailedEpisode:
-    """The failed episode with the greatest progress, in [0, 1].
+    """The failed episode with the greatest ``progress``, in [0, 1].
 
-    ``remained`` says in English what remained to be done in it.
+    ``remained`` says in English what remained to be done when the episode failed.
     """
 
     progress: float
@@ -57,14 +57,15 @@ class RetrainingResult:
     ``outcome`` is the first of these that applies:
 
     - ``learned``: the retrained policy's pass rate is certainly at least the case's ``pass_rate``.
-    - ``feasible``: the search, the agent or a policy met the spec at least once.
+    - ``feasible``: the spec was met at least once, by the search before the training, by the agent,
+      or by the old or the new policy.
     - ``no_way``: nobody met the spec.
 
-    ``text`` describes the outcome in a sentence. ``figures`` are those of the retrained policy in
-    fresh episodes, and ``rate_interval`` is the confidence interval of its pass rate. ``best`` is
-    the best failed one of these episodes, or None if all of them met the spec. ``policy`` and
-    ``episode`` are paths relative to the folder of the run: of the retrained policy, and of the
-    recording of a fresh episode that met the spec, or None if none did.
+    ``text`` describes the outcome in a sentence. The retrained policy then played fresh episodes:
+    ``figures`` are their statistics, and ``rate_interval`` is the confidence interval of their pass
+    rate. ``best`` is the failed episode with the greatest progress, or None if no episode failed.
+    ``policy`` is the path of the retrained policy, and ``episode`` that of the recording of a fresh
+    episode that met the spec, or None if none did. Both are relative to the folder of the run.
     """
 
     outcome: Outcome
@@ -80,9 +81,9 @@ class RetrainingResult:
 def outcome_of(trained: FinishedRetraining, low: float, thresholds: Thresholds, met: int) -> Outcome:
     """Return the outcome of a retraining, as in :class:`RetrainingResult`.
 
-    ``low`` is the lower end of the pass rate's confidence interval. ``met`` is the number of
-    episodes that met the spec: those of the retrained policy, and those by which the case was
-    judged.
+    ``low`` is the lower end of the confidence interval of the retrained policy's pass rate. ``met``
+    counts the episodes that met the spec, among those of the retrained policy and those of the old
+    policy by which the case was judged.
     """
     if low >= thresholds.pass_rate:
         return "learned"
@@ -97,7 +98,7 @@ def sentence(
     thresholds: Thresholds,
     best: BestFailedEpisode | None,
 ) -> str:
-    """Describe the outcome of a retraining in a sentence."""
+    """Describe the outcome of a retraining in a sentence. The arguments are as in :class:`RetrainingResult`."""
     effort = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     if trained.searched:
         counts = f"{trained.searched:,} and {trained.steps:,} steps"
@@ -124,7 +125,7 @@ def sentence(
 
 
 def _no_way_clauses(trained: FinishedRetraining) -> list[str]:
-    """Say how much was tried in vain, and what follows from it."""
+    """Return two clauses for the outcome ``no_way``: how much was tried in vain, and what follows."""
     training, in_all = f"a training of {trained.steps:,} steps", f"{duration(trained.seconds)} in all"
     if not trained.searched:
         return [

@@ -1,4 +1,7 @@
-"""The values of atoms over the steps of a recorded trace, read again for a picture, or of a recorded episode."""
+"""The values of atoms over the steps of recorded traces and episodes, for pictures.
+
+The files of recorded traces are read again for this.
+"""
 
 from __future__ import annotations
 
@@ -20,11 +23,11 @@ _EXAMPLES: Final = 3
 
 @record
 class TraceCurves:
-    """A recorded trace or episode as it is drawn.
+    """The data for the picture of a recorded trace or of a recorded episode; ``kind`` says of which.
 
-    ``atoms`` has the values of all atoms, in [-1, 1], for each of the ``steps`` samples. ``arrivals``
-    are the entries into states of the automaton. ``ended`` says in words how it ended. ``kind`` says
-    what it is; the ``name`` of an episode is its number.
+    ``name`` is the path of the trace, or the number of the episode. ``ended`` says in words how the
+    trace or episode ended. ``atoms`` has, for each of the ``steps`` samples, the values of all atoms, in
+    [-1, 1]. ``arrivals`` are the entries into states of the automaton.
     """
 
     name: str
@@ -40,9 +43,10 @@ class TraceCurves:
 
 
 def example_curves(judged: JudgedTraces, findings: Sequence[Finding]) -> dict[int, TraceCurves]:
-    """Return the curves of example traces, by index: some of each finding, and the first accepted trace.
+    """Return the curves of example traces by the index of the trace.
 
-    A trace that was removed since it was judged, or that now takes other states, is left out.
+    The examples are the first ``_EXAMPLES`` traces of each finding, and the first accepted trace. A
+    trace is left out if its file was removed since it was judged, or now leads to other states.
     """
     accepted = [trace.summary.index for trace in judged.now.episodes if trace.summary.success]
     wanted = {*(index for finding in findings for index in finding.episodes[:_EXAMPLES]), *accepted[:1]}

@@ -23,7 +23,7 @@ from tltlc.api import Diagnostic, TltlError, fileio
 
 
 def report_on_traces(judged: JudgedTraces) -> CaseReport:
-    """Return the report on a case whose traces were judged."""
+    """Return the report on a case of recorded traces that were judged."""
     case, fspa, judgement = judged.case, judged.fspa, judged.judgement
     names = _case_traces(case, fspa.name, judged.now.names, judged.before.names)
     unread = (*_unread_texts(judged.now, ""), *_unread_texts(judged.before, " of the baseline"))
@@ -83,12 +83,20 @@ def _too_few_texts(judged: JudgedTraces) -> Iterator[str]:
 
 
 def _unread_texts(traces: TraceSet, of: str) -> Iterator[str]:
-    """Yield a sentence that counts the traces that cannot be judged, with the first error."""
+    """Yield a sentence with the number of traces that cannot be judged and the first error.
+
+    Yield nothing if all traces can be judged. ``of`` comes after the number: empty, or
+    `` of the baseline``.
+    """
     yield from _count_texts(traces, of, traces.unread, "cannot be judged")
 
 
 def _warning_texts(traces: TraceSet, of: str) -> Iterator[str]:
-    """Yield a sentence that counts the traces with warnings, with the first warning."""
+    """Yield a sentence with the number of traces that have warnings and the first warning.
+
+    Yield nothing if there are no warnings. ``of`` comes after the number: empty, or
+    `` of the baseline``.
+    """
     yield from _count_texts(traces, of, traces.warnings, "have warnings")
 
 

@@ -1,1 +1,1 @@
-"""Verdicts: the baselines with the texts of their levels, how cases are played, and the statistics."""
+"""Verdicts of regression tests: record and read baselines, play cases, and judge the episodes."""

@@ -1,4 +1,7 @@
-"""The baseline of a suite: what its policies did on the levels as designed, in a JSON file."""
+"""The baseline of a suite: the episodes that its policies once played, in a JSON file.
+
+Regression tests compare new episodes with these.
+"""
 
 from __future__ import annotations
 
@@ -31,14 +34,15 @@ _REFUSALS: Final = LoadErrors(
 
 @record
 class Identity:
-    """What was played: policy, level, variant, spec and seed of the episodes.
+    """What was played: policy, level, variant of the level, spec and seed of the episodes.
 
-    ``level`` and ``spec`` are names. ``level_hash`` is from
+    ``level``, ``variant`` and ``spec`` are names. ``level_hash`` is from
     :meth:`~tltl_runtime.game.game.Game.level_hash`, ``spec_hash`` from
     :func:`~tltl_runtime.policies.identity.spec_hash`. ``policy`` is the SHA-256 of the policy's
-    file. ``files`` are the files that the level was loaded from, each with its SHA-256.
-    ``versions`` are those of the software that played. ``place`` distinguishes levels of the same
-    name, as in :class:`~tltl_runtime.regression.suite.suite.Case`.
+    file. ``files`` are pairs: the name of a file that the level was loaded from, and its SHA-256.
+    ``versions`` has the versions of the software that played, by name. ``place`` is the level's
+    path relative to the suite, which distinguishes levels of the same name; it is empty for a
+    level of the package.
     """
 
     level: str
@@ -55,11 +59,11 @@ class Identity:
 
 @record
 class Reference:
-    """The recorded episodes that cases are compared with.
+    """The part of a baseline for one policy, level and spec: episodes to compare new ones with.
 
-    ``played`` identifies what was played. ``episodes`` are all of them, in order from episode 0.
-    ``texts`` are pairs of the name of a level's file, as in ``played.files``, and its text.
-    ``sources`` is the hash of the code that played, or empty if unknown.
+    ``played`` identifies what was played. ``episodes`` are in order, numbered from 0. ``texts`` are
+    pairs: the name of one of the level's files, as in ``played.files``, and its text. ``sources``
+    is the hash of the source code of tltlc that played, or empty if it is unknown.
     """
 
     played: Identity
@@ -69,7 +73,11 @@ class Reference:
 
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
-    """Write the baseline of a suite. Raises TltlError, TLT0005, if the file cannot be written."""
+    """Write the baseline of a suite to the file ``path``.
+
+    Raises:
+        TltlError: TLT0005, the file cannot be written.
+    """
     references_without_texts = tuple(
         _StoredReference(reference.played, reference.episodes, reference.sources) for reference in references
     )
@@ -124,9 +132,9 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Return the name and the text of each file in ``played.files`` whose text is known.
+    """Return pairs of name and text, one for each file in ``played.files`` whose text is known.
 
-    ``texts`` has the known texts, by their SHA-256.
+    ``texts`` maps the SHA-256 of each known text to the text.
     """
     return tuple((name, texts[sha256]) for name, sha256 in played.files if sha256 in texts)
 
@@ -141,12 +149,12 @@ def _json(value: object) -> str:
 
 
 def text_sha256(text: str) -> str:
-    """Return the SHA-256, in hexadecimal, of a text in UTF-8, as ``Level.files`` has it for each file."""
+    """Return the SHA-256 of a text in UTF-8, in hexadecimal, as ``Identity.files`` has it for files."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
-    """Yield a message for each impossible value in an episode of a baseline."""
+    """Yield a message for each impossible value in an episode of a baseline, for example a negative state."""
     if not episode.arrivals:
         yield "`arrivals` is empty, but must begin with the start"
     elif not episode.way and episode.arrivals[0].place is not None:
@@ -164,17 +172,17 @@ def _flaws(episode: ExplainedEpisode) -> Iterator[str]:
 
 
 def _states(episode: ExplainedEpisode) -> Iterator[int]:
-    """Yield the states of the automaton that an episode mentions."""
+    """Yield the numbers of the automaton's states in an episode; some may repeat."""
     yield episode.summary.unmet
     yield from (arrival.state for arrival in episode.arrivals)
     yield from (state for *_, state, _ in episode.way)
 
 
 def baseline_of(suite: Suite) -> tuple[Reference, ...]:
-    """Read the baseline of a suite.
+    """Read the baseline of a suite from its file, ``suite.baseline``.
 
     Raises:
-        TltlError: TLT0903, the suite has no baseline; the errors of :func:`read_baseline`.
+        TltlError: TLT0903, there is no such file; the errors of :func:`read_baseline`.
     """
     if _is_missing(suite.baseline):
         title = f"the suite `{path_text(suite.path)}` has no baseline: there is no `{path_text(suite.baseline)}`"
@@ -195,9 +203,10 @@ def _is_missing(path: Path) -> bool:
 
 
 def reference_of(references: tuple[Reference, ...], identity: Identity, suite: Suite) -> Reference:
-    """Return the reference that has the level, variant, spec, policy and seed of ``identity``.
+    """Return the reference with the level, place, variant, policy, spec and seed of ``identity``.
 
-    The level may have been edited since: its hash is not compared.
+    The level may have been edited since it was recorded: its hash and its files are not compared.
+    The spec is compared by its hash. ``suite`` is for the help of the error.
 
     Raises:
         TltlError: TLT0903, the baseline has no such reference.
@@ -220,7 +229,11 @@ def reference_of(references: tuple[Reference, ...], identity: Identity, suite: S
 
 
 def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
-    """Raise TltlError, TLT0902, if an episode of ``reference`` has a state that the automaton lacks."""
+    """Check that all states in the episodes of ``reference`` are states of the automaton ``fspa``.
+
+    Raises:
+        TltlError: TLT0902, an episode has a state that the automaton does not have.
+    """
     count, played = len(fspa.states), reference.played
     for episode in reference.episodes:
         if (state := max(_states(episode))) >= count:
@@ -232,14 +245,14 @@ def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
 def default_output(suite: Path) -> Path:
     """Return the path to which ``tltlc baseline`` writes the baseline of a suite by default.
 
-    For the suite that comes with the package, the file is in the working directory, not in the
-    package.
+    The file is beside the suite. For the suite that comes with the package, the file is in the
+    working directory instead.
     """
     return Path("shipped.baseline.json") if suite == SHIPPED else baseline_path(suite)
 
 
 def baseline_command(suite: Suite) -> str:
-    """Return the shell command that records the baseline of a suite."""
+    """Return the shell command that records the baseline of a suite: ``tltlc baseline suite.toml``."""
     words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [path_text(suite.path)])]
     if suite.baseline != default_output(suite.path):
         words += ["--output", path_text(suite.baseline)]
@@ -248,10 +261,10 @@ def baseline_command(suite: Suite) -> str:
 
 @record
 class _StoredReference:
-    """A reference as the file of a baseline stores it: without the texts of the level's files.
+    """A :class:`Reference` in the form in which a baseline's file stores it.
 
-    The file stores all texts in one table, because levels and variants share files. It stores the
-    episodes under the key ``accounts``.
+    The episodes have the key ``accounts``. The texts of the level's files are missing: the baseline
+    has one table with the texts of all references, because levels and variants share files.
     """
 
     played: Identity
@@ -269,5 +282,5 @@ class _BaselineDocument:
 
 
 def _agree(first: Identity, second: Identity, names: tuple[str, ...]) -> bool:
-    """Whether two identities agree in the fields called ``names``."""
+    """Whether two identities have equal values in all fields called ``names``."""
     return all(getattr(first, name) == getattr(second, name) for name in names)

@@ -1,4 +1,7 @@
-"""Record the baseline of a suite: its policies play all episodes on the levels as they are now."""
+"""Record the baseline of a suite: its policies play episodes on the current levels.
+
+A baseline consists of references. A reference has the recorded episodes of one policy on one level.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,8 @@ _ADVICE: Final = "name another place with --output"
 class RecordedReference:
     """The recorded episodes of a policy on a level, and the cases that are compared with them.
 
-    If the level's spec has changed since the policy was trained, ``outdated`` says so: none of the
-    cases can pass. Otherwise it is None.
+    ``outdated`` is a message if the level's spec has changed since the policy was trained, so that
+    none of the cases can pass. Otherwise it is None.
     """
 
     reference: Reference
@@ -40,12 +43,14 @@ class RecordedReference:
 def record_baseline(
     suite: Suite, pool: Pool, on_episode: OnEpisode, finished: tuple[Reference, ...] = ()
 ) -> Generator[RecordedReference]:
-    """Play the episodes of all references that the cases of a suite need, and yield the references.
+    """Play and yield the references that the cases of a suite are compared with, one after the other.
 
-    Cases with the same level, reference variant, spec and policy share a reference. It has as many
-    episodes as the case that asks for most. A reference is not played again if ``finished``, from
-    earlier recordings, contains one with the same identity and the same number of episodes.
-    ``on_episode`` is called after each episode.
+    Cases share a reference if they have the same policy, level and spec, and are compared with the
+    same variant of the level. The reference then has as many episodes as the case that asks for
+    most. ``on_episode`` is called after each episode.
+
+    ``finished`` are references from earlier recordings. A reference is taken from there, instead
+    of being played, if its ``played`` and its number of episodes are the same.
 
     Raises:
         TltlError: a case cannot be set up (raised before anything is played); TLT0905, a level was
@@ -65,10 +70,10 @@ def record_and_write_baseline(
 ) -> Generator[RecordedReference]:
     """Record the baseline of a suite with :func:`record_baseline`, then write it to ``path``.
 
-    Until the baseline is complete, the file that :func:`partial_path` names stores the finished
-    references, so that a stopped recording can continue. A reference of the ``older`` baseline is
-    not played again if neither what it depends on nor the code that plays has changed. With
-    ``fresh``, only references from a stopped ``fresh`` recording are reused.
+    Until the baseline is complete, the file at :func:`partial_path` stores the finished references,
+    so that a stopped recording can continue. The references of the ``older`` baseline are reused
+    if nothing that they depend on has changed, including the source code of tltlc. With ``fresh``,
+    only references from a stopped ``fresh`` recording are reused.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; errors of :func:`record_baseline`.
@@ -91,9 +96,10 @@ def record_and_write_baseline(
 
 
 def partial_path(path: Path) -> Path | None:
-    """Return the file that stores finished references until the baseline ``path`` is complete.
+    """Return the file that stores finished references until the baseline at ``path`` is complete.
 
-    It is beside the file that ``path`` resolves to. None if ``path`` is a device or a pipe.
+    Its name is that of the baseline with ``.partial`` appended; symbolic links in ``path`` are
+    resolved. None if ``path`` exists and is not a regular file, for example a device or a pipe.
     """
     if fileio.exists(path) and not fileio.is_file(path):
         return None
@@ -101,7 +107,11 @@ def partial_path(path: Path) -> Path | None:
 
 
 def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> CaseVerdict:
-    """Return the verdict that a case gets if it plays exactly the episodes of its reference."""
+    """Return the verdict on a case if its policy played exactly the episodes of the baseline again.
+
+    ``reference`` has these episodes. A verdict other than ``pass`` means that the case does not pass
+    even if nothing changes.
+    """
     summaries, error = summaries_of(reference.episodes), suite.error / len(suite.cases)
     for played in range(LEAST_EPISODES, case.episodes + 1):
         if judgement := judge(summaries[:played], summaries, case.episodes, case.thresholds, error):
@@ -110,16 +120,16 @@ def verdict_if_unchanged(suite: Suite, case: Case, reference: Reference) -> Case
 
 
 def episodes_for_certainty(pass_rate: float, error: float) -> int:
-    """Return how many episodes, if all succeed, make a pass rate of at least ``pass_rate`` certain.
+    """Return after how many episodes, all of them successful, the pass rate is certainly high enough.
 
-    The number is at least 25. *Certain* means that the probability of a mistake is at most
-    ``error``.
+    High enough means at least ``pass_rate``. Certain means that the probability of a mistake is at
+    most ``error``. The number is at least 25, the least for any verdict.
     """
     return next(successes for successes in count(LEAST_EPISODES) if rate_interval(successes, 0, error)[0] >= pass_rate)
 
 
 def _groups(suite: Suite) -> list[list[PreparedCase]]:
-    """Set up the cases for the variants of their baselines; group those that share a reference."""
+    """Set up the played cases of a suite to record their baseline; group those that share a reference."""
     groups: list[list[PreparedCase]] = []
     for case in suite.played_cases:
         prepared = _prepare(case, suite.seed)
@@ -132,7 +142,11 @@ def _groups(suite: Suite) -> list[list[PreparedCase]]:
 
 
 def _prepare(case: Case, seed: int) -> PreparedCase:
-    """Set up a case to play the variant of its baseline. Errors name the case."""
+    """Set up a case to play the variant that it is compared with.
+
+    Raises:
+        TltlError: the errors of :func:`prepare_case`, with the name of the case in front.
+    """
     try:
         return prepare_case(case, seed, Variant(case.reference))
     except TltlError as error:

@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 _POINTS: Final = 32
-"""The number of alternative rates to bet on, between the rate to be refuted and 1."""
+"""The number of alternative rates that a test bets on. They lie between the rate to be refuted and 1."""
 
 _PLACES: Final = (np.arange(_POINTS) + 0.5) / _POINTS
-"""The positions of the alternative rates: 0 is the rate to be refuted, and 1 is the rate 1.
+"""The positions of the alternative rates on the scale arcsin(sqrt(rate)), where they are equally spaced.
 
-They are equally spaced on the scale arcsin(sqrt(rate)).
+Position 0 is the rate to be refuted, and position 1 is the rate 1.
 """
 
 _SHARES: Final = (0.05, 0.2, 0.5, 0.9)
@@ -41,12 +41,13 @@ It avoids division by 0 where a bound of the mean is also a bound of the values.
 
 
 def rate_interval(successes: int, failures: int, error: float) -> tuple[float, float]:
-    """Return a confidence interval for a rate of success. It may be computed after every episode.
+    """Return a confidence interval for a rate of success, (low, high). It may be computed after every episode.
 
     The episodes must be independent. With probability 1 - ``error`` at least, the rate lies in all
     intervals that are computed during a sequence of episodes, whatever its length. Each end of the
-    interval has half of the error. To refute a rate as too low, the bet is spread evenly over
-    higher rates, equally spaced on the scale arcsin(sqrt(rate)); likewise to refute it as too high.
+    interval has half of the error. The interval contains the rates that no test refutes. The test
+    that a rate is too low spreads its bet evenly over higher rates, which are equally spaced on the
+    scale arcsin(sqrt(rate)). The test that a rate is too high does so with lower rates.
 
     Raises:
         ValueError: a count is negative, or ``error`` is not in (0, 1).
@@ -59,13 +60,16 @@ def rate_interval(successes: int, failures: int, error: float) -> tuple[float, f
 def mean_p_value(values: Sequence[float], low: float, high: float, least: float = -1.0, most: float = 1.0) -> float:
     """Return the p-value of the hypothesis that the mean of the values is in [``low``, ``high``].
 
-    All values must be in [``least``, ``most``]. Several stakes bet that the mean is below ``low``.
-    At each value, such a stake bets a fixed share of itself, and is multiplied by
-    ``1 + share * (low - value) / (most - low)``. It does not grow on average if the conditional
-    mean of each value, given the earlier ones, is at least ``low``. As many stakes bet in the same
-    way that the mean is above ``high``. The mean of all these stakes does not grow on average
-    either (I. Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 over
-    the greatest such mean so far, so it may be evaluated after each value.
+    All values must be in [``least``, ``most``]. The p-value may be computed after each value, and
+    is 1 without values.
+
+    Several stakes bet that the mean is below ``low``. At each value, such a stake bets a fixed
+    share of itself, and is multiplied by ``1 + share * (low - value) / (most - low)``. It does not
+    grow on average if the conditional mean of each value, given the earlier ones, is at least
+    ``low``. As many stakes bet in the same way that the mean is above ``high``. Under the
+    hypothesis, the mean of all these stakes does not grow on average either (I. Waudby-Smith, A.
+    Ramdas, J. R. Stat. Soc. B 86 (2024), 1-27). The p-value is 1 divided by the greatest value that
+    this mean has had so far.
 
     Raises:
         ValueError: ``low`` is above ``high``, or ``least`` is not below ``most``.
@@ -80,9 +84,10 @@ def mean_p_value(values: Sequence[float], low: float, high: float, least: float 
 
 @lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
-    """Return the greatest rate of success that the counts refute as too low, as they do all lower rates.
+    """Return the lower end of the confidence interval for a rate of success, with the given ``error``.
 
-    The rate is found by bisection. It is 0 if there are no successes.
+    The counts refute all lower rates as too low. The end is found by bisection. It is 0 if there
+    are no successes.
     """
     if successes == 0:
         return 0.0
@@ -97,9 +102,9 @@ def _lower_end(successes: int, failures: int, error: float) -> float:
 
 
 def _log_stake(successes: int, failures: int, rate: float) -> float:
-    """Return the logarithm of a stake that bets against ``rate``, in (0, 1), on the rates above it.
+    """Return the logarithm of the stake, after these episodes, that bets against ``rate`` on higher rates.
 
-    The stake is 1 before the first episode.
+    ``rate`` is in (0, 1). The stake is 1 before the first episode.
     """
     start = asin(sqrt(rate))
     rates = np.sin(start + (pi / 2 - start) * _PLACES) ** 2
@@ -108,10 +113,7 @@ def _log_stake(successes: int, failures: int, rate: float) -> float:
 
 
 def _log_means(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the logarithms of the means, over the first axis, of some values.
-
-    ``logarithms`` are the logarithms of these values.
-    """
+    """Return ``log(mean(exp(logarithms)))``, with the mean over the first axis, without overflow."""
     greatest = logarithms.max(axis=0)
     # A sum and a division: `np.mean` takes much longer for a few values.
     means: NDArray[np.float64] = greatest + np.log(np.exp(logarithms - greatest).sum(axis=0) / len(logarithms))

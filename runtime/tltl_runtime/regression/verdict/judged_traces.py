@@ -17,7 +17,7 @@ from tltl_runtime.spec.task import read_spec
 from tltlc.api import Diagnostic, Fspa, TltlError, record, replace, traces
 
 OnTrace = Callable[[TraceCase, int, int], None]
-"""A callback after each trace: the case, the number of traces judged so far, and the number of all."""
+"""A callback after each trace. It gets the case, the number of traces judged so far, and the total number."""
 
 _KINDS: Final[dict[traces.Kind, EndKind]] = {
     "broken": "violated",
@@ -33,11 +33,11 @@ _NEVER: Final = 3.0
 
 @record
 class TraceSet:
-    """Judged traces: their ``names``, and how each went, in the same order.
+    """Judged traces: their ``names``, and an episode that describes each, in the same order.
 
-    ``unread`` has the traces that cannot be judged, which are not in ``names``: their names, and the
-    errors. ``warnings`` has the names of judged traces with warnings, and the first warning of each.
-    ``others`` are the files in the folders that are no traces, by their names.
+    ``unread`` has the traces that cannot be judged: pairs of a name and the first error. They are not in
+    ``names``. ``warnings`` has pairs of the name of a judged trace and its first warning. ``others`` are
+    the names of files in the folders that are not traces.
     """
 
     names: tuple[str, ...]
@@ -51,9 +51,10 @@ class TraceSet:
 class JudgedTraces:
     """A case of recorded traces with its verdict.
 
-    ``judgement`` is None if none of the traces now, or none of the baseline, can be judged.
-    ``thresholds`` are those of the case; if traces are not judged as episodes, or the spec has no limit,
-    no change of the reward counts, because the reward then is the progress.
+    ``now`` are the traces of the case, and ``before`` those of its baseline. ``judgement`` is None if
+    none of the traces of one of these sets can be judged. ``thresholds`` are those of the case. But if
+    the traces are not judged as episodes, or the spec has no limit, the reward equals the progress; the
+    threshold of the reward is then so great that no change of the reward counts.
     """
 
     case: TraceCase
@@ -68,8 +69,8 @@ def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: O
     """Judge the traces of a case and of its baseline, and return the verdict.
 
     ``error`` is the allowed probability of a wrong verdict on this case. ``workers`` is the number of
-    processes, or None for the default of :func:`tltlc.api.traces.judge_files`. With fewer than 25
-    traces, now or in the baseline, the verdict is ``review``.
+    processes, or None for the default of :func:`tltlc.api.traces.judge_files`. If fewer than 25 traces
+    of the case or of the baseline can be judged, the verdict is ``review``.
 
     Raises:
         TltlError: errors of the spec; TLT0001, a folder contains no trace or cannot be read; TLT0007, a
@@ -103,10 +104,13 @@ def _files(paths: Sequence[str]) -> traces.TraceFiles:
 
 
 def _judgement(thresholds: Thresholds, error: float, now: TraceSet, before: TraceSet) -> Judgement | None:
-    """Return the verdict on the traces ``now``; None if none of them, or none of ``before``, can be judged.
+    """Return the verdict on the traces ``now``, compared with the traces ``before`` of the baseline.
 
-    A trace that cannot be judged may or may not meet the spec: the interval of the pass rate allows for
-    both, and a verdict that depends on it is ``review``.
+    None if none of the traces of one of these sets can be judged.
+
+    A trace that cannot be judged may or may not meet the spec. The confidence interval of the pass rate
+    allows for both. If there are such traces in ``now``, the verdict is ``review``, unless the case fails
+    even if all of them meet the spec.
     """
     if not now.episodes or not before.episodes:
         return None
@@ -144,7 +148,10 @@ def _explained_traces(
 
 
 def _explained(fspa: Fspa, index: int, verdict: traces.TraceVerdict, limit: int | None) -> ExplainedEpisode:
-    """Return a trace as an episode. ``limit`` is the spec's limit, if the trace was judged as an episode."""
+    """Return the episode, numbered ``index``, that describes a trace with this verdict.
+
+    ``limit`` is the spec's limit in steps if the trace was judged as an episode; otherwise None.
+    """
     outcome, cause, details = verdict.outcome, verdict.cause, verdict.details
     assert details is not None
     end = settled_end(outcome.accepted, outcome.verdict)

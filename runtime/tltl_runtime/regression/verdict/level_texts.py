@@ -1,4 +1,4 @@
-"""The texts of the files of a level: read them, and load a level from them."""
+"""Read the texts of a level's files, and load a level from the texts in a baseline."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
 from tltlc.api import TltlError, fileio
 
 Texts = tuple[tuple[str, str], ...]
-"""Pairs for a level's files: the name, as in ``Level.files``, and the text or its SHA-256."""
+"""Pairs for a level's files: the name, as in ``Level.files``, and either the text or its SHA-256."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
 _BASELINE: Final = fileio.Archive(
@@ -23,10 +23,10 @@ _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
 def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
-    """Return the name and the text of each of a level's ``files``, in order.
+    """Return pairs of name and text for the ``files`` of a level, in order.
 
-    ``files`` are pairs of a name and a SHA-256. A file that has another hash now is left out: it
-    was edited meanwhile.
+    ``name_or_path`` and ``variant`` say which level. ``files`` are pairs of a name and a SHA-256. A
+    file that now has another SHA-256, because it was edited, is left out.
     """
     level_files = game_of(name_or_path).level_files
     texts = []
@@ -39,16 +39,19 @@ def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
 
 
 def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
-    """Return the current text of a level's file called ``name``; None if it cannot be read."""
+    """Return the current text of a level's file called ``name``; None if it cannot be read.
+
+    If there is no file of this name any more, return the text of the level's main file.
+    """
     level_files = game_of(name_or_path).level_files
     candidates = level_files.candidates(name_or_path, variant, name)
     return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))
 
 
 def baseline_level(reference: Reference) -> Level | None:
-    """Load the level on which a reference was recorded, from the texts in the baseline.
+    """Load the level on which ``reference`` was recorded, from the texts that the baseline stores.
 
-    None if a text is missing or the level does not load.
+    None if a text is missing, if two files have the same name, or if the level does not load.
     """
     played, texts = reference.played, dict(reference.texts)
     # Two overlays of the same name do not fit into one folder. No name may lead out of the folder.

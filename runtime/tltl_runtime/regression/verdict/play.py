@@ -1,4 +1,4 @@
-"""Play the cases of a suite: until the verdict is certain, or to record a baseline."""
+"""Play the cases of a suite, until the verdict is settled or to record a baseline."""
 
 from __future__ import annotations
 
@@ -27,21 +27,24 @@ from tltl_runtime.spec.task import read_spec
 from tltlc.api import Diagnostic, TltlError, fileio, record, replace
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
-"""A callback after each episode: the case, the number of episodes so far, and the last episode."""
+"""A callback after each episode. It gets the case, the number of episodes so far, and the last episode."""
 
 _PLAYER: Final = "policy"
 _SHOWN: Final = 10
-"""A game shows in this many episodes what it has only when it is played: its outline, and what does not move."""
+"""The number of episodes from which a game learns what the files of its level do not say.
+
+Examples are the outline of the level, and which entities do not move.
+"""
 
 
 @record
 class PreparedCase:
     """A case that is set up to be played.
 
-    ``setup`` describes the evaluation, and ``played`` identifies everything on which its episodes
-    depend. ``changes`` are the descriptions of the variant's overlays. ``outdated`` is a message if
-    the spec of the level has changed since the policy was trained; the old spec then judges the
-    policy. Otherwise it is None.
+    ``setup`` describes the evaluation that plays its episodes, and ``played`` identifies everything
+    on which these depend. ``changes`` are the descriptions of the variant's overlays (files that
+    change a level). ``outdated`` is a message if the spec of the level has changed since the policy
+    was trained, and the old spec judges the policy. Otherwise it is None.
     """
 
     case: Case
@@ -62,7 +65,10 @@ class CaseEpisode:
 
 @record
 class JudgedCase:
-    """A case with its verdict and its played episodes, in order."""
+    """A case with its verdict and its played episodes, in order.
+
+    ``reference`` has the episodes of the baseline with which it was compared.
+    """
 
     prepared: PreparedCase
     reference: Reference
@@ -71,7 +77,9 @@ class JudgedCase:
 
 
 def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> PreparedCase:
-    """Set up a case to be played, by default in its own variant.
+    """Set up a case to be played with the suite's ``seed``.
+
+    ``variant`` is the variant of the level to play, by default that of the case.
 
     Raises:
         TltlError: policy, level, variant or spec cannot be loaded or do not fit together.
@@ -99,7 +107,7 @@ def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> Prepa
 
 
 def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
-    """Play the episodes of a case in order and yield each. Closing the iterator ends the workers.
+    """Play all episodes of a case and yield them in order. Closing the iterator ends the workers.
 
     Raises:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
@@ -120,7 +128,7 @@ def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
 
 
 def _replay_command(prepared: PreparedCase, request: EpisodeRequest) -> str:
-    """Return the shell command that plays only the requested episode of the case."""
+    """Return the shell command ``tltlc evaluate …`` that plays only the requested episode of a case."""
     level = prepared.setup.level
     if is_scene(level) and split_scene(level)[1] is None:
         level = f"{level}:{prepared.level.name}"
@@ -131,9 +139,9 @@ def _replay_command(prepared: PreparedCase, request: EpisodeRequest) -> str:
 
 
 def check_unedited(prepared: PreparedCase) -> None:
-    """Check that the case's level was not edited since the case was set up.
+    """Check that the level of a case was not edited since the case was set up.
 
-    Workers that had loaded the level before the edit do not notice it.
+    A worker that loaded the level before an edit does not notice the edit.
 
     Raises:
         TltlError: TLT0905, the level was edited; or the errors of the edited level.
@@ -148,10 +156,14 @@ def judge_case(
     pool: Pool,
     on_episode: Callable[[int, ExplainedEpisode], None],
 ) -> JudgedCase:
-    """Play a case until its verdict is settled.
+    """Play a case until its verdict is settled, and return it with the verdict.
 
-    After each episode, ``on_episode`` is called with the number of episodes so far and the last
-    episode. ``error`` is the allowed probability of a wrong verdict on this case.
+    ``reference`` has the episodes of the baseline to compare with. ``error`` is the allowed
+    probability of a wrong verdict on this case. After each episode, ``on_episode`` is called with
+    the number of episodes so far and the last episode.
+
+    Raises:
+        TltlError: the errors of :func:`play_episodes` and :func:`check_unedited`.
     """
     played: list[CaseEpisode] = []
     before = summaries_of(reference.episodes)
@@ -168,7 +180,11 @@ def judge_case(
 
 
 def _as_played(prepared: PreparedCase, episodes: Sequence[CaseEpisode]) -> PreparedCase:
-    """Return a case whose level has what its episodes showed of it."""
+    """Return the case, with what the episodes show of its level added to the level, for reports.
+
+    Some games know only from play where things are: see
+    :meth:`~tltl_runtime.game.game.Game.played_level`.
+    """
     game = prepared.level.game
     recorded = (game.episode_from_bytes(episode.recording, _PLAYER) for episode in episodes)
     return replace(prepared, level=game.played_level(prepared.level, recorded))
@@ -184,9 +200,10 @@ def _check_unedited(prepared: PreparedCase, level: Level) -> None:
 
 
 def _outdated_message(case: Case, setup: Setup, level: Level) -> str | None:
-    """Return a message if the spec from the policy's training judges, but the level now has a changed one.
+    """Return a message if the level's spec has changed since the policy of a case was trained.
 
-    None if the case names a spec, if the level's spec has another name, or if it has not changed.
+    The old spec, which the policy stores, judges such a case. None if the spec has not changed, if
+    the case names the spec that judges, or if the level has no spec or one of another name.
 
     Raises:
         TltlError: the level's spec cannot be read.

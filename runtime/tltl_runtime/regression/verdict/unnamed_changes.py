@@ -24,8 +24,8 @@ def unnamed_changes(
 ) -> dict[str, tuple[str, ...]]:
     """Return the changed level files of the cases ``left_out``, each with the cases that use it.
 
-    A file has changed if its SHA-256 differs from the one in ``references``, the baseline's
-    episodes. The keys are the names of the files there, the values the names of the cases.
+    A file has changed if its SHA-256 differs from the one in ``references``, the baseline. The keys
+    of the result are names of files, as in the baseline. The values are names of cases.
     """
     cases_of: dict[str, tuple[str, ...]] = {}
     for case in left_out:
@@ -39,7 +39,7 @@ def unnamed_changes(
 
 
 def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) -> Iterator[str]:
-    """Yield the names of a case's level files whose SHA-256 differs from that in the baseline."""
+    """Yield the names of the level files of a case that have another SHA-256 than in the baseline."""
     identity = (game_of(case.level).level_files.level_name(case.level), case.reference, case.place)
     files = next((reference.played.files for reference in references if _identity(reference) == identity), ())
     # Files that only the reference variant uses are no dependencies of the case.
@@ -53,5 +53,8 @@ def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) ->
 
 
 def _identity(reference: Reference) -> tuple[str, str, str]:
-    """Return which level a reference's episodes were played on: its name, variant and place."""
+    """Return the name, the variant and the place of the level on which a reference was recorded.
+
+    The place is the level's path relative to the suite, or empty for a level of the package.
+    """
     return reference.played.level, reference.played.variant, reference.played.place

@@ -1,8 +1,9 @@
 """Judge a case of a regression suite by statistics that are evaluated after every episode.
 
 In a case, a policy plays a level, and its episodes are compared with those of a baseline. The pass
-rate is the share of successful episodes. In the text below, e is the case's share of the suite's
-``error``: the error divided by the number of cases. The first of these rules that applies decides:
+rate is the share of successful episodes. In the text below, e is the allowed probability of a wrong
+verdict on one case: the ``error`` of the suite divided by the number of its cases. The first of
+these rules that applies decides:
 
 1. There is no verdict before 25 episodes.
 2. ``fail`` if the pass rate is certainly below ``thresholds.fail_rate``.
@@ -49,8 +50,8 @@ CaseVerdict = Literal["pass", "review", "fail"]
 FIGURES: Final[Mapping[str, tuple[float, float]]] = {"progress": (0.0, 1.0), "reward": (-1.0, 1.0)}
 """The figures that are compared with the baseline, each with its range.
 
-The reward of an episode is its progress minus the share of the step limit that it used. A violation
-also costs the rest of the limit (Algorithm 1).
+The reward of a successful episode is its progress minus the share of the step limit that it used.
+The reward of a failed episode is its progress minus 1.
 """
 
 _EQUAL_SHARE: Final = 0.5
@@ -59,10 +60,10 @@ _EQUAL_SHARE: Final = 0.5
 
 @record
 class FigureChange:
-    """A certain change of progress or reward: the mean in the baseline, the mean now, a p-value.
+    """A certain change of progress or reward: its mean ``before``, in the baseline, and ``now``.
 
-    The p-value is that of the hypothesis that the policy's true mean differs from the baseline's
-    mean by at most the threshold.
+    ``figure`` is ``progress`` or ``reward``. ``p_value`` belongs to the hypothesis that the policy's
+    true mean differs from the baseline's mean by at most the threshold.
     """
 
     figure: str
@@ -97,10 +98,10 @@ def judge(
 ) -> Judgement | None:
     """Return the verdict on the episodes ``now``, or None if more episodes have to be played.
 
-    ``before`` are the baseline's episodes, with the same seeds in the same order. If they are not
-    ``paired`` in this way, all of them are compared with all of ``now``. ``episodes`` is the most that
-    may be played. ``error`` is the greatest probability that a certain verdict is
-    wrong.
+    ``before`` are the episodes of the baseline. If the two are ``paired``, they have the same seeds
+    in the same order, and their means are compared over the seeds that both have; otherwise, over
+    all episodes. ``episodes`` is the greatest number of episodes that may be played. ``error`` is
+    the allowed probability that a certain verdict is wrong.
     """
     if len(now) < LEAST_EPISODES:
         return None
@@ -126,10 +127,11 @@ def judge(
 def differing_figures(
     now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], thresholds: Thresholds, *, paired: bool = True
 ) -> tuple[str, ...]:
-    """Return which of progress and reward differ from the baseline by at least their thresholds.
+    """Return which of ``progress`` and ``reward`` differ from the baseline by at least their thresholds.
 
-    The means over the seeds that occur both in ``now`` and in ``before`` are compared; if the episodes
-    are not ``paired`` by seeds, the means over all. The differences may be due to chance.
+    ``now`` and ``before`` are the episodes now and in the baseline. If they are ``paired``, the means
+    are compared over the seeds that both have, otherwise over all episodes. The differences may be
+    due to chance.
     """
     return _differing_figures(_differences(now, before, paired=paired), thresholds)
 
@@ -139,10 +141,10 @@ def _differing_figures(differences: Mapping[str, float], thresholds: Thresholds)
 
 
 def _differences(now: Sequence[EpisodeSummary], before: Sequence[EpisodeSummary], *, paired: bool) -> dict[str, float]:
-    """Return the absolute difference of the means now and before, for progress and for reward.
+    """Return the absolute difference of the means now and before, by the name of the figure.
 
-    The means are over the seeds that occur both in ``now`` and in ``before``, or over all episodes if
-    they are not ``paired``.
+    The figures are ``progress`` and ``reward``. The means are over the seeds that both ``now`` and
+    ``before`` have, or over all episodes if these are not ``paired``.
     """
     count = min(len(now), len(before)) if paired else None
     pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}

@@ -35,8 +35,8 @@ _BADGE_HEIGHT: Final = 16.0
 class AutomatonPicture:
     """The picture of a spec's automaton.
 
-    ``svg`` is the picture as SVG, or None if the layout failed. ``notes`` are sentences that say
-    what the picture does not show.
+    ``svg`` is the picture as SVG, or None if the automaton could not be laid out. ``notes`` are
+    sentences on what the picture does not show, and why.
     """
 
     svg: bytes | None
@@ -44,7 +44,11 @@ class AutomatonPicture:
 
 
 def draw_automaton(fspa: Fspa) -> AutomatonPicture:
-    """Draw an automaton. A separate process lays it out, and each attempt may take 10 seconds."""
+    """Draw an automaton, without the counts of episodes.
+
+    A separate process lays it out. Each attempt may take 10 seconds. If that fails, the picture has
+    no SVG.
+    """
     diagnostics: list[Diagnostic] = []
     try:
         # The page already shows the description of the spec.
@@ -65,11 +69,11 @@ def draw_automaton(fspa: Fspa) -> AutomatonPicture:
 
 
 def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
-    """Add to the ``svg`` of an automaton how many episodes visited each state and failed in it.
+    """Add badges to the ``svg`` of an automaton: how many episodes visited each state and failed there.
 
-    Badges show these numbers. The more episodes took an edge, the thicker the edge is. The picture
-    contains the badges and edge widths for ``now`` and for ``before``, the baseline; the style
-    sheet shows one of the two. A node of the SVG may stand for a chain of states. Its attribute
+    Also scale the thickness of each edge with the share of episodes that took it. The result contains
+    badges and widths both for the episodes ``now`` and for those ``before``, in the baseline; the
+    style sheet shows one of the two. A node of the SVG may stand for a chain of states; its attribute
     ``data-states`` lists them.
     """
     root = ElementTree.fromstring(svg)
@@ -105,10 +109,11 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
 
 
 def _edge_counts(traffic: Traffic, runs: Collection[tuple[int, ...]], drawn_edges: Set[Ends]) -> Counter[Ends]:
-    """Count the episodes that took each drawn edge.
+    """Count the episodes that took each drawn edge; an episode counts once for an edge.
 
-    ``runs`` has the states of each node. A node with several states stands for a chain of states.
-    An edge from or to a state of the chain counts as the drawn edge from or to that node.
+    ``runs`` has the states of each node. A node with several states stands for a chain of states,
+    and is named by the first of them: an edge from or to any state of the chain counts as the drawn
+    edge from or to that node.
     """
     first = {state: run[0] for run in runs for state in run}
     folded = [run[0] for run in runs if len(run) > 1]
@@ -149,9 +154,9 @@ def _mark_state(
 
 
 def _visits(traffic: Traffic, states: tuple[int, ...]) -> int:
-    """Return how many episodes visited the ``states`` for which a node of the picture stands.
+    """Return how many episodes visited a node of the picture, which stands for ``states``.
 
-    For a node with several states, return how many episodes took an edge into any of them.
+    For a node with several states, these are the episodes that took an edge into one of the states.
     """
     if len(states) == 1:
         return traffic.visited.get(states[0], 0)
@@ -164,7 +169,7 @@ def _mark_edge(
     """Set the thickness and the title of an edge; remove the title of a self-loop.
 
     ``edge_counts`` has two pairs, one for now and one for the baseline: how many episodes took the
-    edge, and the traffic that it belongs to.
+    edge, and the counts of all episodes.
     """
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
@@ -230,7 +235,7 @@ def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
 def _remove_title(root: ElementTree.Element) -> float:
     """Remove the name of the spec from the SVG of an automaton.
 
-    Return the top of what remains, in the units of the view box.
+    Return the y coordinate at which the remaining drawing begins, in the units of the view box.
     """
     (graph,) = (child for child in root if child.get("class") == "graph")
     groups = [child for child in graph if child.get("class") is not None]
@@ -257,7 +262,11 @@ def _sentence(diagnostic: Diagnostic) -> str:
 
 
 def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
-    """Return a table of the states: what remains to be done in each, and the counts of episodes."""
+    """Return an HTML table with a row for each state of the automaton.
+
+    A row says what remains to be done in the state, and how many episodes visited it and failed in
+    it, ``now`` and ``before`` (in the baseline).
+    """
     rows = [
         (state.id, label_text(fspa, state.id), [*_counts(state.id, now), *_counts(state.id, before)])
         for state in fspa.states

@@ -1,4 +1,4 @@
-"""The data of a case that the page's scripts draw, as JSON."""
+"""The JSON data from which the page's scripts draw the maps and trajectories of a case."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ At this resolution, most differences between successive points are encoded as a 
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
-    """Return the data for the map and the automaton of a case; None if it has no map.
+    """Return the data that the page's scripts draw on the maps of a case; None if the case has no map.
 
-    ``slug`` is the case's short name in addresses within the page.
+    ``slug`` is the case's short name in addresses within the page, such as ``navigation-v1``.
     """
     level, fspa, maps = case.level, case.fspa, maps_of(case)
     if level is None or fspa is None or maps is None:
@@ -40,7 +40,10 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
 
 def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:
-    """Return the trajectories of episodes whose places are known; ``metre`` is a metre on its map."""
+    """Return the trajectories and heat maps of the episodes that say where the player was.
+
+    ``metre`` is the length in the level, in metres, of a metre on the map.
+    """
     bounds, placed = level.bounds, [episode for episode in episodes if episode.way]
     assert bounds is not None
     return {
@@ -51,7 +54,10 @@ def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpiso
 
 
 def _trajectory(bounds: Box, metre: float, episode: ExplainedEpisode) -> dict[str, Any]:
-    """Return the trajectory of an episode on the map, and how the episode ended."""
+    """Return the encoded trajectory of an episode, and how and where the episode ended.
+
+    ``bounds`` are those of the level. ``metre`` is as in :func:`_episodes_data`.
+    """
     place = episode.place or episode.arrivals[-1].place
     assert place is not None, "an episode with a way has places"
     return {

@@ -1,4 +1,4 @@
-"""The maps of a case: the level as it is now and, if it looks different, as it was."""
+"""The maps of a case: the level now and, if it looked different then, the level of the baseline."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from tltlc.api import record, replace
 
 @record
 class _DrawnMap:
-    """A map of a level for the page, and the key to its signs.
+    """A map of a level for the page, and the key (explanation) to its signs.
 
-    ``when`` says with which episodes the page shows the map: ``now``, ``before`` (the baseline) or
-    ``both``. ``is_of_unknown_baseline`` is true if the page shows this map for the baseline, too,
-    because the level on which the baseline was recorded is unknown. ``is_one_of_many`` is true if the
-    game played other episodes on other maps.
+    ``when`` says with which episodes the page shows the map: those played ``now``, those played
+    ``before`` (the baseline), or ``both``. ``is_of_unknown_baseline`` is true if the page shows this
+    map for the baseline only because the level of the baseline is unknown. ``is_one_of_many`` is true
+    if some of the recorded episodes were played on other maps, as in a game that generates its maps.
     """
 
     when: str
@@ -34,10 +34,10 @@ class _DrawnMap:
 
 
 def case_maps(case: ReportedCase, level: Level, level_maps: LevelMaps[Any, Any]) -> Markup:
-    """Return the map of ``level``, the key to its signs, and an empty legend.
+    """Return HTML with the map of ``level``, the key to its signs, and an empty legend.
 
     ``level_maps`` draws the maps. The page's script fills in the legend. If the level of the baseline
-    looks different, its map is included, too; the page then shows one of the two maps.
+    looks different, the HTML contains its map, too, and the page shows one of the two.
     """
     return render("case_maps.html", maps=tuple(_maps(case, level, level_maps)))
 

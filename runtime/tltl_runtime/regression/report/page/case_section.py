@@ -22,9 +22,9 @@ from tltlc.api import formula_text, record
 
 @record
 class _Reason:
-    """A reason of the verdict: a sentence, and links to recorded episodes as examples.
+    """A reason for the verdict: a sentence, and links to example episodes or traces on the page.
 
-    ``links`` is None if no example was recorded.
+    ``links`` is None if the page shows no example.
     """
 
     text: str
@@ -35,12 +35,14 @@ class _Reason:
 class _Drawings:
     """The pictures and tables in the section of a case with an automaton.
 
-    ``automaton`` is None if its layout failed; ``notes`` say what it does not show. ``maps``
-    are None if there is no map. ``player`` is the panel that plays recorded episodes on the map, and
-    ``charts`` are pictures of recorded traces, or of recorded episodes without a map; one of them is
-    None. ``curves`` are the progress of the recorded episodes, or None without recordings.
-    ``distribution`` is the distribution of progress over all episodes. ``table`` says how many
-    episodes visited each state and failed in it.
+    - ``automaton`` is the picture of the automaton, or None if it could not be laid out; ``notes`` say
+      what it does not show.
+    - ``maps`` are the maps of the level, or None.
+    - ``player`` is the panel that plays recorded episodes on the map, or None if there is no map.
+    - ``charts`` are pictures of recorded traces, or of recorded episodes without a map, or None.
+    - ``curves`` shows the progress of the recorded episodes, or is None without recordings.
+    - ``distribution`` shows how progress is distributed over all episodes.
+    - ``table`` says how many episodes visited each state and failed in it.
     """
 
     automaton: Markup | None
@@ -54,10 +56,11 @@ class _Drawings:
 
 
 def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> Markup:
-    """Return the section of a case.
+    """Return the section of a judged case as HTML.
 
-    ``slug`` is the case's short name in addresses within the page. ``automaton`` is the picture of
-    the case's automaton. If the case has no automaton, the section has only texts.
+    ``slug`` is the case's short name in addresses within the page, such as ``navigation-v1``.
+    ``automaton`` is the picture of the case's automaton. It is None for a case that could not be
+    judged; the section then has only texts.
     """
     return render(
         "case_section.html",
@@ -75,7 +78,7 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
-    """Return the section of a case that was not judged in this run, with the reason."""
+    """Return, as HTML, the section of a case that was not judged in this run, with the reason."""
     return render("not_run_section.html", case=case, slug=slug)
 
 
@@ -102,7 +105,10 @@ def _traces_text(count: int) -> str:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """Yield the reasons of the verdict. Findings have links to their recorded episodes."""
+    """Yield the reasons for the verdict: its causes, then the findings, then the edits.
+
+    A finding says what the policy does differently from the baseline. It has links to examples.
+    """
     report = case.report
     yield from map(_Reason, report.causes)
     for finding in report.explanation:

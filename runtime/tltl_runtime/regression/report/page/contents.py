@@ -1,4 +1,4 @@
-"""What the HTML page of a suite shows."""
+"""The data that the HTML page of a suite shows."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from tltlc.api import EMPTY, Fspa, record
 class ReportedCase:
     """A case with the data that the page draws.
 
-    ``level`` and ``fspa`` are None for a case that cannot be played. ``episodes`` are the recorded
-    episodes by index. ``before`` are the episodes of the baseline. ``baseline_level`` is the level
-    that the baseline was recorded on, or None if it is unknown. ``curve`` is the plot of the
-    retraining as a PNG, or empty without a retraining or its plot.
-
-    A case of recorded traces has no level. ``curves`` are those of examples of its traces by index, or
-    of the recorded ``episodes`` if the level's game says nothing about places; they are empty for
-    other cases. ``films`` are films of some of these episodes by index, as animated WebP pictures;
-    ``film_notes`` are sentences about films that could not be made.
+    - ``level`` and ``fspa`` (the automaton) are None for a case that cannot be played or judged. A case
+      of recorded traces has no level either.
+    - ``episodes`` are the recorded episodes by index. ``before`` are the episodes of the baseline.
+    - ``baseline_level`` is the level on which the baseline was recorded, or None if it is unknown.
+    - ``curve`` is the plot of the policy's retraining as a PNG; empty if there is none.
+    - ``curves`` are curves of example traces by index, for a case of recorded traces. If the game does
+      not say where the player is, they are those of the recorded ``episodes``. Otherwise they are empty.
+    - ``films`` are films of some recorded episodes by index, as animated WebP pictures. ``film_notes``
+      are sentences about films that could not be made.
     """
 
     report: CaseReport
@@ -43,10 +43,10 @@ class ReportedCase:
 
 
 def maps_of(case: ReportedCase) -> LevelMaps[Any, Any] | None:
-    """Return what draws the map of a case; None if its page shows no map.
+    """Return the object that draws the maps of a case's level; None if the page shows no map of it.
 
-    A case with a map has a level with bounds, and its game draws maps and says where the player was
-    in each episode.
+    The page shows a map if the level has bounds, if the level's game draws maps, and if the position
+    of the player is known in all episodes.
     """
     level = case.level
     if level is None or level.bounds is None or not all(episode.way for episode in case.report.episodes):
@@ -69,14 +69,14 @@ class NotRun:
 
 @record
 class SuiteReport:
-    """What the page of a suite shows.
+    """All that the page of a suite shows.
 
     ``suite`` is the name of the suite. ``seed`` and ``error`` are as in
     :class:`~tltl_runtime.regression.suite.suite.Suite`; ``seed`` is None if nothing is played.
-    ``versions`` are the versions of the software that played or judged. ``cases`` are the judged cases
-    in order, and ``not_run`` are the cases that were not judged. ``complete`` says whether all
-    requested cases were judged and retrained.
-    ``note`` is shown at the top of the page.
+    ``versions`` are the versions of the software that played or judged, by name. ``cases`` are the
+    judged cases in order, and ``not_run`` are the cases that were not judged. ``complete`` says
+    whether all requested verdicts and retrainings are there. ``note`` is a sentence at the top of the
+    page; it may be empty.
     """
 
     suite: str

@@ -1,6 +1,6 @@
-"""Diagrams as inline SVG: progress over time, and the distribution of progress now and before.
+"""Diagrams as inline SVG: progress over time, and the distribution of progress now and in the baseline.
 
-Functions draw them instead of templates, because nearly every attribute is computed.
+Functions draw them, not templates, because nearly every attribute is computed.
 """
 
 from __future__ import annotations
@@ -48,10 +48,11 @@ def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
 
 
 def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Markup:
-    """Plot how the best progress is distributed over the episodes.
+    """Draw a histogram of the best progress of each episode.
 
     Ten bins over [0, 1] show the shares of failed episodes; the last bar shows the share of
-    successes. The bars of ``now`` are filled. Those of ``before``, the baseline, are outlines.
+    successes. The bars of the episodes ``now`` are filled. Those of the episodes ``before``, in the
+    baseline, are outlines.
     """
     frame = _CurveAxes(_BINS + _GAP + 1.0)
     bars = []
@@ -85,10 +86,9 @@ def _bin_text(bin_: int) -> str:
 
 
 def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
-    """Return the share of episodes in each bin of the histogram of progress.
+    """Return the share of episodes in each bin of the histogram: ten for failures, one for successes.
 
-    An episode that reached progress 1 and then broke the spec is in the last bin of the failed
-    episodes.
+    A failed episode that had reached progress 1 is in the last bin of the failures.
     """
     counts = [0] * (_BINS + 1)
     for episode in episodes:
@@ -97,7 +97,7 @@ def _shares(episodes: Sequence[ExplainedEpisode]) -> list[float]:
 
 
 def _corners(frame: _CurveAxes, episode: RecordedEpisode) -> list[tuple[float, float]]:
-    """Return the points at which an episode's curve of progress starts, ends or bends."""
+    """Return the points (x, y), in SVG units, at which an episode's curve of progress starts, ends or bends."""
     values, times = episode.progress.tolist(), episode.times.tolist()
     rows = {0, len(values) - 1}
     for row, (value, next_value) in enumerate(pairwise(values)):
@@ -119,7 +119,7 @@ class _CurveAxes:
         return _HEIGHT - _BOTTOM - value * (_HEIGHT - _TOP - _BOTTOM)
 
     def x_ticks(self) -> list[tuple[float, str]]:
-        """Return at most seven whole numbers for the marks on the x axis, with their texts."""
+        """Return the marks on the x axis: at most seven whole numbers, each with its text."""
         step = max(1, ceil(self.x_most / 6))
         return [(float(tick), str(tick)) for tick in range(0, int(self.x_most + 1e-9) + 1, step)]
 

@@ -1,4 +1,4 @@
-"""Links from a finding to its recorded episodes."""
+"""Links from a finding (a sentence on what a policy does differently) to its examples on the page."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ _BEFORE_END_S: Final = 4.0
 
 @record
 class _Link:
-    """A link that plays an episode.
+    """A link to an example on the page: a recorded episode, or the picture of a trace.
 
-    ``text`` is the index of the episode, or the name of a trace. ``description`` says in words what the link plays.
+    ``text`` is the index of the episode or the name of the trace. ``description`` says what the link
+    does, for example ``play episode 3``.
     """
 
     text: str
@@ -34,10 +35,10 @@ class _Link:
 
 
 def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slug: str) -> Markup | None:
-    """Return links that play the recorded ``episodes`` of a finding; None if it has none.
+    """Return links, as HTML, that play the examples of a finding; None if no example was recorded.
 
-    ``slug`` is the case's short name in addresses within the page. A link to a failed episode plays
-    it from 4 seconds before the end.
+    ``episodes`` are the recorded episodes by index. ``slug`` is the case's short name in addresses
+    within the page. A failed episode is played from 4 seconds before its end.
     """
     indices = [index for index in finding.episodes if index in episodes]
     if not indices:
@@ -54,7 +55,10 @@ def episode_links(finding: Finding, episodes: Mapping[int, RecordedEpisode], slu
 
 
 def trace_links(finding: Finding, traces: Mapping[int, TraceCurves], slug: str) -> Markup | None:
-    """Return links to the pictures of the drawn ``traces`` of a finding; None if it has none."""
+    """Return links, as HTML, to the pictures of a finding's examples; None if no example is drawn.
+
+    ``traces`` are the drawn traces or episodes by index. ``slug`` is as in :func:`episode_links`.
+    """
     shown = {index: traces[index] for index in finding.episodes if index in traces}
     if not shown:
         return None

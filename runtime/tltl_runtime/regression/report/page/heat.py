@@ -20,10 +20,10 @@ ENDS_CELL: Final = 1.0
 
 @record
 class Heat:
-    """A grid of square cells, with ``columns`` cells in a row. ``cell`` is their side, in metres.
+    """A grid of square cells with values. ``cell`` is the side of a cell, in metres of the level.
 
-    ``values`` are pairs of the index of a cell and its value, sorted. Cells with value 0 are left
-    out. Indices count row by row from the north-west.
+    A row has ``columns`` cells. ``values`` are pairs of the index of a cell and its value, sorted by
+    index. Cells with value 0 are left out. Indices count row by row from the north-west corner.
     """
 
     cell: float
@@ -32,16 +32,20 @@ class Heat:
 
 
 def time_spent(bounds: Box, episodes: Sequence[ExplainedEpisode], metre: float = 1.0) -> Heat:
-    """Return the mean number of seconds that an episode spends in each cell.
+    """Return the mean number of seconds that an episode spends in each cell of a level.
 
-    ``metre`` is the length in the level, in metres, of a metre on the map.
+    ``bounds`` are those of the level. ``metre`` is the length in the level, in metres, of a metre on
+    the map.
     """
     positions = [position for episode in episodes for position in positions_along(episode.way)]
     return _grid(bounds, TIME_CELL * metre, positions, POSITION_INTERVAL_S / max(1, len(episodes)))
 
 
 def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode], metre: float = 1.0) -> Heat:
-    """Return the number of failed episodes that ended in each cell; ``metre`` is as in :func:`time_spent`."""
+    """Return the number of failed episodes that ended in each cell of a level.
+
+    ``bounds`` and ``metre`` are as in :func:`time_spent`.
+    """
     return _grid(
         bounds,
         ENDS_CELL * metre,
@@ -51,9 +55,10 @@ def failed_ends(bounds: Box, episodes: Sequence[ExplainedEpisode], metre: float 
 
 
 def _grid(bounds: Box, cell: float, positions: Iterable[tuple[float, float]], weight: float) -> Heat:
-    """Return a grid in which a cell's value is ``weight`` times the number of ``positions`` in it.
+    """Return a grid over ``bounds``: a cell's value is ``weight`` times the number of ``positions`` in it.
 
-    ``cell`` is the side of the cells, in metres.
+    ``cell`` is the side of the cells, in metres. A position outside the bounds counts in the nearest
+    cell.
     """
     (west, south, _), (east, north, _) = bounds.low, bounds.high
     columns, rows = (max(1, -int(-side // cell)) for side in (east - west, north - south))

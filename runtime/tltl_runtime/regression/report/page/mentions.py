@@ -11,10 +11,11 @@ from tltl_runtime.regression.report.case_report import CaseReport
 
 
 def report_mentions(maps: LevelMaps[Any, Any], level: Level, report: CaseReport) -> Mentions:
-    """Return the names that the sentences of a report mention; ``maps`` are those of the level's game.
+    """Return the names of things and regions that the sentences of a report mention.
 
-    The names may include some that the level does not have. Only the descriptions of overlays are
-    searched for names, because designers write them.
+    The level may lack some of them. Sentences that tltlc writes come with the names that they
+    mention. Only the designer's descriptions of overlays (files that change a level) are searched
+    for names, by ``maps``, which belongs to the level's game.
     """
     findings = (finding.mentions for finding in report.explanation)
     return union((report.mentions, *findings, maps.mentions(level, "\n".join(report.descriptions))))

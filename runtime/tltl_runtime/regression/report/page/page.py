@@ -78,9 +78,9 @@ def _file_text(name: str) -> str:
 
 
 def _digest(script: str) -> str:
-    """Return the hash of the page's script, so that a browser runs this script and no other.
+    """Return the SHA-256 of the page's script, in base64, for the page's content security policy.
 
-    The page's content security policy names it: the SHA-256 in base64. The hashed text includes the
-    line feeds before and after the script.
+    With this hash in the policy, a browser runs this script and no other. The hashed text includes
+    the line feeds before and after the script.
     """
     return base64.b64encode(hashlib.sha256(f"\n{script}\n".encode()).digest()).decode()

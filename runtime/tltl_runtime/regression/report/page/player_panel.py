@@ -12,13 +12,14 @@ from tltl_runtime.regression.report.page.render import render
 from tltlc.api import Fspa
 
 _FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
-"""How an episode failed, by its ``end``, in the words of the map's legend."""
+"""How a failed episode ended, in the words of the map's legend, by its ``end``."""
 
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, RecordedEpisode], values: Sequence[str]) -> Markup:
-    """Return the playback panel of a case; the page's script loads the ``episodes`` into it.
+    """Return the playback panel of a case as HTML; the page's script loads the ``episodes`` into it.
 
-    ``values`` are the names of the bars beside progress. If there are no episodes, the panel says so.
+    ``values`` are the names of values that the panel shows as bars, besides ``progress``. If there are
+    no episodes, the panel says so.
     """
     return render(
         "player_panel.html",

@@ -18,7 +18,7 @@ _FOLDER: Final = Path(__file__).parent / "templates"
 
 
 def render(template: str, **context: object) -> Markup:
-    """Fill in a template, given the name of its file and the values that it uses.
+    """Fill in the template in the file ``template`` with the values ``context``, and return the HTML.
 
     Values are escaped unless they are :class:`Markup`. The filter ``prose`` formats sentences.
 

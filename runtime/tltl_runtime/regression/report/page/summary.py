@@ -32,10 +32,10 @@ class _Mean:
 
 @record
 class _PassRateBar:
-    """A bar that shows a pass rate, in a drawing that is 100 units wide and 22 units high.
+    """A bar that shows a pass rate, in an SVG drawing that is 100 units wide and 22 units high.
 
-    A unit of width is one percent. ``kind`` is the CSS class of the bar. ``whiskers`` is the SVG
-    path of the confidence interval.
+    ``width`` is the pass rate in percent. ``kind`` is the CSS class of the bar, ``now`` or
+    ``before``. ``whiskers`` is the SVG path that marks the confidence interval.
     """
 
     kind: str
@@ -47,9 +47,9 @@ class _PassRateBar:
 
 @record
 class _PassRate:
-    """A pass rate, now and in the baseline: as text, and as bars with a ``description``.
+    """The pass rate of a case, now and in the baseline: as texts, and as ``bars``.
 
-    ``before`` is empty if there is no baseline.
+    ``before`` is empty if there is no baseline. ``description`` says in words what the bars show.
     """
 
     now: str
@@ -60,11 +60,11 @@ class _PassRate:
 
 @record
 class _Row:
-    """The row of a judged case.
+    """The table row of a judged case.
 
     ``slug`` is the case's short name in addresses within the page. ``retrained`` is the outcome of
-    a retraining, or None. ``pass_rate``, ``progress`` and ``reward`` are None for a case without
-    figures.
+    retraining its policy, or None. ``pass_rate``, ``progress`` and ``reward`` are None for a case that
+    could not be played or judged.
     """
 
     name: str
@@ -121,7 +121,10 @@ def _mean(now: float, before: float | None) -> _Mean:
 
 
 def _pass_rate(now: Figures, before: Figures | None) -> _PassRate:
-    """Return the pass rate as text and as a bar with a 95 % confidence interval; likewise for ``before``."""
+    """Return the pass rates ``now`` and ``before``, each as text and as a bar with a 95 % interval.
+
+    ``before`` is None if there is no baseline.
+    """
     bar = _bar(now, "now", top=0, height=12)
     if before is None:
         return _PassRate(_pass_text(now), "", _rate_words(now), (bar,))

@@ -1,7 +1,7 @@
 """Draw recorded traces: the values of the atoms over time, with the states of the automaton.
 
-A row for each atom shows its curve, from -1 to 1; it is filled where the atom holds. Functions draw the
-SVG, because nearly every attribute is computed.
+Each atom has a row with the curve of its values, from -1 to 1. The row is coloured where the atom holds.
+Functions draw the SVG, not templates, because nearly every attribute is computed.
 """
 
 from __future__ import annotations
@@ -28,15 +28,19 @@ _LONGEST_NAME: Final = 24
 """Longer names of atoms are cut; their tooltip has the whole name."""
 
 _MOST_POINTS: Final = 1_500
-"""The most samples of a row that are drawn. Of a longer trace, the least and the greatest value are drawn for
-each group of samples, so that no short change is lost."""
+"""The greatest number of samples that a row shows one by one.
+
+The samples of a longer trace are drawn in groups. The least and the greatest value of each group are drawn,
+so that no short change is lost.
+"""
 
 
 @record
 class _Chart:
-    """The picture of a trace; ``anchor`` is its address within the page.
+    """The picture of a recorded trace or episode; ``anchor`` is its address within the page.
 
-    ``film`` is the film of an episode, WebP in base64; empty if there is none.
+    ``ended`` says in words how the trace or episode ended. ``film`` is the film of an episode, WebP in
+    base64; it is empty if there is none.
     """
 
     anchor: str
@@ -50,9 +54,10 @@ class _Chart:
 def trace_charts(
     fspa: Fspa, traces: Mapping[int, TraceCurves], slug: str, films: Mapping[int, bytes] = EMPTY
 ) -> Markup:
-    """Return the pictures of traces, and above them their films, if there are any.
+    """Return the pictures of recorded traces or episodes as HTML, each below its film if there is one.
 
-    ``slug`` is the case's short name in addresses within the page.
+    ``traces`` and ``films`` (WebP) are by index. ``slug`` is the case's short name in addresses within
+    the page.
     """
     charts = [
         _Chart(
@@ -69,7 +74,7 @@ def trace_charts(
 
 
 def anchor(slug: str, index: int) -> str:
-    """Return the address, within the page, of the picture of a trace."""
+    """Return the address of the picture of a trace within the page: ``trace:navigation-v1:3``."""
     return f"trace:{slug}:{index}"
 
 
@@ -89,7 +94,10 @@ def _x(step: float, steps: int) -> float:
 
 
 def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
-    """Yield a box for each stay in a state, with the number of the state where it fits."""
+    """Yield the SVG of a strip with a box for each stay in a state.
+
+    A box contains the number of the state if it is wide enough.
+    """
     yield element("text", "state", class_="tick y", x=_LEFT - 6, y=15)
     size = _group_size(curves.steps)
     # A sample is drawn with the state that it leads to, so that the last state can be seen, too.
@@ -108,7 +116,10 @@ def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
 
 
 def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
-    """Yield the curve of an atom: its zero line, the area where it holds, and its name."""
+    """Yield the SVG of an atom's row: its name, its zero line, a box wherever it holds, and its curve.
+
+    ``values`` are the atom's values at the samples. ``top`` is the upper edge of the row.
+    """
     steps, zero, height = len(values), top + _ROW / 2, _ROW / 2 - 2
     short = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
     label_y = coordinate(zero + 4)
@@ -126,9 +137,10 @@ def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
 
 
 def _stretches(values: Sequence[float]) -> Iterator[tuple[int, int]]:
-    """Yield the stretches of samples at which an atom holds: the first index, and the one after the last.
+    """Yield the runs of samples at which an atom with these ``values`` holds, as (first, last + 1).
 
-    In a long trace, stretches that are nearer to each other than two points of the curve are one.
+    In a trace whose samples are drawn in groups, an atom counts as holding in a whole group if it
+    holds at one of its samples.
     """
     size = _group_size(len(values))
     start = None
@@ -142,12 +154,12 @@ def _stretches(values: Sequence[float]) -> Iterator[tuple[int, int]]:
 
 
 def _group_size(steps: int) -> int:
-    """Return how many samples are drawn as one, so that a picture has no more than ``_MOST_POINTS`` of them."""
+    """Return how many samples are drawn as one group, so that a row has at most ``_MOST_POINTS`` groups."""
     return max(1, -(-steps // _MOST_POINTS))
 
 
 def _points(values: Sequence[float]) -> Iterator[tuple[float, float]]:
-    """Yield the corners of a curve that keeps each value until the next sample."""
+    """Yield the corners (step, value) of the curve of ``values``, which is constant between two samples."""
     size = _group_size(len(values))
     for start in range(0, len(values), size):
         group = values[start : start + size]

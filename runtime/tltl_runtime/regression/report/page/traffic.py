@@ -12,12 +12,13 @@ from tltlc.api import record
 
 @record
 class Traffic:
-    """How ``episodes`` episodes, or recorded traces, moved through an automaton; ``noun`` names them.
+    """How episodes moved through an automaton: counts of the states and edges that they visited.
 
-    ``visited`` and ``failed`` count, for each state, the episodes that visited it and the episodes
-    that failed in it. ``edges`` has, for each episode, the edges (source, target) that it took,
-    without self-loops. An episode fails in the state in which it ends, or in the state before a
-    violation.
+    ``episodes`` is the number of episodes. ``noun`` is the word for them in texts: ``episodes`` or
+    ``traces``. ``visited`` counts, for each state, the episodes that visited it, and ``failed`` those
+    that failed in it. An episode fails in the state in which it ends, or in the state before a
+    violation. ``edges`` has, for each episode, the edges (source, target) that it took, without
+    self-loops.
     """
 
     episodes: int
@@ -28,9 +29,9 @@ class Traffic:
 
 
 def traffic(episodes: Sequence[ExplainedEpisode], noun: str = "episodes") -> Traffic:
-    """Count how episodes moved through their automaton.
+    """Count the states and edges that ``episodes`` visited.
 
-    An episode that visited a state, or took an edge, several times counts once for it.
+    An episode that visits a state or an edge several times counts once for it.
     """
     visited: Counter[int] = Counter()
     edges = []
