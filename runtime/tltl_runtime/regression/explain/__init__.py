@@ -1,4 +1,4 @@
-"""Explanations: what a policy does differently from the baseline.
+"""Explain in sentences what a policy does differently from the baseline, and how its episodes fail.
 
 Begin with :mod:`~tltl_runtime.regression.explain.explain`.
 """

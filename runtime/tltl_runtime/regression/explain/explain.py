@@ -22,28 +22,28 @@ from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, record
 
 _STAGE_TOLERANCE: Final = 0.05
-"""The least change of the share of episodes that complete a stage. Smaller changes are ignored."""
+"""The share of episodes that complete a stage has changed if it differs by at least this much."""
 
 _COMMON_SHARE: Final = 0.8
 """A stage without change is mentioned only if more than this share of the episodes complete it."""
 
 _REGION_DIFFERENCE: Final = 0.4
-"""The least change of the share of successes that visit a region. Smaller changes are ignored."""
+"""The share of successes that visit a region has changed if it differs by at least this much."""
 
 _LENGTH_RATIO: Final = 1.15
-"""Two mean lengths count as equal if the greater one is less than this times the smaller."""
+"""Two mean lengths of episodes count as equal if the greater is less than this factor times the smaller."""
 
 _MIN_SUCCESSES: Final = 3
-"""Lengths and regions are described only with this many successes, or more, both now and before."""
+"""Lengths and regions are compared only if at least this many episodes succeed, both now and before."""
 
 
 @record
 class Finding:
     """A sentence about the episodes played now, and the indices of examples among them.
 
-    ``episodes`` are the indices of the episodes that do what the sentence says. If ``others`` is
-    true, they are instead those of the episodes that do not. ``mentions`` are the things and
-    regions that the sentence mentions.
+    ``text`` is the sentence. ``episodes`` are the indices of the episodes that do what it says or, if
+    ``others`` is true, of the episodes that do not. ``mentions`` names the things and regions of the
+    level that the sentence mentions.
     """
 
     text: str
@@ -55,11 +55,11 @@ class Finding:
 def findings(
     level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> tuple[Finding, ...]:
-    """Compare the episodes ``now`` with those of the baseline, ``before``.
+    """Return sentences that compare the episodes ``now`` with the episodes ``before``, of the baseline.
 
-    The findings say which stages the episodes complete, how they fail, how long the successful ones
-    are, and through which regions these pass. ``level`` is the level that was played now, or None for
-    recorded traces, which have no regions.
+    They say which stages (parts of the spec) the episodes complete, how episodes fail, whether
+    successful episodes are longer or shorter, and through which regions of the level they pass.
+    ``level`` is the level that was played now, or None for recorded traces, which have no regions.
     """
     return (
         *_stages(fspa, now, before, _noun(level)),
@@ -76,12 +76,13 @@ def _noun(level: Level | None) -> str:
 def _stages(
     fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode], noun: str
 ) -> Iterator[Finding]:
-    """Yield at most one finding about the stages that episodes complete; ``noun`` names them in the plural.
+    """Yield at most one finding about the stages that episodes complete.
 
-    The finding is about the first stage that clearly more or clearly fewer episodes complete now
-    than before. It also names the earlier stages that most episodes complete. If there is no such
-    stage, the finding names all stages that most episodes complete; if there are none, there is no
-    finding.
+    An episode completes a stage when it comes nearer to acceptance than the states of the stage. The
+    finding is about the first stage that clearly more, or clearly fewer, episodes complete now than
+    before. It also names the earlier stages that most episodes complete, now as before. If no stage
+    has changed in this way, the finding names all stages that most episodes complete. If there are
+    none, there is no finding. ``noun`` is the word for the episodes: ``episodes`` or ``traces``.
     """
     unchanged_stages: list[Subgoal] = []
     for distance, states in _visited_states(fspa, (*now, *before)):
@@ -106,10 +107,9 @@ def _stages(
 
 
 def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tuple[int, set[int]]]:
-    """Return the visited states, grouped by distance from acceptance, greatest distance first.
+    """Return pairs of a distance from acceptance and the visited states at this distance.
 
-    Each pair is a distance and the states at that distance. Accepting states and traps are left
-    out.
+    The greatest distance comes first. Accepting states and traps are left out.
     """
     states_by_distance: dict[int, set[int]] = {}
     for state in {arrival.state for episode in episodes for arrival in episode.arrivals}:
@@ -119,7 +119,7 @@ def _visited_states(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> list[tu
 
 
 def _episodes_past(fspa: Fspa, episodes: Sequence[ExplainedEpisode], distance: int) -> list[ExplainedEpisode]:
-    """Return the episodes that came nearer to acceptance than ``distance`` transitions."""
+    """Return the episodes that reached a state less than ``distance`` transitions from acceptance."""
     return [episode for episode in episodes if min(_distances(fspa, episode)) < distance]
 
 
@@ -131,7 +131,11 @@ def _distances(fspa: Fspa, episode: ExplainedEpisode) -> list[int]:
 def most_frequent_end(
     level: Level | None, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 ) -> str | None:
-    """Describe briefly how failed episodes ``now`` end most often; None if no episode failed."""
+    """Describe how the failed episodes ``now`` end most often: ``dies in the corridor in 7 of 25 episodes``.
+
+    None if no episode failed. ``before`` are the episodes of the baseline. ``level`` is None for
+    recorded traces.
+    """
     return next((headline for headline, _ in _ends(level, fspa, now, before)), None)
 
 
@@ -140,7 +144,8 @@ def _ends(
 ) -> Iterator[tuple[str, Finding]]:
     """Yield a short text and a finding for each way in which episodes ``now`` fail.
 
-    The finding also says how many episodes ``before`` failed in this way. The order is that of
+    The text says how many episodes fail in this way. The finding adds how many episodes ``before``
+    did so, and details. The order is that of
     :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.
     """
     noun = _noun(level)
@@ -167,7 +172,7 @@ def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 
 
 def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
-    """Describe the regions through which clearly more or fewer successes pass than before."""
+    """Yield a finding for each region through which clearly more or fewer successful episodes pass than before."""
     new, old = ([episode for episode in episodes if episode.summary.success] for episodes in (now, before))
     if min(len(new), len(old)) < _MIN_SUCCESSES:
         return

@@ -21,7 +21,8 @@ _SEEN_WITHIN_S: Final = 3.0
 class Arrival:
     """An entry into a state of the automaton, at a step.
 
-    ``place`` is the position of the player's feet at that step, in metres; None if it is not known.
+    ``step`` 0 is the reset. ``place`` is the position of the player's feet at the step, in metres;
+    None if it is not known.
     """
 
     state: int
@@ -33,16 +34,16 @@ class Arrival:
 class NearestMiss:
     """How near a failed episode came to an edge that leads from its last state towards acceptance.
 
-    If a violation ended the episode, its last state is the one before the violation. Earlier visits
-    to that state do not count.
+    If a violation ended the episode, its last state is the state before the violation. Only the last
+    stay in this state counts.
 
-    ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges, and
-    ``place`` is where the player was then; None if it is not known. ``atom`` is the atom that
-    limited the robustness. It had to be true if ``wanted`` is true, else false.
+    ``robustness``, in [-1, 1], is the greatest robustness of the guards of such edges during this
+    stay. ``place`` is where the player was at that moment; None if it is not known. ``atom`` is the
+    name of the atom that limited the robustness: it had to be true if ``wanted``, else false.
 
-    If the atom had to be true, and approaching an entity makes it true, ``target`` is that entity.
-    ``distance``, in metres, is then the least distance from it at which the atom was false.
-    Otherwise, both are None.
+    If the atom had to be true, and the player makes it true by approaching an entity, ``target`` is
+    that entity. ``distance`` is then the least distance to the target, in metres, at which the atom
+    was still false. Otherwise, both are None.
     """
 
     atom: str
@@ -57,19 +58,21 @@ class NearestMiss:
 class ExplainedEpisode:
     """An episode of a case: its ``summary``, and the facts that explain its result.
 
-    A recorded trace is an episode without a game: it has no places, no enemies and no barriers. ``by``
-    are the clauses that it breaks or does not meet.
-
     - ``cause``, ``by`` and ``place`` say how, by what and where the episode ended, as in
       :class:`~tltl_runtime.game.episode.Cause`.
     - ``seen_by`` are the enemies that saw the player in the last 3 seconds; none for a success.
-    - ``arrivals`` are all entries into states, in order. The first is the start at step 0.
-    - ``nearest`` is the nearest miss. It is None for a success, and for a failure without one.
-    - ``way`` is the simplified trajectory.
-    - ``broke`` are the atoms that broke the spec.
-    - ``arrived`` says whether only the atoms in ``broke`` kept the last step from leading towards
-      acceptance.
+    - ``arrivals`` are all entries into states of the automaton, in order. The first is the start at
+      step 0.
+    - ``nearest`` says how near a failed episode came to its next step towards acceptance. It is None
+      for a success, and if no edge leads towards acceptance.
+    - ``way`` is the simplified trajectory; empty if the positions of the player are not known.
+    - ``broke`` are the names of the atoms that broke the spec.
+    - ``arrived`` says whether the last step would have led towards acceptance but for the atoms in
+      ``broke``.
     - ``shut`` are the barriers that were closed at the end and stop players.
+
+    A recorded trace is an episode without a game: it has no places, no enemies and no barriers. Its
+    ``by`` are the clauses of the spec that the trace breaks or does not meet.
     """
 
     json_inlined = MappingProxyType(
@@ -95,7 +98,7 @@ def summaries_of(episodes: Iterable[ExplainedEpisode]) -> list[EpisodeSummary]:
 
 
 def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> ExplainedEpisode:
-    """Explain the result of a recorded ``episode``, whose summary is ``summary``."""
+    """Return a recorded ``episode``, whose summary is ``summary``, with the facts that explain its result."""
     game, positions = episode.level.game, _positions(episode)
     cause = game.cause(episode)
     return ExplainedEpisode(
@@ -115,14 +118,17 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
 
 
 def arrivals_of(episode: RecordedEpisode) -> tuple[Arrival, ...]:
-    """Return all entries into states of a recorded episode, in order."""
+    """Return all entries of a recorded episode into states of the automaton, in order.
+
+    The first is the start, at step 0.
+    """
     states, positions = episode.states.tolist(), _positions(episode)
     steps = [step for step in range(len(states)) if step == 0 or states[step] != states[step - 1]]
     return tuple(Arrival(states[step], step, positions[step]) for step in steps)
 
 
 def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> bool:
-    """Whether only the atoms in ``broke`` kept the last step from leading towards acceptance.
+    """Whether the last step would have led towards acceptance but for the atoms in ``broke``.
 
     ``state`` is the automaton's state before that step.
     """
@@ -135,10 +141,10 @@ def _has_arrived(episode: RecordedEpisode, state: int, broke: Sequence[str]) -> 
 
 
 def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Point | None]) -> NearestMiss | None:
-    """Return how near an episode came to a step towards acceptance in its last stay in ``state``.
+    """Return how near an episode came, in its last stay in ``state``, to an edge towards acceptance.
 
-    None if no edge leads from the state towards acceptance, or if the episode made no step in it.
-    ``positions`` are those of the player's feet.
+    None if no such edge leaves the state, or if the episode took no step in the state.
+    ``positions`` are those of the player's feet after each step, from the reset on.
     """
     steps = _last_stay(episode, state)
     nearest = monitors.nearest_edge(episode.fspa, state, episode.atoms[steps].tolist())
@@ -167,10 +173,10 @@ def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:
 
 
 def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
-    """Return the entity that an atom asks the player to approach, and the least distance to it.
+    """Return the entity that the player must approach to make an atom true, and the least distance to it.
 
-    The distance, in metres, is the least over those of the steps ``rows`` at which the atom does
-    not hold. Both are None if the atom has no such entity: see
+    ``atom`` is the index of the atom. The distance, in metres, is the least at those steps in ``rows``
+    at which the atom does not hold. Both are None if the atom has no such entity: see
     :func:`~tltl_runtime.regression.explain.stages.target_of`.
     """
     target = target_of(episode.fspa, atom)
@@ -182,7 +188,10 @@ def _target_and_distance(episode: RecordedEpisode, atom: int, rows: Sequence[int
 
 
 def _positions(episode: RecordedEpisode) -> list[Point | None]:
-    """Return the positions of the player's feet, in metres, rounded to centimetres; None where they are not known."""
+    """Return the position of the player's feet after each step, from the reset on; None if it is not known.
+
+    The positions are in metres, rounded to centimetres.
+    """
     if episode.positions is None:
         return [None] * len(episode.states)
     return [_rounded((x, y, z)) for x, y, z in episode.positions.tolist()]

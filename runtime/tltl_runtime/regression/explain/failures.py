@@ -20,9 +20,9 @@ _T = TypeVar("_T")
 _FailureKind = tuple[EndKind, tuple[str, ...]]
 
 _FEW: Final = 3
-"""The most groups of failures that get a text of their own. These are the largest groups.
+"""At most this many groups of failures get a text of their own: the largest groups.
 
-Each of them must also contain at least this many failed episodes, or at least a tenth of all
+Such a group must also contain at least this many failed episodes, or at least a tenth of all
 episodes.
 """
 
@@ -33,7 +33,7 @@ _IN_DIFFERENT_PLACES: Final = Phrase("in different places")
 
 @record
 class FailureEnd:
-    """How and where an episode failed, and which subgoal it had not reached.
+    """How and where an episode failed, and which subgoal it had not reached (``undone``).
 
     ``cause`` and ``by`` are as in
     :class:`~tltl_runtime.regression.explain.explained_episode.ExplainedEpisode`. ``where`` is a phrase,
@@ -55,8 +55,9 @@ class FailureEnd:
 class Failures:
     """A group of episodes that fail alike.
 
-    ``text`` says how they fail, and ``more`` adds details. ``matches`` says whether a
-    :class:`FailureEnd` belongs to the group. Call it only for ends that belong to no earlier group.
+    ``text`` says how they fail, and ``more`` adds details. ``matches`` is a function that says whether
+    an episode with a given :class:`FailureEnd` belongs to the group. It assumes that the episode
+    belongs to no earlier group.
     """
 
     text: Phrase
@@ -66,7 +67,7 @@ class Failures:
 
 
 def end_of(level: Level | None, fspa: Fspa, episode: ExplainedEpisode) -> FailureEnd:
-    """Return how a failed episode ended. ``level`` is None for a recorded trace."""
+    """Return how and where a failed episode ended. ``level`` is None for a recorded trace."""
     by = tuple(sorted(episode.by))
     where = _NOTHING if level is None or episode.place is None else place_phrase(level, episode.place)
     return FailureEnd(episode.cause, by, where, subgoal(fspa, episode.summary.unmet))
@@ -75,13 +76,14 @@ def end_of(level: Level | None, fspa: Fspa, episode: ExplainedEpisode) -> Failur
 def failures(
     level: Level | None, fspa: Fspa, episodes: Sequence[ExplainedEpisode], ends_before: Collection[FailureEnd] = ()
 ) -> Iterator[Failures]:
-    """Group the failed episodes by how they end. All texts are distinct.
+    """Group the failed episodes by how they end, and yield the groups.
 
-    ``ends_before`` are the ends with which the groups are compared: no text of a group that has a
-    text of its own may also describe an end of these that does not belong to it.
-
-    First come the largest groups, whose episodes have equal ends. Next are groups of the other
+    First come the largest groups, each of episodes with equal ends. Next are groups of the other
     episodes by cause. The last group contains the rest.
+
+    All texts are distinct. ``ends_before`` are ends of other episodes, such as those of the baseline,
+    that the caller will match with the groups. The text of a large group names its subgoal if another
+    end, of a group or in ``ends_before``, differs only in the subgoal.
     """
     groups: dict[FailureEnd, list[ExplainedEpisode]] = {}
     for episode in episodes:
@@ -100,9 +102,10 @@ def failures(
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
-    """Return the keys of the largest groups, which get texts of their own (see ``_FEW``), largest first.
+    """Return the keys of the largest groups that get texts of their own, largest group first.
 
-    ``episode_count`` is the number of all episodes, successes included.
+    ``_FEW`` says which groups these are. ``episode_count`` is the number of all episodes, successes
+    included.
     """
     largest = sorted(groups, key=lambda key: -len(groups[key]))[:_FEW]
     return [key for key in largest if len(groups[key]) >= _FEW or 10 * len(groups[key]) >= episode_count]
@@ -145,10 +148,10 @@ def _phrase_for_cause(
     episodes: Sequence[ExplainedEpisode],
     frequent: Collection[FailureEnd],
 ) -> tuple[Phrase, Callable[[FailureEnd], bool]]:
-    """Return a text for ``ends``, which have the same cause, and a predicate.
+    """Return a text that describes all of ``ends``, and a function that says whether it describes an end.
 
-    The predicate says whether the text describes an end. ``episodes`` are the episodes with these
-    ends. The returned text must differ from those of the ends in ``frequent``.
+    The ends have the same cause. ``episodes`` are the episodes with these ends. The text differs
+    from those of the ends in ``frequent``, which have texts of their own.
     """
     cause, places, stages = ends[0].kind, {end.where for end in ends}, {end.undone for end in ends}
     frequent_places = {end.where for end in frequent if end.kind == cause}
@@ -173,17 +176,17 @@ def _phrase_for_cause(
 
 
 def _stage_phrase(level: Level | None, end: FailureEnd) -> Phrase:
-    """Return a clause with the subgoal that was not reached."""
-    # Here the text says already that a trace ends before something.
+    """Return a clause that names the subgoal that was not reached: `` before it reaches `exit```."""
+    # The text before this clause says already that the trace ends before something.
     also = " and" if level is None and end.cause in ("limit", "stopped") else ""
     return Phrase(f"{also} before it {end.undone.text}", end.undone.mentions)
 
 
 def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> Phrase:
-    """Describe how ``episodes`` failed, which all share ``end``, without the number of episodes.
+    """Describe how ``episodes`` failed, which all have the same ``end``: ``dies in the corridor``.
 
-    The caller appends the number. So if the text ends with a clause that is set off by a comma, a
-    comma also follows the clause.
+    The caller appends the number of episodes. So if the text ends with a clause that is set off by
+    a comma, a comma also follows the clause: ``dies, mostly seen by `guard`,``.
     """
     if level is None:
         return Phrase(trace_end_text(fspa, end.cause, end.by, episodes))
@@ -208,10 +211,10 @@ def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequ
 
 
 def _majority(names_by_episode: Sequence[Sequence[str]]) -> tuple[list[str], str]:
-    """Return the names that occur in more than half of the episodes, and an adverb.
+    """Return the names that more than half of the episodes have, and an adverb to put before them.
 
-    ``names_by_episode`` has the names of each episode. The adverb is ``mostly`` and a space if an
-    episode lacks one of the names, else empty.
+    ``names_by_episode`` has a list of names for each episode. The adverb is ``mostly`` and a space if
+    an episode lacks one of the returned names, else empty.
     """
     counts = Counter(name for names in names_by_episode for name in names)
     frequent = [name for name, count in counts.items() if 2 * count > len(names_by_episode)]

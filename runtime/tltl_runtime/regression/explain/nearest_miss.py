@@ -14,12 +14,12 @@ from tltlc.api import Fspa, label_text
 
 
 def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> Phrase:
-    """Describe how near the failed episodes came to the subgoal ``undone``.
+    """Describe how near failed episodes came to the subgoal ``undone``.
 
-    The first clause counts the episodes that had reached the subgoal when another atom broke the
-    spec. The second clause describes the nearest miss. It is there only if more than half of the
-    episodes have a nearest miss and had not reached the subgoal. Each clause begins with a
-    semicolon. The text is empty if neither clause applies.
+    The first clause counts the episodes that had just reached the subgoal when another atom broke the
+    spec. The second clause describes the nearest miss of the other episodes. It is left out unless
+    such misses are known for more than half of all ``episodes``. Each clause begins with a semicolon.
+    The text is empty if both are left out. ``level`` is None for recorded traces.
     """
     clauses = Phrase("")
     if arrived := sum(episode.arrived for episode in episodes):
@@ -33,17 +33,20 @@ def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: 
 
 
 def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Name the state in which episodes failed most often, and what remained to be done there."""
+    """Return a clause with the state in which episodes failed most often, and what remained to be done there.
+
+    For example, ``mostly in state 2, where this remained: reach near(exit)``.
+    """
     ((state, count),) = Counter(episode.summary.unmet for episode in episodes).most_common(1)
     often = "" if count == len(episodes) else "mostly " if 2 * count > len(episodes) else "most often "
     return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
 
 
 def _limit_phrase(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> Phrase:
-    """Describe the atom that limits the nearest misses most often, and the best of these misses.
+    """Describe the atom that limits ``misses`` most often, and the best of the misses that it limits.
 
-    A nearest miss says how near an episode came to its next subgoal. ``of`` says which episodes are
-    meant, for example `` of the others``. It may be empty.
+    A miss says how near an episode came to its next subgoal. ``of`` is empty, or says which episodes
+    are meant, for example `` of the others``. ``level`` is None for recorded traces.
     """
     (((atom, must_hold), count),) = Counter((miss.atom, miss.wanted) for miss in misses).most_common(1)
     same_limit = [miss for miss in misses if (miss.atom, miss.wanted) == (atom, must_hold)]
@@ -64,7 +67,11 @@ def _limit_phrase(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss]
 
 
 def _trace_limit_text(often: str, atom: str, best: float) -> str:
-    """Say which atom kept traces from the next subgoal, and, if it is not Boolean, its best value."""
+    """Say that ``atom`` kept traces from the next subgoal.
+
+    ``best`` is the greatest value of the atom. It is left out if it is -1, as for a Boolean atom.
+    ``often`` comes before the name: empty or ``most often`` and a space.
+    """
     value = f", with {number(best, 2)} at best: it holds above 0" if best > -1.0 else ""
     return f"{often}`{atom}` was missing{value}"
 
@@ -80,10 +87,11 @@ def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
 
 
 def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
-    """Return the least distance as a text, and a clause about the distance that would suffice.
+    """Return ``least`` as a text, and a clause about ``limit``: ``1.2 m`` and ``, below 1.0 m is enough``.
 
-    The distances are in metres. If they differ only in the second decimal, they are shown with two.
-    ``limit`` is the distance that would suffice. If it is None, the clause is empty.
+    Both are in metres. ``least`` is the least distance to a target, and ``limit`` the distance that
+    would suffice. If ``limit`` is None, the clause is empty. Two decimals are shown if the distances
+    differ only in the second.
     """
     if limit is None:
         return f"{least:.1f} m", ""

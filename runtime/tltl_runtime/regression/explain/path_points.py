@@ -30,7 +30,7 @@ It is less than the distance of a player's centre from a wall, so that no trajec
 def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
     """Return few points that approximate an episode's trajectory to within 0.2 m.
 
-    There is a point at each change of the automaton's state. There are no points if the game does not
+    One of them is at each change of the automaton's state. The result is empty if the game does not
     say where the player is.
     """
     if episode.positions is None:
@@ -48,9 +48,10 @@ def simplified_trajectory(episode: RecordedEpisode) -> TrajectoryPoints:
 
 
 def positions_along(trajectory: TrajectoryPoints) -> Iterator[tuple[float, float]]:
-    """Yield the player's positions (x, y), in metres, every ``POSITION_INTERVAL_S`` seconds.
+    """Yield the positions (x, y), in metres, on a trajectory, one every ``POSITION_INTERVAL_S`` seconds.
 
-    The first is at the start, and the last is just before the end.
+    The first is at the start of the trajectory, and the last is before its end. The trajectory must
+    not be empty.
     """
     times = np.array([time for *_, time in trajectory])
     moments = np.arange(times[0], times[-1], POSITION_INTERVAL_S)

@@ -1,4 +1,4 @@
-"""Texts of a report, with the names of the things and regions that they mention."""
+"""Texts of a report, with the names of the level's things and regions that they mention."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from tltlc.api import record
 
 @record
 class Phrase:
-    """A text of a report, and the names that it mentions.
+    """A text of a report, and the names of things and regions of a level that it mentions.
 
-    Phrases with the same text are equal, because a reader cannot tell them apart: *in the middle* may
-    be in a region of that name, or in the middle of a level.
+    Phrases with the same text are equal, whatever they mention, because a reader cannot tell them
+    apart: *in the middle* may mean a region of that name, or the middle of the level.
     """
 
     text: str
@@ -33,11 +33,11 @@ def phrase(*parts: Phrase | str) -> Phrase:
 
 
 def things_phrase(names: Sequence[str]) -> Phrase:
-    """Return a list of things: ```a`, `b` and `c```. There is at least one."""
+    """Return a phrase that lists and mentions things: ```a`, `b` and `c```. ``names`` must not be empty."""
     return Phrase(quoted_names(names), Mentions(tuple(names)))
 
 
 def quoted_names(names: Sequence[str]) -> str:
-    """Return a list of names between backquotes: ```a`, `b` and `c```. There is at least one."""
+    """Return a text that lists names: ```a`, `b` and `c```. ``names`` must not be empty."""
     *before, last = (f"`{name}`" for name in names)
     return f"{', '.join(before)} and {last}" if before else last

@@ -18,7 +18,7 @@ _NEAR_M: Final = 2.5
 _BESIDE: Final = 0.99
 """A box hides a target only if the line from the player to the target enters the box early enough.
 
-The line must enter the box within this share of its length.
+The point of entry must lie within the first 99 % of the line.
 """
 
 _TOUCHING_M: Final = 0.7
@@ -28,8 +28,8 @@ _TOUCHING_M: Final = 0.7
 def place_phrase(level: Level, point: Point) -> Phrase:
     """Describe where a point is: by its region, else by an entity near it, else by a direction.
 
-    Examples: ``in the corridor``, ``near `s2```, ``in the north-east``. The phrase is empty if the level
-    has none of these.
+    Examples: ``in the corridor``, ``near `s2```, ``in the north-east``. The phrase is empty if the point
+    is in no region and near no entity, and the bounds of the level are not known.
     """
     for region in level.regions:
         if _distance(point, region.box) == 0.0:
@@ -41,7 +41,7 @@ def place_phrase(level: Level, point: Point) -> Phrase:
 
 
 def nearest_entity(level: Level, point: Point) -> str | None:
-    """Return the nearest switch, exit or barrier; None if none is within 2.5 m."""
+    """Return the name of the nearest entity that does not move, such as a switch; None if none is within 2.5 m."""
     positions = level.game.landmarks(level)
     near = [(hypot(x - point[0], y - point[1]), name) for name, (x, y, _) in positions.items()]
     distance, name = min(near, default=(2 * _NEAR_M, ""))
@@ -51,10 +51,10 @@ def nearest_entity(level: Level, point: Point) -> str | None:
 def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
     """Return the names of the solids and closed barriers that more than half of the players touch.
 
-    Those that most players touch come first. If equally many players touch two of them, the one
-    that is nearer on average comes first. The floor does not count. For each player, boxes that are
-    hidden behind a nearer one do not count either. ``players`` has for each player the position of
-    the feet, and the names of the barriers that were closed then.
+    ``players`` has a pair for each player: the position of the feet, and the names of the barriers
+    that were closed then. The boxes that most players touch come first. If equally many players
+    touch two boxes, the box that is nearer on average comes first. The floor does not count, nor
+    does a box that is hidden from the player behind a nearer box.
     """
     solids, barriers = level.game.solids(level), level.game.barriers(level)
     touched: dict[str, list[float]] = {}
@@ -73,16 +73,18 @@ def blocking_solids(level: Level, players: Sequence[tuple[Point, Sequence[str]]]
 def _distance_to_body(feet: Point, box: Box) -> float:
     """Return the horizontal distance from a player to a box, in metres.
 
-    It is infinite for a box below the feet, such as the one that the player stands on.
+    It is infinite for a box below the feet, such as a box that the player stands on. It does not
+    matter how high above the feet a box is.
     """
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
 
 
 def _hides(box: Box, feet: Point, target: Box) -> bool:
-    """Whether a box stands between a player and the box ``target``, seen from above.
+    """Whether ``box`` stands between a player and the box ``target``.
 
-    ``box`` and ``target`` must also overlap in height.
+    Seen from above, it must lie on the line from the feet to the nearest point of the target. The
+    two boxes must also overlap in height.
     """
     first, last = 0.0, 1.0
     for at, low, high, near, far in zip(feet[:2], box.low, box.high, target.low, target.high, strict=False):

@@ -1,4 +1,4 @@
-"""The subgoals of a spec: what leads from each state of its automaton towards acceptance."""
+"""The subgoals of a spec: what a player must do to leave a state of its automaton towards acceptance."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ _PRECISION: Final = 1e-4
 
 @record
 class Subgoal:
-    """What the player must do so that the automaton leaves a state for one nearer to acceptance.
+    """What the player must do so that the automaton leaves a state for a state nearer to acceptance.
 
-    Either ``targets`` are the entities to reach: alternatives, each with the entities that must all
-    be reached. Or ``other`` says what else to do, for example ``makes `open` true``. The field that
-    does not apply is empty.
+    Either ``targets`` are the entities to reach, as alternatives: ``(("a", "b"), ("c",))`` means both
+    ``a`` and ``b``, or ``c``. Or ``other`` says in words what to do, for example ``makes `open` true``.
+    The field that does not apply is empty.
     """
 
     targets: tuple[tuple[str, ...], ...] = ()
     other: str = ""
     is_choice: bool = False
-    """Whether one of several things is enough."""
+    """Whether the subgoal has alternatives, one of which is enough."""
 
     @property
     def text(self) -> str:
@@ -45,7 +45,7 @@ class Subgoal:
 
     @property
     def mentions(self) -> Mentions:
-        """The entities to reach, which the text mentions."""
+        """The entities to reach, as names that the text mentions."""
         return Mentions(tuple(target for together in self.targets for target in together))
 
 
@@ -53,7 +53,7 @@ _MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
-    """Return the target of an atom: the entity that the player must approach for it to hold.
+    """Return the target of an atom: the entity that the player must approach to make the atom true.
 
     ``atom`` is the index of the atom. An atom has a target if it depends on one signal only, the
     distance to an entity, and if it holds at distance 0 but not far away. None if it has no target.
@@ -68,17 +68,18 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
 
 
 def distance_column(fspa: Fspa, target: str) -> int:
-    """Return the index, among the signals of the spec, of the distance to an atom's ``target``."""
+    """Return the index of the signal ``distance(TARGET)`` among the signals of the spec; it must exist."""
     return next(
         index for index, signal in enumerate(fspa.signals) if (signal.base, signal.arguments) == ("distance", (target,))
     )
 
 
 def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
-    """Return the distance, in metres, to an atom's target below which the atom holds.
+    """Return the distance to an atom's target, in metres, below which the atom holds.
 
-    ``atom`` is the index of the atom. Return None if the atom has no target (see
-    :func:`target_of`), or if it depends on a param that is not in ``params``.
+    ``atom`` is the index of the atom. ``params`` are values of the spec's params, in SI units. Return
+    None if the atom has no target (see :func:`target_of`), or depends on a param that is not in
+    ``params``.
     """
     target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
     if (
@@ -106,7 +107,11 @@ def _holds(
 
 
 def subgoal(fspa: Fspa, state: int) -> Subgoal:
-    """Return the subgoal of a state: what leads from the state towards acceptance."""
+    """Return the subgoal of a state: what the player must do to leave it towards acceptance.
+
+    If several things do so, they are alternatives. If nothing is left to do, or if no edge leads
+    towards acceptance, the text of the subgoal is ``meets the spec``.
+    """
     subgoals = [_subgoal(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
     distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
     if len(distinct) < 2:
@@ -117,14 +122,14 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
 
 
 def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
-    """Return what the player must do to make a prime implicant true; None if that is nothing.
+    """Return what the player must do to make a prime implicant true; None if there is nothing to do.
 
-    Leave out the literals that every accepting run needs all the time. Of the other literals, name
-    only the first of these kinds that occurs:
+    Literals that every accepting run needs all the time are left out. Of the other literals, only
+    the first of these kinds that occurs is named:
 
-    1. the targets to approach (see :func:`target_of`);
-    2. the atoms that must hold;
-    3. the atoms that must not hold.
+    1. atoms that must hold and have a target to approach (see :func:`target_of`);
+    2. other atoms that must hold;
+    3. atoms that must not hold.
     """
     literals = [(atom, holds) for atom, holds in prime if not _is_invariant(fspa, atom, holds)]
     if targets := [target for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
@@ -136,10 +141,10 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
 
 
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
-    """Return the subgoal that ``states`` share, which all have the same ``distance`` from acceptance.
+    """Return one subgoal for several states that all have the same ``distance`` from acceptance.
 
-    If they do not share one, return a subgoal that only says to which distance from acceptance it
-    leads.
+    If the states have different subgoals, the result says only how near to acceptance the next state
+    is: ``comes within 2 transitions of acceptance``.
     """
     subgoals = {subgoal(fspa, state) for state in states}
     if len(subgoals) == 1:
@@ -149,9 +154,9 @@ def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoa
 
 
 def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
-    """Whether an accepting run needs this truth value of an atom all the time.
+    """Whether every accepting run needs the value ``truth`` of an atom at all steps.
 
-    This is so if each edge requires it, except for edges that lead to traps.
+    This is so if the guards of all edges require the value, except for edges into traps.
     """
     useful_edges = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
     return all((atom, truth) in prime for edge in useful_edges for prime in edge.guard.primes)
@@ -160,7 +165,7 @@ def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
 def subgoals_phrase(subgoals: Sequence[Subgoal]) -> Phrase:
     """Describe successive subgoals: ``reaches `s1`, `s2```.
 
-    If one of them is a choice: ``reaches `s1`, then `a` or `b```.
+    If one of them has alternatives, ``then`` separates them: ``reaches `s1`, then `a` or `b```.
     """
     between = ", then " if any(subgoal.is_choice for subgoal in subgoals) else ", "
     if subgoals and all(subgoal.targets for subgoal in subgoals):

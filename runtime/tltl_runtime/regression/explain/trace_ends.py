@@ -1,4 +1,4 @@
-"""Describe how recorded traces fail: by the clauses that they break or do not meet."""
+"""Describe how recorded traces fail: which clauses of the spec they break or do not meet."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from tltlc.api import Fspa
 
 
 def trace_end_text(fspa: Fspa, cause: EndKind, clauses: Sequence[str], traces: Sequence[ExplainedEpisode]) -> str:
-    """Describe how ``traces`` failed, which all share ``cause`` and ``clauses``, without their number.
+    """Describe how ``traces`` failed: ``breaks `alive` at step 12``, ``ends before `goal` is met``.
 
-    The caller appends the number, so a comma follows a clause that is set off by a comma.
+    All of them have the same ``cause`` and the same failed ``clauses`` of the spec. The caller appends
+    the number of traces. So if the text ends with a clause that is set off by a comma, a comma also
+    follows the clause: ``breaks `alive`, mostly at step 12,``.
     """
     names = " and ".join(f"`{clause}`" for clause in clauses)
     unmet = f"before {names or 'the spec'} {'are' if len(clauses) > 1 else 'is'} met"

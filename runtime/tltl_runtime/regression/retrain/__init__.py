@@ -1,1 +1,1 @@
-"""The retraining of policies whose cases no longer pass."""
+"""Retrain the policies of regression tests that no longer pass."""

@@ -49,18 +49,19 @@ from tltl_runtime.training.run.initial_policy import initial_policy_of, weights_
 from tltlc.api import Diagnostic, Fspa, TltlError, fileio, label_text, replace
 
 FOLDER: Final = "retrained"
-"""The name of the folder, in the folder of a run, with a folder for the training of each case."""
+"""The name of a folder in the folder of a run. It contains a folder for the training of each case."""
 EPISODE: Final = "met.episode.npz"
-"""The file, in a training's folder, with an episode in which the retrained policy succeeded."""
+"""The name of a file in a training's folder: the recording of an episode that the retrained policy won."""
 
 _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
 
 
 def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, minutes: float, pool: Pool) -> TrainingRun:
-    """Configure the retraining of a case's policy on its level, in a folder inside ``folder``.
+    """Configure the retraining of a case's policy on the level of the case; do not start it.
 
-    The training stops after ``minutes`` at the latest. ``pool`` says which processes play.
+    The training's folder is inside ``folder``, the folder of a run of the suite. The training stops
+    after ``minutes`` at the latest. ``pool`` says which processes play.
 
     Raises:
         TltlError: TLT0942, the policy of a case lies in the folder of the training.
@@ -86,10 +87,11 @@ def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, min
 def is_stored(run: TrainingRun) -> bool:
     """Whether ``run.folder`` already contains the training that ``run`` configures, finished or not.
 
-    The stored training must have the same level, spec, initial policy, seed and settings.
+    The stored training must have the same level, spec, initial policy, seed and settings. The
+    result is False, too, if its files are damaged or missing.
 
     Raises:
-        TltlError: the level does not load. An error in the folder only makes the result False.
+        TltlError: the level does not load.
     """
     expected = identity(run)
     try:
@@ -107,7 +109,9 @@ def is_stored(run: TrainingRun) -> bool:
 
 
 def check_policy_folders(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Check that no policy of the suite lies in the folder of a training for one of ``cases``.
+    """Check that no policy of the suite lies in the folder of the training for one of ``cases``.
+
+    The training would overwrite it. ``folder`` is the folder of the run of the suite.
 
     Raises:
         TltlError: TLT0942, the policy of a case lies in such a folder.
@@ -117,10 +121,10 @@ def check_policy_folders(suite: Suite, cases: Sequence[Case], folder: Path) -> N
 
 
 def _training_folder(suite: Suite, case: Case, folder: Path) -> Path:
-    """Return the folder of the training for a case.
+    """Return the folder of the training for a case. ``folder`` is the folder of the run of the suite.
 
     Raises:
-        TltlError: TLT0942, the policy of a case lies in that folder.
+        TltlError: TLT0942, the policy of a case of the suite lies in that folder.
     """
     place = case_folder(suite, case.name, folder / FOLDER)
     for suite_case in suite.played_cases:
@@ -159,9 +163,9 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
 
 
 def _free_folder(suite: Suite, folder: Path) -> Path:
-    """Return the first of ``FOLDER-2``, ``FOLDER-3`` and so on that is free.
+    """Return the first free path in the series ``FOLDER-2``, ``FOLDER-3``, …, where FOLDER is ``folder``.
 
-    A free folder does not exist, and no case of the suite has it as the folder of its training.
+    A path is free if it does not exist and is not the folder of the training for a case of the suite.
     """
     reserved = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
     candidates = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
@@ -175,11 +179,12 @@ def retraining_result(
     pool: Pool,
     on_episode: Callable[[int, ExplainedEpisode], None],
 ) -> RetrainingResult:
-    """Return the result of the finished training in ``run.folder``.
+    """Return the result of the finished training in ``run.folder``, and cache it there.
 
-    The retrained policy plays fresh episodes, unless the result is cached. Play stops as soon as it
-    is certain whether the pass rate reaches the case's threshold. After each episode,
-    ``on_episode`` is called with the number of episodes so far and the last episode.
+    ``finished`` is the case whose policy was retrained. Unless the result is cached, the retrained
+    policy plays fresh episodes, until it is certain whether its pass rate reaches the threshold of the
+    case. After each episode, ``on_episode`` is called with the number of episodes so far and the last
+    episode.
 
     Raises:
         TltlError: the policy's file cannot be read; errors from playing; TLT0005, a file cannot be
@@ -244,8 +249,9 @@ def _play_until_certain(
 ) -> tuple[list[ExplainedEpisode], bytes, tuple[float, float]]:
     """Play episodes until it is certain whether the pass rate reaches the case's threshold.
 
-    Returns the episodes, the recording of the first one that met the spec (empty if there is none),
-    and the confidence interval of the pass rate.
+    Stop, at the latest, when all episodes of the case are played. Return the episodes, the recording
+    of the first episode that met the spec (empty if none did), and the confidence interval of the pass
+    rate. ``error`` is the allowed probability that a certain statement is wrong.
     """
     threshold = prepared.case.thresholds.pass_rate
     played, recording, interval = list[ExplainedEpisode](), b"", (0.0, 1.0)
@@ -295,6 +301,10 @@ def _inputs(
 
 
 def _cached_result(folder: Path, inputs: str) -> RetrainingResult | None:
-    """Return the cached result if it has the hash ``inputs`` and its episode's file exists; else None."""
+    """Return the result that is cached in the folder of a training; None if it is missing or out of date.
+
+    It is out of date if the hash of what it depends on is not ``inputs``, or if the recording that it
+    names is missing.
+    """
     result = read_cache(RetrainingResult, folder / _RESULT, inputs)
     return result if result and (result.episode is None or (folder / EPISODE).is_file()) else None

@@ -18,9 +18,9 @@ _MOST_CHARACTERS: Final = 24
 
 @record
 class ChangedKeys:
-    """A description of changed keys, and the parts of the keys that it names.
+    """A description of changed keys, and the parts of the keys that the description names.
 
-    If it names ``wall.far_wall.at``, the parts are ``wall``, ``far_wall`` and ``at``.
+    For ```wall.far_wall.at` new``, the parts are ``wall``, ``far_wall`` and ``at``.
     """
 
     text: str
@@ -28,11 +28,11 @@ class ChangedKeys:
 
 
 def changed_keys(before: str, now: str) -> ChangedKeys:
-    """Describe the keys whose values differ between two TOML texts, with their values if short.
+    """Describe the keys whose values differ between two TOML texts, for example ```speed` 1.6 → 2.6``.
 
-    The description is ``its layout`` if no value differs, and empty if a text is not TOML. Tables
-    in lists are compared by ``name`` if all names are present and distinct, else by position,
-    counted from 1.
+    Long values are left out. The description is ``its layout`` if no value differs, and empty if a
+    text is not TOML. Tables in a list are matched by their ``name`` if all have distinct names, else
+    by position, counted from 1.
     """
     try:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
@@ -47,10 +47,10 @@ def changed_keys(before: str, now: str) -> ChangedKeys:
 def _changes(
     path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]
 ) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the path of each key that differs between two tables of a TOML file, with a description.
+    """Yield a pair for each key whose value differs between the tables ``old`` and ``new``.
 
-    ``path`` are the keys that lead to the tables ``old`` and ``new``. The order is that of the new
-    table, and removed keys come last.
+    The pair is the path of the key in the TOML file and a description of the change. ``path`` are
+    the keys that lead to the two tables. The order is that of the new table; removed keys come last.
     """
     for key in dict.fromkeys((*new, *old)):
         key_path = (*path, key)
@@ -77,7 +77,7 @@ def _are_tables(value: Any) -> TypeGuard[list[dict[str, Any]]]:
 
 
 def _have_names(tables: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether all tables have distinct names."""
+    """Whether all tables have a ``name``, and the names are distinct."""
     return len({table["name"] for table in tables if isinstance(table.get("name"), str)}) == len(tables)
 
 
@@ -90,6 +90,6 @@ def _positions(tables: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, An
 
 
 def _value_text(before: str, value: Any) -> str:
-    """Return a value as JSON with the text ``before`` in front; empty if the JSON is too long."""
+    """Return the text ``before`` and then ``value`` as JSON; empty if the JSON is too long."""
     text = json.dumps(value, ensure_ascii=False, default=str)
     return before + text if len(text) <= _MOST_CHARACTERS else ""

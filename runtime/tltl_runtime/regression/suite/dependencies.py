@@ -1,8 +1,8 @@
 """The files that a case depends on, and the selection of the cases that a change affects.
 
-The files may have errors: what can be read of such a file is searched for further dependencies.
-When in doubt, a file counts as a dependency. A case that is selected without need costs minutes,
-but a case that is left out by mistake hides a finding.
+If a file has errors, its readable parts are still searched for further dependencies. When in doubt,
+a file counts as a dependency: a case that is selected without need costs minutes, but a case that is
+left out by mistake hides a finding.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _LETTERS: Final = {bytes([key]): bytes([code]) for key, code in zip(b"abtnvfr", 
 
 @record
 class Selection:
-    """The result of selecting cases by changed files.
+    """The result of selecting cases by the names of changed files.
 
-    ``cases`` are those that depend on a changed file, and ``left_out`` those that depend on none.
-    ``unknown`` are the given names of files that match no dependency of any case. ``suggestions``
-    are pairs of an unknown name and a similar name that matches a dependency.
+    ``cases`` are the cases that depend on a changed file, and ``left_out`` all other cases of the
+    suite. ``unknown`` are the names that match no dependency of any case. ``suggestions`` are pairs of
+    an unknown name and a similar name that matches a dependency.
     """
 
     cases: tuple[SuiteCase, ...]
@@ -42,11 +42,11 @@ class Selection:
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
-    r"""Select the cases that depend on a file, or a file in a folder, that ``changed`` names.
+    r"""Select the cases that depend on a file that ``changed`` names, or on a file in a named folder.
 
     A name is the path of a file, the last parts of the path (``assets/guard.toml``,
-    ``guard.toml``), either of them without the extension (``guard``), or the path of a folder.
-    Names quoted by git are accepted, too (``"assets/w\303\244chter.toml"``).
+    ``guard.toml``), one of these without the extension (``guard``), or the path of a folder. Names
+    that git has quoted are accepted, too (``"assets/w\303\244chter.toml"``).
     """
     dependencies_of = {case.name: dependencies(suite, case) for case in suite.cases}
     affected = {
@@ -70,8 +70,9 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
 def dependencies(suite: Suite, case: SuiteCase) -> tuple[Path, ...]:
     """Return the absolute paths of the files that a case depends on.
 
-    If a path contains symbolic links, return it both as named and with the links resolved. A path
-    without a file counts, too, if a file there would be read instead of one of the others.
+    For a path with symbolic links, the result also has the path with the links resolved. A path
+    without a file is included, too, if a file created there would be read in place of an existing
+    file.
     """
     if isinstance(case, TraceCase):
         named = (*case.traces, *case.baseline)
@@ -107,10 +108,10 @@ def _matches_any(name: str, paths: Iterable[Path]) -> bool:
 
 
 def _similar_name(name: str, paths: Iterable[Path]) -> str | None:
-    """Return a name that is similar to ``name`` and matches one of ``paths``; None without one.
+    """Return a name that is similar to ``name`` and matches one of ``paths``; None if there is none.
 
-    Also return None if ``name`` exists, and if it contains a folder: then it may be a deleted file
-    that git lists.
+    Also return None if ``name`` is the path of an existing file, or contains a folder: then it may be
+    a deleted file that git lists.
     """
     named_path = Path(_unquote(name))
     if len(named_path.parts) > 1 or fileio.exists(named_path):

@@ -23,9 +23,10 @@ _MOST_NAMED: Final = 8
 
 
 def policy_file(path: Path) -> Path:
-    """Return the file of a case's policy.
+    """Return the file of a policy that a case names by ``path``.
 
-    This is ``path`` itself or, if ``path`` is the folder of a training, the policy in it.
+    If ``path`` is a folder, it should be that of a training: return the path of the policy in it. The
+    file need not exist.
     """
     if not fileio.is_dir(path):
         return path
@@ -65,10 +66,10 @@ def spec_diagnostics(spec: str, label: Label) -> list[Diagnostic]:
 
 
 def similar_level(name: str, folder: Path) -> str | None:
-    """Return a hint that names a level similar to ``name``; None if no level is similar.
+    """Return a hint such as ``did you mean `vault.toml`?``; None if no level has a similar name.
 
-    A suite in ``folder`` names the level ``name``, which does not exist. Candidates are the level
-    files beside the path ``name``, and the levels of the package.
+    ``name`` is a level that a suite in ``folder`` names and that does not exist. Candidates are the
+    level files in the folder of the path ``name``, and the levels of the package.
     """
     names: list[str] = []
     # The name may not be a valid path on this system.
@@ -90,10 +91,10 @@ def _is_level(path: Path) -> bool:
 
 
 def level_with_fitting_policy(level: str) -> str | None:
-    """Return the level of the package whose policy may fit ``level``; None without such a level.
+    """Return a level of the package whose policy may fit ``level``; None if there is no such level.
 
-    Their specs have the same name and file name, so ``level`` may be a copy of the level of the
-    package.
+    The policy may fit if the specs of the two levels have the same name and the same file name. Then
+    ``level`` may be an edited copy.
     """
     game = game_of(level)
     with suppress(TltlError):
@@ -104,7 +105,7 @@ def level_with_fitting_policy(level: str) -> str | None:
 
 
 def _spec_names(level: Level) -> tuple[str, str] | None:
-    """Return the name of the file of a level's spec, and the name of the spec; None if it has no spec."""
+    """Return the file name and the name of a level's spec; None if the level has no spec."""
     return (level.spec.file.name, level.spec.name) if level.spec else None
 
 

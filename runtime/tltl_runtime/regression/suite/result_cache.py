@@ -16,17 +16,17 @@ T = TypeVar("T")
 
 
 def inputs_hash(parts: Sequence[Any]) -> str:
-    """Return the SHA-256, in hexadecimal, of ``parts`` and of the program's source code.
+    """Return the SHA-256, in hexadecimal, of ``parts`` and of the source code of tltlc.
 
-    ``parts`` are JSON data.
+    ``parts`` is JSON data: all that a cached result depends on.
     """
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 
 def cache_text(inputs: str, content: object) -> str:
-    """Return the text of a cache file with ``content``.
+    """Return the text of a cache file: JSON with ``content`` and ``inputs``.
 
-    ``inputs`` is the hash of everything that the content depends on.
+    ``inputs`` is the hash of everything that the content depends on: see :func:`inputs_hash`.
     """
     return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
 
@@ -34,8 +34,8 @@ def cache_text(inputs: str, content: object) -> str:
 def read_cache(kind: type[T], path: Path, inputs: str) -> T | None:
     """Read the content of a cache file, a value of type ``kind``.
 
-    None if the file does not exist, cannot be read, or has another hash than ``inputs``. The caller
-    then computes the content again.
+    None if the file does not exist, cannot be read, or was written with another hash than ``inputs``.
+    The caller then computes the content again.
     """
     if not fileio.may_be_file(path):
         return None

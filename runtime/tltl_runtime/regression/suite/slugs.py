@@ -1,4 +1,4 @@
-"""Short names of cases for addresses and folders."""
+"""Slugs: short names of cases for folders and for addresses within the HTML report."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ _RESERVED: Final = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?\Z", r
 def slugs(names: Sequence[str]) -> tuple[str, ...]:
     """Return a short ASCII name for each name: ``navigation:v1`` becomes ``navigation-v1``.
 
-    The results are distinct, even without regard to case. Each is a valid folder name on any
-    system.
+    The results are distinct, even where upper and lower case are not distinguished. Each is a valid
+    name of a folder on any system.
     """
     unique: list[str] = []
     taken: set[str] = set()
@@ -34,5 +34,8 @@ def slugs(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def episode_link(slug: str, index: int, step: int = 0) -> str:
-    """Return the address, within the page, of a step of a recorded episode."""
+    """Return the address of a step of a recorded episode within the HTML report: ``#navigation-v1/3/120``.
+
+    ``slug`` is the case's short name, and ``index`` is that of the episode.
+    """
     return f"#{slug}/{index}/{step}"

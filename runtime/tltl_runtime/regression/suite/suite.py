@@ -45,10 +45,10 @@ MOST_EPISODES: Final = 300
 """The most episodes of a case, unless the suite says otherwise."""
 
 _MOST_ERRORS: Final = 100
-"""Once a suite has this many errors, no more cases are read: checking a case can take long."""
+"""Once a suite has this many errors, no more of its cases are read, because checking a case can take long."""
 
 DEFAULT_ERROR: Final = 0.05
-"""The error of a suite, unless it sets another one."""
+"""The allowed probability of a wrong verdict in a suite that does not set its own ``error``."""
 
 _MAX_EPISODES: Final = 10_000
 _HELP: Final = 'write values as in `episodes = 100`, and texts as in `level = "navigation"`'
@@ -59,10 +59,11 @@ class Case:
     """A regression test: a policy plays a level in a variant, and a spec judges the episodes.
 
     ``level`` and ``variant`` name the level, as for
-    :meth:`~tltl_runtime.game.game.Game.load_level`. ``reference`` is the variant whose baseline the
-    case is compared with. ``spec`` is ``FILE:NAME``, or None for the policy's own spec.
-    ``episodes`` is the greatest number of episodes. ``place`` distinguishes levels of the same
-    name: it is the level's path relative to the suite, or empty for a level of the package.
+    :meth:`~tltl_runtime.game.game.Game.load_level`. ``reference`` is the variant with whose recorded
+    episodes, in the baseline, the case is compared. ``spec`` is ``FILE`` or ``FILE:NAME``, or None for
+    the spec that the policy was trained for. ``episodes`` is the greatest number of episodes. ``place``
+    is the level's path relative to the suite, which distinguishes levels of the same name; it is
+    empty for a level of the package.
     """
 
     name: str
@@ -82,16 +83,17 @@ class Case:
 
 
 SuiteCase = Case | TraceCase
-"""A case of a suite."""
+"""A case of a suite: a policy plays it, or it has recorded traces."""
 
 
 @record
 class Suite:
-    """Cases that are judged together.
+    """Regression tests (cases) that are judged together.
 
     ``path`` is the suite's file. ``seed`` is the seed of the episodes. ``error``, in (0, 1), bounds
     the probability that any certain ``fail`` or ``review`` is wrong, or that any case passes
-    although its pass rate is too low. ``baseline`` is the file that the played cases are compared with.
+    although its pass rate is too low. ``baseline`` is the file with the recorded episodes that the
+    played cases are compared with.
     """
 
     path: Path
@@ -107,15 +109,12 @@ class Suite:
 
 
 def played(cases: Iterable[SuiteCase]) -> tuple[Case, ...]:
-    """Return those of ``cases`` that a policy plays; the others have recorded traces."""
+    """Return the cases that a policy plays, without those of recorded traces."""
     return tuple(case for case in cases if isinstance(case, Case))
 
 
 def baseline_path(suite: Path) -> Path:
-    """Return the default path of a suite's baseline: ``NAME.baseline.json`` beside the suite.
-
-    ``NAME`` is that of the suite, ``NAME.toml``.
-    """
+    """Return the default path of a suite's baseline: ``folder/a.baseline.json`` for ``folder/a.toml``."""
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
@@ -178,7 +177,10 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
 
 
 def _other_kind_of_file(table: CheckedTable) -> str | None:
-    """Guess from its keys what kind of file a table was read from, if it is not a suite; None if unknown."""
+    """Guess from the keys of a table from which other kind of file it was read, such as ``a level``.
+
+    None if the kind is unknown.
+    """
     kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
 
@@ -193,10 +195,11 @@ def _unread_cases_error(count: int, label: Label) -> Diagnostic:
 def _case(
     table: CheckedTable, folder: Path, episodes: int, thresholds: Thresholds, known_variants: dict[str, tuple[str, ...]]
 ) -> tuple[Case, Label] | None:
-    """Read a case and its label; None if it has errors.
+    """Read a played case; return it with the label that shows its place in the file. None if it has errors.
 
-    ``folder`` is the folder of the suite. ``episodes`` and ``thresholds`` are the values for a case
-    that does not set them. ``known_variants`` is the cache of :func:`_variants`.
+    Errors are added to ``table.log``. ``folder`` is the folder of the suite. ``episodes`` and
+    ``thresholds`` are the values for a case that does not set them. ``known_variants`` is the cache
+    of :func:`_variants`.
     """
     before = len(table.log)
     level, place = _level(table, folder)
@@ -231,11 +234,11 @@ def _case(
 
 
 def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the variants of a level.
+    """Return the names of the variants of a level, which the case in ``table`` names.
 
-    If a level does not load, its case fails, but the suite is still valid. For such a level, return
-    the variants that the case names, and ``v0``. ``known_variants`` caches the variants of levels;
-    it maps a level that does not load to an empty tuple.
+    If the level does not load, the case will fail, but the suite is still valid. For such a level,
+    return the variants that the case names, and ``v0``. ``known_variants`` caches the variants by
+    level; a level that does not load has an empty tuple there.
     """
     if level not in known_variants:
         try:
@@ -249,7 +252,7 @@ def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[s
 def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
     """Read the level of a case; return its name or path, and its path relative to the suite.
 
-    The second is empty for a level of the package. Both are empty if the case names no level.
+    The relative path is empty for a level of the package. Both are empty if the case names no level.
     """
     if "game" in table.entries:
         return _scene(table, folder)
@@ -278,7 +281,10 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 
 
 def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
-    """Read the keys ``game`` and ``scene`` of a case; return the level and the place, as :func:`_level` does."""
+    """Read the keys ``game`` and ``scene`` of a case; return the same pair as :func:`_level`.
+
+    The level is ``FILE.game.toml:SCENE``, without ``:SCENE`` if the case names no scene.
+    """
     file, scene = table.text("game"), table.text("scene", "")
     if not file:
         return "", ""
@@ -303,7 +309,11 @@ def _separate_keys_help(level: str, variant: Variant) -> str:
 
 
 def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
-    """Read the overlays to add to the variant: names, or paths from the working directory."""
+    """Read the overlays (files that change the level) of a case: names, or paths of ``.toml`` files.
+
+    Paths in the suite are relative to ``folder``; the returned paths are relative to the working
+    directory.
+    """
     entry = table.entries.get("overlay")
     single = entry is not None and not isinstance(entry.value, list)
     names = (table.text("overlay"),) if single else table.names("overlay", ())
@@ -332,9 +342,9 @@ def _spec(table: CheckedTable, folder: Path) -> str | None:
 def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     """Read the policy of a case; return its path, or None if no policy comes with the level.
 
-    A suite names a policy's file, the folder of a training, or a level of the package, for the
-    policy that comes with that level. By default, it is the policy that comes with the case's
-    level.
+    The key ``policy`` is the path of a policy's file, the folder of a training, or the name of a level
+    of the package: then it means the policy that comes with that level. By default, it is the policy
+    that comes with the case's level.
     """
     name = table.text("policy", "")
     if not name or name in shipped_policies():

@@ -8,7 +8,7 @@ from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltlc.api import Diagnostic, record
 
 GREATEST: Final = {"pass_rate": 0.999}
-"""The greatest allowed value of each threshold whose greatest value is less than 1.
+"""The greatest allowed values of thresholds that must be less than 1.
 
 No number of episodes can make a pass rate of 1 certain.
 """
@@ -18,9 +18,9 @@ No number of episodes can make a pass rate of 1 certain.
 class Thresholds:
     """The thresholds of a verdict.
 
-    A case passes if its pass rate is certainly at least ``pass_rate``. It fails if its pass rate is
-    certainly below ``fail_rate``. Both are in [0, 1]. ``progress`` and ``reward`` are the least
-    changes of the mean progress and of the mean reward that count.
+    To pass, a case needs a pass rate that is certainly at least ``pass_rate``. It fails if its pass
+    rate is certainly below ``fail_rate``. Both are in [0, 1]. A change of the mean progress, or of the
+    mean reward, counts only if it is at least ``progress`` or ``reward``.
     """
 
     pass_rate: float = 0.85
@@ -30,7 +30,11 @@ class Thresholds:
 
 
 def read_thresholds(table: CheckedTable, defaults: Thresholds) -> Thresholds:
-    """Read the table `[thresholds]` of a suite or a case; ``defaults`` are those that it does not set."""
+    """Read the table ``[thresholds]`` of a suite or a case, if there is one.
+
+    ``defaults`` has the thresholds to use where the table does not set any. Errors are added to
+    ``table.log``.
+    """
     subtable = table.table("thresholds", needed=False)
     if subtable is None:
         return defaults

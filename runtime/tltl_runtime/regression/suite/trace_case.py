@@ -18,9 +18,9 @@ JUDGED_AS: Final = ("episodes", "traces")
 class TraceCase:
     """A regression test of recorded traces: a spec judges them and the traces of a baseline.
 
-    ``spec`` is a path, or ``FILE:NAME``. ``traces`` and ``baseline`` are paths of files, and of folders
-    with such files. With ``as_episodes``, each trace ends at the goal, at a violation, or at the limit of the
-    spec; otherwise, it is judged as a whole.
+    ``spec`` is a path, or ``FILE:NAME``. ``traces`` and ``baseline`` are paths of files and of folders
+    with such files. With ``as_episodes``, a trace is judged only up to the goal, a violation or the limit
+    of the spec, where an episode would end; otherwise, it is judged as a whole.
     """
 
     name: str
@@ -32,9 +32,10 @@ class TraceCase:
 
 
 def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -> tuple[TraceCase, Label] | None:
-    """Read a case of recorded traces and its label; None if it has errors.
+    """Read a case of recorded traces; return it with the label that shows its place in the file.
 
-    ``folder`` is the folder of the suite, and ``thresholds`` are those that the case does not set.
+    None if it has errors, which are added to ``table.log``. ``folder`` is the folder of the suite, and
+    ``thresholds`` has the values for thresholds that the case does not set.
     """
     before = len(table.log)
     spec = _spec(table, folder)
@@ -50,7 +51,10 @@ def read_trace_case(table: CheckedTable, folder: Path, thresholds: Thresholds) -
 
 
 def _without_ending(name: str) -> str:
-    """Remove the ending of a trace from the name of a file; the name of a folder stays as it is."""
+    """Remove the ending of a trace's file from a name: ``run`` for ``run.csv``.
+
+    A name without such an ending, for example that of a folder, is returned unchanged.
+    """
     return next((name[: -len(ending)] for ending in traces.ENDINGS if name.lower().endswith(ending)), name)
 
 
@@ -69,7 +73,11 @@ def _spec(table: CheckedTable, folder: Path) -> str:
 
 
 def _paths(table: CheckedTable, folder: Path, key: str) -> tuple[str, ...]:
-    """Read the paths of files and folders: a text, or a list of texts. They are relative to the suite."""
+    """Read a key whose value is the path of a file or folder, or a list of such paths.
+
+    Paths in the suite are relative to ``folder``; the returned paths are relative to the working
+    directory. Errors are added to ``table.log``.
+    """
     entry = table.entries.get(key)
     if entry is None:
         title = f"{table.description} has `traces`, but lacks `{key}`"

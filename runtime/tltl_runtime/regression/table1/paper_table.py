@@ -12,7 +12,7 @@ Model = Literal["expert", "imitation", "ours"]
 
 MODELS: Final[tuple[Model, ...]] = ("expert", "imitation", "ours")
 LEVELS: Final = ("navigation", "cover_and_hide", "branching")
-"""The levels of the cases 1 to 3 of the paper."""
+"""The levels of this package that rebuild the cases 1 to 3 of the paper."""
 VARIANTS: Final = ("v0", "v1", "v2")
 RUNS: Final = 25
 """The number of episodes for each figure in the paper."""
@@ -33,10 +33,11 @@ class CellFigures:
 
 @record
 class TableRow:
-    """A model's statistics on one level, by variant.
+    """A model's statistics on one level, by variant of the level.
 
-    ``hours`` is the duration of the training, or None without a training. ``cloning_share`` is the
-    share of steps with behavioural cloning alone, or None if the model does not imitate.
+    ``hours`` is the duration of the model's training, or None for the expert, which is not trained.
+    ``cloning_share`` is the share of training steps with behavioural cloning alone, or None if the
+    model does not imitate.
     """
 
     figures: Mapping[str, CellFigures]
@@ -49,8 +50,8 @@ def _row(
 ) -> TableRow:
     """Return a row of the paper's table.
 
-    ``figures`` are, for each of v0, v1 and v2: the pass rate, mean and deviation of progress, mean
-    and deviation of reward.
+    ``figures`` has five numbers for each of v0, v1 and v2: the pass rate, the mean and standard
+    deviation of progress, and the mean and standard deviation of reward.
     """
     cells = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
     return TableRow(dict(zip(VARIANTS, cells, strict=True)), hours, cloning_share)

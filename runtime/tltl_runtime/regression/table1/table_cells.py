@@ -35,7 +35,7 @@ It is unlikely that a training played episodes with the same seeds.
 
 
 def figures(episodes: Sequence[EpisodeSummary], runs: int) -> CellFigures:
-    """Return the figures of a cell over its first ``runs`` episodes."""
+    """Return the statistics of a table's cell over the first ``runs`` of its episodes."""
     first = episodes[:runs]
     return CellFigures(
         runs=len(first),
@@ -48,9 +48,11 @@ def figures(episodes: Sequence[EpisodeSummary], runs: int) -> CellFigures:
 def cell_episodes(
     folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool
 ) -> tuple[EpisodeSummary, ...]:
-    """Return the episodes of a cell: cached in ``folder``, or played now and stored there.
+    """Return the 100 episodes of a table's cell: cached in ``folder``, or played now and stored there.
 
-    Without a ``policy``, the expert plays. The current spec of the level judges the episodes.
+    ``policy`` is the path of the policy that plays; if it is None, the level's scripted expert plays.
+    ``model`` is only part of the name of the cache file. The current spec of the level judges the
+    episodes.
 
     Raises:
         TltlError: errors from playing, among them TLT0843, the policy was trained for another spec;
@@ -111,7 +113,7 @@ class _ExpertPlayer:
         self._episodes = self._game.expert_episodes(self._env, iter(self._seeds.popleft, None))
 
     def play(self, request: EpisodeRequest) -> PlayedEpisode:
-        """Play one episode."""
+        """Play the requested episode and return it, without a recording."""
         self._seeds.append(episode_seed(SEED, request.index))
         return PlayedEpisode(request, self._game.summary(next(self._episodes), request.index))
 

@@ -68,19 +68,20 @@ def limits(minutes: float | None) -> Limits:
 def limits_of_policy(card: Card, minutes: float | None) -> Limits:
     """Return the limits of the training that made a policy, so that another training can have them.
 
-    ``card`` is the card of the policy. ``minutes`` replaces the limit of minutes unless it is None.
+    ``card`` is the policy's card, which stores the settings of its training. ``minutes`` replaces the
+    limit of minutes unless it is None.
     """
     stop = card.training["settings"]["stop"]
     return Limits(int(stop["steps"]), float(stop["minutes"]) if minutes is None else minutes)
 
 
 def table_training(folder: Path, level: str, model: Model, limits: Limits) -> TableTraining:
-    """Configure the training of a model on the present version of a level.
+    """Configure the training of a model on variant ``v0`` of a level, in its own folder in ``folder``.
 
-    The name of its folder contains a hash of the level, the spec, the sensors and the settings. So
-    a change of any of them gives a new training, while a change of the code does not. If the model
-    imitates, the hash includes the limits, since cloning takes a share of them. If not, the
-    training can continue with greater limits in the same folder.
+    The name of the training's folder contains a hash of the level, the spec, the sensors and the
+    settings. So a change of one of these gives a new training, but a change of the code does not. If
+    the model imitates, the hash includes the limits, since cloning takes a share of them. If not, the
+    training can continue in the same folder with greater limits.
 
     Raises:
         TltlError: the level or its spec cannot be read.
@@ -104,8 +105,9 @@ def table_training(folder: Path, level: str, model: Model, limits: Limits) -> Ta
 def train_arguments(training: TableTraining) -> list[str]:
     """Return the arguments with which ``tltlc train`` starts or continues a training of the table.
 
-    A training that continues keeps each of its last limits that is greater than the new one,
-    because it may already have passed the new one. A limit of 0 minutes means no limit.
+    If the training continues, each limit is the greater of its new and its last value, because the
+    training may already have passed the new value. 0 minutes means no limit, and counts as greater
+    than all other values.
     """
     steps, minutes = training.limits.steps, training.limits.minutes
     if (training.folder / RUN).exists():
