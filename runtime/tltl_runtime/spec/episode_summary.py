@@ -16,16 +16,16 @@ End = Literal["success", "violation", "limit", "stopped"]
 
 @record
 class EpisodeSummary:
-    """How an episode went.
+    """The outcome of an episode.
 
     ``index`` numbers the episodes of an evaluation or a training, from 0. ``seed`` is the seed of
-    the environment's reset, or None if the episode continued the environment's random stream.
-    ``progress`` is the best progress, in [0, 1]. ``reward`` is the sum of the rewards of the
-    ``steps``. Training may use other rewards, so it computes this sum by :func:`progress_return`.
-    ``unmet`` is the automaton state at the end, or the state before a violation.
+    the environment's reset, or None if the episode continued the environment's random stream or is
+    a recorded trace. ``progress`` is the best progress, in [0, 1]. ``reward`` is the sum of the
+    rewards of all ``steps`` in the reward mode ``progress``, even if a training uses another mode.
+    ``unmet`` is the automaton's state at the end, or its state before a violation.
 
     ``verdict`` is the verdict of the last step. ``seconds`` is the game time. ``state`` is the
-    automaton state at the end. ``label`` says in English what remained to be done in the state
+    automaton's state at the end. ``label`` says in English what remained to be done in the state
     ``unmet``. These four are None in training and in the cases of regression tests, whose files do
     not contain them.
     """
@@ -45,7 +45,7 @@ class EpisodeSummary:
 
 
 def settled_end(success: bool, verdict: str) -> End:
-    """Return how a completed episode ended; ``verdict`` is the verdict of its last step."""
+    """Return how a completed episode ended. ``verdict`` is the verdict of its last step."""
     if success:
         return "success"
     return "violation" if verdict == "violated" else "limit"
@@ -54,9 +54,10 @@ def settled_end(success: bool, verdict: str) -> End:
 def progress_return(success: bool, progress: float, steps: int, limit_steps: int | None) -> float:
     """Return the sum of an episode's rewards in the reward mode ``progress``.
 
-    The terminal penalty is undiscounted. ``progress`` is the best progress of the episode.
-    ``limit_steps`` is the spec's limit; None if the spec has no limit. See ``docs/semantics.md``,
-    section 4.
+    ``progress`` is the best progress of the episode. The sum is ``progress - steps / limit_steps`` for
+    a success and ``progress - 1`` for a failure, which pays for all steps up to the limit.
+    ``limit_steps`` is the spec's limit. If it is None, the spec has no limit, and the sum is
+    ``progress``. See ``docs/semantics.md``, section 4.
     """
     if limit_steps is None:
         return progress

@@ -13,14 +13,14 @@ def next_goals(
 ) -> tuple[str, ...]:
     """Return the entities to approach so that the automaton leaves ``state`` towards acceptance.
 
-    The player may approach any one of them. Entities that lead nearer to acceptance come first.
-    Only entities in ``places`` are returned. If the state is accepting or a trap, the result is
-    empty.
+    They are alternatives; the player may approach any of them. Entities that lead nearer to
+    acceptance come first. Only entities in ``places`` are returned. If the state is accepting or a
+    trap, the result is empty.
 
-    The entities come from the prime implicants of the guards of edges towards acceptance. In an
-    implicant, some atoms depend on the distance to an entity in ``places``. All others must already
+    The guards of the edges towards acceptance are disjunctions of prime implicants. In each of
+    these, some atoms depend on the distance to an entity in ``places``. All other atoms must already
     have the required truth values in ``sample``, otherwise the implicant does not count. ``sample``
-    and ``params`` are in SI units.
+    has the values of the spec's signals, and ``params`` those of its params, by name and in SI units.
     """
     current = fspa.states[state].distance
     if not current:
@@ -47,9 +47,9 @@ def next_goals(
 def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool | None]) -> list[str]:
     """Return the entities that the player must be near to make an implicant true.
 
-    ``entities`` has, for each atom, the entity on whose distance it depends; None if it depends on
-    no distance. ``settled`` says, for each atom without an entity, whether it holds now. The list
-    is empty if an atom without an entity does not have the truth value that the implicant requires.
+    ``entities`` has, for each atom of the spec, the entity on whose distance the atom depends; None
+    if it depends on no distance. ``settled`` says, for each atom without an entity, whether it holds
+    now. The result is empty if such an atom does not have the truth value that the implicant requires.
     """
     goals = []
     for atom, holds in implicant:
@@ -63,17 +63,16 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
 
 def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
-    """Return the first entity whose distance an atom depends on; None if it depends on no distance.
+    """Return the first entity on whose distance an atom depends; None if it depends on no distance.
 
-    ``distances`` has the entities by the names of the signals, as :func:`distance_signals` returns
-    them.
+    ``distances`` maps the names of distance signals to entities, as :func:`distance_signals` does.
     """
     read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
     return next((distances[name] for name in read if name in distances), None)
 
 
 def distance_signals(fspa: Fspa) -> dict[str, str]:
-    """Return the ENTITY of each signal ``distance(ENTITY)``, by the full name of the signal."""
+    """Return the entity of each distance signal, by the name of the signal: ``{"distance(exit)": "exit"}``."""
     return {
         signal.name: signal.arguments[0]
         for signal in fspa.signals

@@ -1,4 +1,4 @@
-"""Find the files that a spec is made of: its own file and those that it imports."""
+"""Find the files on which a spec depends: its own file, its imports and project files."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from tltlc.api import SourceFile, TltlError, compiler, fileio
 
 
 def spec_files(spec: Path) -> Iterator[Path]:
-    """Yield the file of a spec and all files that it imports, directly or indirectly, each once.
+    """Yield the files on which a spec depends, each once, beginning with its own file.
 
-    The files need not compile. Paths that do not exist are yielded, too, if a file there would be
-    imported instead of an existing one.
+    These are all files that the spec imports, directly or indirectly, and the project file
+    (``tltl.toml``) that says where imports are searched. The files need not compile. A path that does
+    not exist is yielded, too, if a file created there would be read in place of an existing file.
     """
     waiting, seen = [spec], {spec.resolve()}
     while waiting:
@@ -25,7 +26,7 @@ def spec_files(spec: Path) -> Iterator[Path]:
 
 
 def up_to_first_file(paths: Iterable[Path]) -> Iterator[Path]:
-    """Yield the paths up to and including the first file that exists; all paths if none exists."""
+    """Yield ``paths`` up to and including the first existing file; all of them if none is a file."""
     for path in paths:
         yield path
         if fileio.is_file(path):
@@ -33,7 +34,7 @@ def up_to_first_file(paths: Iterable[Path]) -> Iterator[Path]:
 
 
 def source_of(path: Path) -> SourceFile | None:
-    """Return the text of a file; None if it cannot be read."""
+    """Return the source text in a file; None if it cannot be read."""
     try:
         return fileio.read_source(path, max_bytes=fileio.MAX_ARTEFACT_BYTES)
     except TltlError:

@@ -10,9 +10,9 @@ from tltlc.api import Label, Signal, Span, Spec, expressions, syntax
 class SpecPlaces:
     """Finds places in the source text of a spec, for diagnostics that point to them.
 
-    A label is such a place, with the source. Each method returns a tuple with one label. If the
-    source does not contain what the method looks for, the label is that of the spec's name. If
-    ``spec`` is None, all methods return an empty tuple: an artefact has no source.
+    A label is a place in a source text. Each public method returns a tuple with one label. If the
+    source does not contain what the method looks for, the label is the place of the spec's name. If
+    ``spec`` is None, because an artefact has no source, all methods return an empty tuple.
     """
 
     def __init__(self, spec: Spec | None) -> None:
@@ -25,7 +25,7 @@ class SpecPlaces:
         ]
 
     def entity(self, name: str) -> tuple[Label, ...]:
-        """Return the label of the first use of an entity in the spec, else anywhere in the file.
+        """Return the label of the first use of an entity in the spec, or else anywhere in the file.
 
         If nothing uses the entity, return the label of its declaration.
         """
@@ -44,8 +44,9 @@ class SpecPlaces:
     def signal(self, signal: Signal) -> tuple[Label, ...]:
         """Return the label of the first use of a signal in the spec, directly or through an atom.
 
-        A use with the same arguments comes first, then a use with others, then one through an atom.
-        If the spec does not use the signal, return the label of the signal's declaration.
+        These uses are looked for in order: a use with the arguments of ``signal``; a use with other
+        arguments; a use of an atom that is computed from the signal. If there is none, return the
+        label of the signal's declaration.
         """
         exact = _first(part.span for part in _parts(self._declarations_of_spec) if _is_use(part, signal))
         users = [signal.base, *self._atoms_of(signal)]
@@ -81,7 +82,7 @@ class SpecPlaces:
         )
 
     def _atoms_of(self, signal: Signal) -> list[str]:
-        """Return the names of the atoms that are computed from a signal."""
+        """Return the names, without arguments, of the atoms that are computed from a signal."""
         atoms = self._spec.atoms if self._spec else ()
         return [
             atom.base for atom in atoms if expressions.SignalValue(signal.name) in expressions.nodes(atom.expression)
@@ -99,7 +100,7 @@ class SpecPlaces:
 
 
 def _is_use(part: syntax.Expr, signal: Signal) -> bool:
-    """Whether a part of an expression is the signal, with its arguments."""
+    """Whether an expression is the use of a signal with exactly the signal's arguments."""
     if isinstance(part, syntax.CallExpr):
         values = [argument.value for argument in part.arguments if argument.name is None]
         names = tuple(value.name for value in values if isinstance(value, syntax.NameExpr))
@@ -110,7 +111,7 @@ def _is_use(part: syntax.Expr, signal: Signal) -> bool:
 def _first_use(declarations: Iterable[syntax.Declaration], name: str) -> Span | None:
     """Return the span of the first use of a name in ``declarations``; None if there is no use.
 
-    A use is the name alone or with arguments.
+    The name may have arguments, as in ``near(exit)``; the span is that of the name alone.
     """
     for part in _parts(declarations):
         if isinstance(part, syntax.CallExpr) and part.name == name:

@@ -28,7 +28,7 @@ _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
 @record
 class Task:
-    """What judges an episode: an automaton, the values of its params, and options of its reward.
+    """All that is needed to judge an episode: the automaton of a spec, values of params, reward options.
 
     ``params`` are in SI units and override the defaults of the automaton. A task is plain data and
     can be pickled; a :class:`Monitor` cannot.
@@ -39,7 +39,7 @@ class Task:
     reward: RewardOptions = RewardOptions()
 
     def monitor(self) -> Monitor:
-        """Return a new monitor that judges by this task, before its first sample."""
+        """Return a new monitor for one episode, which judges by this task."""
         return Monitor(self.fspa, self.params, self.reward)
 
 
@@ -57,12 +57,12 @@ def load_task(
     - an automaton;
     - a path ``FILE.tltl`` or ``FILE.fspa.json``, followed by ``:NAME`` if the file has several
       specs. The file's project (``tltl.toml``) provides its libraries;
-    - the text of a spec or an artefact. A text has several lines, or has blanks and does not end
-      like a path.
+    - the text of a spec or of an artefact (a compiled automaton as JSON). A string is such a text if
+      it has several lines or begins with a brace, or if it has blanks and does not end like a path.
 
     ``params`` are values of the spec's params, in SI units. ``offered`` are values that a level
-    provides. An offered value is used if the spec has a param of that name and ``params`` does not
-    set it.
+    provides. Such a value is used if the spec has a param of this name and ``params`` does not set
+    it.
 
     Raises:
         TltlError: errors of reading and compiling; TLT0720, no spec has that name; TLT0721, there
@@ -81,9 +81,9 @@ def load_task(
 
 
 def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
-    """Return the automaton that ``spec`` describes, and the resolved spec.
+    """Return the automaton that ``spec`` describes, and the spec that was compiled into it.
 
-    The resolved spec is None if there is no source text, only an automaton or an artefact. ``spec``
+    The second is None if ``spec`` is an automaton or an artefact, which have no source text. ``spec``
     and the errors are those of :func:`load_task`.
     """
     if isinstance(spec, Fspa):
@@ -119,7 +119,7 @@ def _is_text(spec: str) -> bool:
 
 
 def _is_artefact(text: str) -> bool:
-    """Whether ``text`` is an artefact, not a spec: no spec begins with a brace."""
+    """Whether ``text`` is an artefact (JSON), not a spec: no spec begins with a brace."""
     return text.lstrip().startswith("{")
 
 

@@ -26,41 +26,44 @@ _MOST_LISTED: Final = 12
 
 
 class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorArgs):
-    """An environment whose episodes a spec rewards and ends.
+    """A wrapper of an environment whose episodes a spec rewards and ends.
 
-    ``spec`` is an argument of :func:`tltl_runtime.spec.task.load_task`. ``signals`` receives the
+    ``spec`` is as in :func:`tltl_runtime.spec.task.load_task`. ``signals`` is a function that gets the
     wrapped environment after each step and returns the spec's signals by name, as numbers in SI
     units or bools. By default it is the environment's own method ``tltl_signals()``. ``signals`` is
     also called after a reset, where the automaton takes no step, so that a missing signal is
     noticed at once. ``params`` are values of the spec's params, in SI units. They take precedence
-    over those of the environment's ``tltl_params()``, if it has that method.
+    over those that the environment's method ``tltl_params()`` returns, if it has this method.
 
     Observation: a Dict space gains two keys, both float32. ``automaton`` is the state as a one-hot
     vector, shape (states,). ``progress`` is the best progress so far, shape (1,), in [0, 1]. An
     observation of any other space becomes the key ``observation`` beside these two.
 
-    Reward: the reward in the mode that ``reward`` names; the environment's own reward is
-    ``info["env_reward"]``. The episode is ``terminated`` by success, by violation and by the
-    environment, and ``truncated`` at the spec's limit and by the environment. If the environment
-    ends an episode before the spec does, the episode is a success iff two things hold: the trace so
-    far is accepted, and the spec is not judged at a limit that is still ahead. If the spec has a
-    limit, such an episode without success costs the penalties of all remaining steps, as a
-    violation does. So every failed episode has a total reward of progress - 1.
+    Reward: the reward of the spec, in the mode that ``reward`` names. The environment's own reward is
+    ``info["env_reward"]``.
+
+    End: the episode is ``terminated`` by success, by violation and by the environment, and
+    ``truncated`` at the spec's limit and by the environment. If the environment ends an episode before
+    the spec does, the episode is a success iff two things hold: the trace so far is accepted, and the
+    spec is not judged at a limit that is still ahead. In the mode ``progress``, a failed episode then
+    costs the penalties of all remaining steps up to the spec's limit, as a violation does. So by
+    default the rewards of every failed episode sum to its best progress minus 1, if the spec has a
+    limit.
 
     ``info`` gains these keys, which replace entries of the environment with the same names:
 
-    - ``verdict``, ``state``, ``label`` and ``progress``;
-    - ``unmet``: the state whose label names what was not met. After a violation this is the state
-      before the step, otherwise the current one;
-    - ``success``: whether the episode ended with this step, in success;
+    - ``verdict``, ``state``, ``label`` and ``progress``: as in :class:`~tltlc.monitor.Step`;
+    - ``unmet``: the state whose label says what was not met. After a violation it is the state before
+      the step, otherwise the current state;
+    - ``success``: whether the episode has ended in success;
     - ``limiting``: the name of the atom that most hinders the automaton from getting nearer to
-      acceptance; None after a reset, if the state changed, and if no edge leads nearer;
+      acceptance. None after a reset, if the state changed, and if no edge leads nearer;
     - ``atoms``: the values of the atoms by name, empty after a reset;
-    - ``env_reward``: 0 after a reset.
+    - ``env_reward``: the environment's own reward, 0 after a reset.
 
     ``sample`` is the last result of ``signals``. ``taken`` is the monitor's
-    :class:`~tltlc.monitor.Step` for that sample, None after a reset. A recording of the episode
-    needs ``sample``, ``taken`` and ``task``, and nothing else of this wrapper.
+    :class:`~tltlc.monitor.Step` for that sample; None after a reset. ``task`` is the spec with its
+    params and reward options. A recorder of episodes needs only these three attributes.
 
     Raises:
         TltlError: the errors of :func:`load_task`; TLT0617, the environment has a ``tltl_clock_s``
@@ -156,9 +159,13 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         return self._with_automaton_keys(observation), step.reward, terminated, truncated, info
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
-        """Return the result of ``signals``, which must have every signal of the spec.
+        """Call ``signals``, store its result in ``sample``, and return it.
 
-        ``when`` says in messages when that was, such as "step 3".
+        ``when`` is for messages: it says when that was, for example ``step 3``.
+
+        Raises:
+            MonitorError: TLT0611, a signal of the spec is missing.
+            TypeError: the result is not a mapping.
         """
         sample = self._signals(self.env)
         if not isinstance(sample, Mapping):
@@ -198,8 +205,11 @@ def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
 def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
     """Return an observation space with two more keys, ``automaton`` and ``progress``.
 
-    Their shapes are (states,) and (1,). A space that is not a Dict becomes the key ``observation``.
-    Raises ValueError if the space already has one of the two keys.
+    Their shapes are (states,) and (1,). If the space is not a Dict, it becomes the key
+    ``observation`` of the result.
+
+    Raises:
+        ValueError: the space already has one of the two keys.
     """
     inner = dict(space.spaces) if isinstance(space, spaces.Dict) else {"observation": space}
     conflicts = {"automaton", "progress"} & inner.keys()
@@ -211,7 +221,11 @@ def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
 
 
 def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
-    """Raise TLT0617 if the spec's clock differs from the environment's time per step."""
+    """Check that the spec's clock, if it has one, equals the environment's ``tltl_clock_s``, if it has one.
+
+    Raises:
+        TltlError: TLT0617, the two differ.
+    """
     if fspa.clock_s is None or not env.has_wrapper_attr("tltl_clock_s"):
         return
     clock_s = env.get_wrapper_attr("tltl_clock_s")
@@ -223,7 +237,7 @@ def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
 
 
 def _missing_signals(missing: list[str], returned: list[str], when: str) -> Diagnostic:
-    """Return TLT0611 for ``missing`` signals; it lists those that ``signals`` ``returned``."""
+    """Return TLT0611 for ``missing`` signals; its title lists the signals that were ``returned``."""
     names = ", ".join(f"`{name}`" for name in missing)
     listed = ", ".join(f"`{name}`" for name in returned[:_MOST_LISTED]) + (
         ", …" if len(returned) > _MOST_LISTED else ""

@@ -1,8 +1,9 @@
-"""Compile expressions to torch code that computes each subexpression once, for N environments.
+"""Compile expressions to torch code that evaluates them in N environments at once.
 
-The values equal those of :func:`tltlc.expression.evaluate.evaluate`. For an environment in which
-that function raises an error, the value here is arbitrary, and the environment is marked as failed.
-An error in one case of a ``when`` expression counts only in the environments that take this case.
+Equal subexpressions are computed only once. The values equal those of
+:func:`tltlc.expression.evaluate.evaluate`. In an environment in which that function raises an error,
+the value here is arbitrary, and the environment is marked as failed. An error in one case of a
+``when`` expression counts only in the environments that take this case.
 
 On a CPU in float64 the values are equal to the last bit, except for the sign of zeros, and except
 for ``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3. Torch rounds these differently from
@@ -24,9 +25,9 @@ from tltlc.api import expressions
 class TensorExpressions:
     """Expressions, compiled to one Python function that evaluates all of them in N environments.
 
-    The function takes the values of the signals, a tensor [signals, N]. ``signals`` are the names
-    of its rows. ``params`` are the values of the params in the expressions, in SI units. ``source``
-    is the Python text of the function.
+    The function takes the values of the signals, a tensor [signals, N]; ``signals`` are the names of
+    its rows. ``params`` are the values of the params in the expressions, in SI units. ``source`` is the
+    Python source text of the function.
     """
 
     def __init__(
@@ -56,10 +57,11 @@ class TensorExpressions:
         self._function: Callable[[Tensor], tuple[tuple[Tensor, ...], tuple[Tensor | None, ...]]] = space["values"]
 
     def run(self, columns: Tensor) -> tuple[Tensor, tuple[Tensor | None, ...]]:
-        """Return the expressions' values, [expressions, N], and for each a mask [N] of failures.
+        """Return the values of the expressions, [expressions, N], and a mask for each expression.
 
-        The mask says in which environments the expression has no value; it is None for an
-        expression that cannot fail. ``columns`` are the values of the signals, [signals, N].
+        The mask, bool [N], says in which environments the expression has no value, for example
+        because of a division by 0. It is None for an expression that always has a value. ``columns``
+        are the values of the signals, [signals, N].
         """
         values, failures = self._function(columns)
         if not values:
@@ -68,9 +70,9 @@ class TensorExpressions:
 
 
 def _release_tensors(lines: Sequence[TensorLine], outputs: Collection[str]) -> list[str]:
-    """Return the code of lines with a ``del`` added for each tensor after its last use.
+    """Return the code of ``lines``, with a ``del`` for each tensor after its last use.
 
-    So torch can use the memory of these tensors again. The tensors in ``outputs`` are kept.
+    So torch can reuse the memory of these tensors. The tensors named in ``outputs`` are kept.
     """
     seen: set[str] = set()
     lines_with_releases: list[str] = []

@@ -15,7 +15,7 @@ def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
 
 
 def narrow(values: Tensor, dtype: torch.dtype) -> Tensor:
-    """Convert values to ``dtype``, without losing their signs.
+    """Convert values to ``dtype``, and keep their signs: only 0 becomes 0.
 
     A value that would round to 0 becomes the smallest normal number with the same sign.
     """

@@ -17,16 +17,17 @@ _LETTER_ATOMS: Final = 12
 _LETTER_CELLS: Final = 1 << 22
 """The lookup table of edges is built only for at most this many atoms and cells.
 
-The table has a cell for each state and letter.
+The table has a cell for each state and each letter (a truth value for each atom).
 """
 
 
 class PrimeSets:
-    """K sets of prime implicants, and their robustness for N environments.
+    """K sets of prime implicants (primes, for short), and their robustness for N environments.
 
     The robustness of a set is the greatest robustness of its primes, or ``empty`` if it has no
-    primes. In the methods, ``values`` are the atoms' values, shape [atoms, N]. A ``choice`` is an
-    int64 tensor [N]: the number of the set to use in each environment.
+    primes. The robustness of a prime is the least value of its literals, or 1 if it has none. In the
+    methods, ``values`` are the values of the ``atoms``, shape [atoms, N]. A ``choice``, int64 [N], has
+    the index of the set to use in each environment.
     """
 
     def __init__(self, sets: Sequence[Primes], atoms: int, device: torch.device, empty: float) -> None:
@@ -49,7 +50,7 @@ class PrimeSets:
         return self._distinct_robustness(values).index_select(0, self._rows)
 
     def robustness_of(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the robustness of the set that ``choice`` names for each environment, shape [N]."""
+        """Return the robustness of the chosen set in each environment, shape [N]."""
         rows = self._rows.index_select(0, choice)
         if self._dense:
             robustness = self._distinct_robustness(values)
@@ -57,10 +58,10 @@ class PrimeSets:
         return self._literals_of(rows, values).amin(1).amax(0)
 
     def bounding_atom(self, choice: Tensor, values: Tensor) -> Tensor:
-        """Return the number of the atom that decides how robust the chosen set is, int64 [N].
+        """Return the index of the atom that decides the robustness of the chosen set, int64 [N].
 
-        It is the atom of the least literal in the most robust prime of the set; on ties, the first
-        one. The number is -1 if the set has no primes, or if this prime has no literals.
+        It is the atom of the least literal in the most robust prime of the set; on ties, the first.
+        The index is -1 if the set has no primes, or if this prime has no literals.
         """
         rows = self._rows.index_select(0, choice)
         literals = self._literals_of(rows, values)
@@ -70,9 +71,9 @@ class PrimeSets:
         return atoms.gather(0, (best * self._width + least)[None])[0]
 
     def _distinct_robustness(self, values: Tensor) -> Tensor:
-        """Return the robustness of each set, with equal sets only once, [distinct, N].
+        """Return the robustness of each distinct set, [distinct, N]: equal sets have one row.
 
-        The robustness of a prime that several sets share is also computed once.
+        A prime that several sets share is computed only once, too.
         """
         negated = -values if self._negates else values
         robustness_of: dict[Implicant, Tensor] = {}
@@ -89,9 +90,9 @@ class PrimeSets:
         return torch.stack(results) if results else values.new_empty((0, values.shape[1]))
 
     def _literals_of(self, rows: Tensor, values: Tensor) -> Tensor:
-        """Return the values of all literals in one set per environment: [primes, literals, N].
+        """Return the values of all literals of the set of each environment, [primes, literals, N].
 
-        ``rows`` [N] has the index of each environment's set among the distinct sets.
+        ``rows``, [N], has the index of this set among the distinct sets.
         """
         ones, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
         signed = torch.cat([values, -values, ones, empty])
@@ -101,7 +102,7 @@ class PrimeSets:
     def _table(self, cells: Callable[[Primes], list[int]]) -> Tensor:
         """Return a table with a column for each distinct set, int64 [primes * literals, distinct].
 
-        A column has the numbers that ``cells`` returns for the set.
+        ``cells`` returns the numbers in the column of a set.
         """
         rows = [cells(primes) for primes in self._distinct]
         return torch.tensor(rows, dtype=torch.int64).view(len(rows), self._depth * self._width).t().contiguous()
@@ -109,11 +110,11 @@ class PrimeSets:
     def _literal_rows(self, primes: Primes) -> list[int]:
         """Return, for each literal of a set, the row in which :meth:`_literals_of` finds its value.
 
-        That method stacks these rows: the values of the atoms, the negated values, a row of 1, and
-        a row of ``empty``.
+        That method stacks these rows: the values of the atoms, the negated values, a row of 1 (for
+        a prime without literals), and a row of ``empty`` (for a set without primes).
 
-        The result has the same length for all sets: padding repeats the first literal or prime,
-        which changes no minimum or maximum.
+        The result has the same length for all sets: shorter sets are padded with their first prime,
+        shorter primes with their first literal. This changes no minimum or maximum.
         """
         if not primes:
             return [2 * self._atoms + 1] * (self._depth * self._width)
@@ -131,9 +132,9 @@ class PrimeSets:
 class Transitions:
     """Finds the edges that N automata take.
 
-    Exactly one of the edges that leave a state has a true guard, unless atoms that the spec
-    declares ``exclusive`` hold at once. If ``checked``, that is an error; otherwise, the automaton
-    takes any edge that leaves the state.
+    Exactly one of the edges from a state, self-loops included, has a true guard, unless atoms that
+    the spec declares ``exclusive`` hold at once. If ``checked``, that is an error; otherwise, the
+    automaton takes an arbitrary edge from the state.
     """
 
     def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
@@ -147,12 +148,12 @@ class Transitions:
         self._guards = None if fits else PrimeSets([e.guard.primes for e in fspa.edges], self._atoms, device, -1.0)
 
     def edge(self, state: Tensor, truth: Tensor) -> Tensor:
-        """Return the numbers of the edges that the N automata take, int64 [N].
+        """Return the indices of the edges that the N automata take, int64 [N].
 
-        ``state`` has the states, int64 [N]; ``truth`` says which atoms hold, bool [atoms, N].
+        ``state``, int64 [N], has the current states. ``truth``, bool [atoms, N], says which atoms hold.
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms hold at once; only if ``checked``.
+            MonitorError: TLT0614, exclusive atoms hold at once; only if ``checked``.
         """
         if self._table is None:
             if self._checked:
@@ -179,9 +180,9 @@ class Transitions:
         return taken
 
     def _leaving_table(self) -> Tensor:
-        """Return the edges that leave each state, int64 [most edges, states].
+        """Return the edges from each state as columns of a table, int64 [most edges, states].
 
-        If a state has fewer edges than another one, its first edge fills the remaining cells.
+        If a state has fewer edges than others, its first edge fills the remaining cells.
         """
         leaving: list[list[int]] = [[] for _ in self._fspa.states]
         for number, edge in enumerate(self._fspa.edges):
@@ -190,9 +191,9 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """Return the edge for each state and letter, int64 [states * letters].
+        """Return the index of the edge for each state and letter, int64 [states * letters].
 
-        Bit i of a letter says whether atom i holds. If ``checked``, the edge is -1 for letters in
+        Bit i of a letter says whether atom i holds. If ``checked``, the index is -1 for letters in
         which exclusive atoms hold at once.
         """
         letters = torch.arange(self._letters)

@@ -19,7 +19,7 @@ _VIOLATED = VERDICTS.index("violated")
 
 
 class BatchStep:
-    """The result of one sample in each of N environments.
+    """The result of one step: of one sample in each of N environments.
 
     Every tensor is [N], unless another shape is given, and is never modified.
 
@@ -28,7 +28,7 @@ class BatchStep:
     - ``success``: bool, the episode has ended in success.
     - ``progress``: the best progress so far, in [0, 1].
     - ``reward``: the reward of this step, 0 after the end of the episode.
-    - ``edge``: int64, the number of the edge taken.
+    - ``edge``: int64, the index of the edge taken.
     - ``values``: the values of the atoms, [atoms, N], in [-1, 1].
 
     The properties are computed on first use.
@@ -51,17 +51,17 @@ class BatchStep:
 
     @cached_property
     def accepting(self) -> Tensor:
-        """Whether the automaton accepts the trace so far, bool."""
+        """Whether the automaton accepts the trace so far, bool [N]."""
         return self._monitor.accepting_states.index_select(0, self.state)
 
     @cached_property
     def truncated(self) -> Tensor:
-        """Whether the episode has ended at the spec's limit without success or violation, bool."""
+        """Whether the episode has ended at the spec's limit without success or violation, bool [N]."""
         return self.done & ~self.success & (self.verdict != _VIOLATED)
 
     @cached_property
     def verdict(self) -> Tensor:
-        """The verdict on the trace so far, int64.
+        """The verdict on the trace so far, int64 [N].
 
         It is an index into :data:`~tltl_runtime.spec.batch.progress_and_reward.VERDICTS`.
         """
@@ -69,45 +69,45 @@ class BatchStep:
 
     @cached_property
     def robustness(self) -> Tensor:
-        """The robustness of the guard of the edge taken, in [-1, 1]."""
+        """The robustness of the guard of the edge taken, in [-1, 1], shape [N]."""
         return self._monitor.guards.robustness_of(self.edge, self.values) + 0.0
 
     @cached_property
     def limiting(self) -> Tensor:
-        """The index of the atom that most hinders the automaton from getting nearer to acceptance.
+        """The index of the atom that most hinders the automaton from getting nearer to acceptance, int64 [N].
 
         This is the atom of the least robust literal in the most robust prime implicant of the edges
-        towards acceptance. The index, int64, is -1 if the state changed, or if no edge leads to a
-        state nearer to acceptance.
+        towards acceptance. The index is -1 if the state changed, or if no edge leads to a state
+        nearer to acceptance.
         """
         return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
 
 
 class BatchMonitor:
-    """Runs ``count`` copies of an automaton, one for each environment.
+    """Runs ``count`` copies (N) of an automaton, one for each environment.
 
-    The environments may be in different states and episodes. The results equal those of ``count``
-    :class:`tltlc.monitor.Monitor` objects. On a CPU in float64 they are equal to the last bit,
-    except for the sign of zeros, and except for operations that torch and the C library round
-    differently (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the discounted penalty).
-    Results of these agree within 1e-12. An atom whose value is that close to 0, or to a border
-    between cases, may be true in one monitor and false in the other. In float32 all results agree
-    within 1e-6. If a number of the spec, such as the end of a range, is too large or too small for
-    ``dtype``, atoms are computed in float64.
-
-    After the end of an episode, the automaton of its environment continues with reward 0 until it
-    is reset, as in :class:`tltlc.monitor.Monitor`.
+    The environments may be in different states and episodes. After the end of an episode, the
+    automaton of its environment continues with reward 0 until it is reset, as in
+    :class:`tltlc.monitor.Monitor`.
 
     ``state`` int64 [N], ``steps`` [N] and ``progress`` [N] are the values after the last step.
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
     the order of signals in a tensor.
 
+    The results equal those of ``count`` :class:`tltlc.monitor.Monitor` objects. On a CPU in float64
+    they are equal to the last bit, except for the sign of zeros, and except for operations that torch
+    and the C library round differently (``exp``, ``tanh``, ``sqrt``, powers other than 2 and 3, the
+    discounted penalty). Results of these agree within 1e-12. An atom whose value is that close to 0,
+    or to a border between cases, may be true in one monitor and false in the other. In float32 all
+    results agree within 1e-6. If a number of the spec, such as the end of a range, is too large or
+    too small for ``dtype``, atoms are computed in float64.
+
     To check samples, a step waits for the torch device a few times. With ``checked=False`` a step
     waits only if the reward mode is not computed with tensors
     (:class:`~tltl_runtime.spec.batch.reward_modes.RowByRow`). An unchecked step clamps values out
     of range without counting them. A NaN makes the atoms that use it false, and may appear in
-    progress and reward. If exclusive atoms hold at once, the automaton takes any edge that leaves
-    the state.
+    progress and reward. If atoms that the spec declares ``exclusive`` hold at once, the automaton
+    takes an arbitrary edge from its state.
 
     Raises:
         MonitorError: TLT0307 and TLT0308, a param has an invalid value or does not exist.
@@ -146,7 +146,7 @@ class BatchMonitor:
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
-        """Reset the environments in ``mask`` to the state before their first sample.
+        """Begin a new episode in the environments that ``mask`` chooses.
 
         ``mask`` is bool [N], or None for all environments.
 
@@ -170,8 +170,9 @@ class BatchMonitor:
         bools count as 0 and 1. Names that no atom uses are ignored.
 
         Raises:
-            MonitorError: TLT0611 signals are missing; TLT0612 a signal has no usable value; TLT0613
-                an atom has no value; TLT0614 exclusive atoms hold at once. No environment changes.
+            MonitorError: TLT0611, signals are missing; TLT0612, a signal has no usable value;
+                TLT0613, an atom has no value; TLT0614, exclusive atoms hold at once. No automaton
+                takes a step then. If not ``checked``, only TLT0611 is raised.
             ValueError: an array has another shape.
         """
         return self._take(self._samples.atom_values(signals))
@@ -180,8 +181,9 @@ class BatchMonitor:
         """Take one sample of each environment: the ``values`` of the atoms, [N, atoms], in [-1, 1].
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms hold at once. No environment changes.
-            ValueError: a value is not in [-1, 1], or the shape is different.
+            MonitorError: TLT0614, exclusive atoms hold at once; only if ``checked``. No automaton
+                takes a step then.
+            ValueError: the shape is another or, if ``checked``, a value is not in [-1, 1].
         """
         rows = torch.as_tensor(values)
         fits = rows.shape == (self.count, len(self.fspa.atoms))
@@ -219,9 +221,9 @@ class BatchMonitor:
         return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
 
     def _start(self) -> tuple[Tensor, ...]:
-        """Return what describes an episode in each environment before its first sample.
+        """Return the tensors that describe new episodes, before the first sample of each environment.
 
-        The tensors are state, steps, progress, done, success and the memory of the reward mode.
+        They are state, steps, progress, done, success and the memory of the reward mode.
         """
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)

@@ -2,7 +2,7 @@
 
 The order of operations is the same as in :mod:`tltlc.monitor.progress_and_reward`, which lists the
 deviations from the paper. Values that depend only on the states before and after a step are in
-lookup tables, by the number of the edge.
+lookup tables, by the index of the edge.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
 class Outcomes:
-    """Computes progress, rewards and whether episodes end, by Algorithm 1.
+    """Computes progress, rewards and whether episodes end, by Algorithm 1, for N environments.
 
-    All arguments and results are tensors of shape [N], except ``values``, [atoms, N]. An ``edge``
-    is the index of the edge that is taken.
+    All arguments and results of the methods are tensors of shape [N], except ``values``, the values
+    of the atoms, [atoms, N]. ``edge`` has the indices of the edges that are taken, and ``steps`` the
+    numbers of the steps in their episodes, from 1.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -73,19 +74,20 @@ class Outcomes:
         return base.add_(approach(self.nearest.robustness_of(edge, values), self._size))
 
     def done(self, edge: Tensor, steps: Tensor) -> Tensor:
-        """Return whether an episode ends with this step."""
+        """Return whether the episode ends with this step, by the spec or at its limit, bool [N]."""
         ends = self._ends.index_select(0, edge)
         return ends if self._limit is None else ends.logical_or_(steps >= self._limit)
 
     def accepting(self, edge: Tensor) -> Tensor:
-        """Return whether the target of the edge is accepting."""
+        """Return whether the edge leads to an accepting state, bool [N]."""
         return self._accepting.index_select(0, edge)
 
     def reward(self, edge: Tensor, rise: Tensor, steps: Tensor) -> Tensor:
         """Return the reward of a step.
 
-        It is the ``rise`` of progress minus the step penalty and, on a violation, minus the
-        terminal penalty.
+        It is the ``rise`` of the best progress in this step, minus 1 / T, where T is the spec's limit
+        in steps. On a violation that ends the episode, the terminal penalty is subtracted, too. If
+        the spec has no limit, the reward is the rise alone.
         """
         if self._limit is None:
             return rise
@@ -97,10 +99,11 @@ class Outcomes:
         return reward.sub_(self._penalty(steps).mul_(violated))
 
     def _penalty(self, steps: Tensor) -> Tensor:
-        """Return the terminal penalty: the sum of the step penalties of all steps that remain.
+        """Return the terminal penalty: the sum of the penalties of all steps that remain to the limit.
 
-        Without it, a violation would save these penalties. The sum is ``(T - t) / T``, or the
-        discounted sum. T is the spec's limit, and t are the ``steps`` so far.
+        Without it, a violation would save these penalties. The sum is ``(T - t) / T``, where T is
+        the spec's limit and t the number of ``steps`` so far. If the options ask for it, the sum is
+        discounted by ``gamma``.
         """
         assert self._limit is not None
         remaining = self._limit - steps
@@ -111,9 +114,9 @@ class Outcomes:
 
 
 def approach(nearest: Tensor, size: Tensor) -> Tensor:
-    """Return what line 14 of Algorithm 1 adds to the progress, ``(1 + min(0, nearest)) / S``.
+    """Return what line 14 of Algorithm 1 adds to the progress: ``(1 + min(0, nearest)) / size``.
 
-    ``nearest`` is the robustness of the most robust edge towards acceptance; it is modified in
-    place. ``size`` is S, the ``spec_size`` of the automaton.
+    ``nearest`` is the robustness of the most robust edge towards acceptance; the tensor is modified
+    in place. ``size`` is the automaton's ``spec_size``.
     """
     return nearest.clamp_(max=0.0).add_(1.0).div_(size)

@@ -1,4 +1,4 @@
-"""Compute the values of the atoms from the signals of N environments, with checks and clamping."""
+"""Compute the values of atoms from the signals of N environments; check and clamp the values."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _NAMED = 5
 class BatchSamples:
     """Computes the values of the atoms, shape [atoms, N], from the signals of N environments.
 
-    ``clamped`` counts the values that were clamped, by the name of the signal or atom. The value of
-    an atom counts only if it is more than 1e-9 outside [-1, 1]. If values are not ``checked``, they
-    are clamped without counts or errors.
+    Signals are clamped to their ranges, and atoms to [-1, 1]. ``clamped`` counts the clamped values by
+    the name of the signal or atom. The value of an atom counts only if it is more than 1e-9 outside
+    [-1, 1]. If values are not ``checked``, they are clamped without counts or errors.
 
     If a number of the automaton is too large or too small for ``dtype``, atoms are computed in
-    float64.
+    float64. ``names`` is the order of the signals in a tensor.
     """
 
     def __init__(
@@ -56,14 +56,14 @@ class BatchSamples:
     def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """Return the values of the atoms, each in [-1, 1], shape [atoms, N].
 
-        A value keeps its sign when it is converted from float64 to a smaller ``dtype``.
-
-        ``signals`` is an array [N] for each name (names that no atom uses are ignored), or one
-        array [N, signals] in the order of ``names``.
+        ``signals`` maps names to arrays [N], or is one array [N, signals] in the order of ``names``.
+        Names that no atom uses are ignored. A value that is converted from float64 to a smaller
+        ``dtype`` keeps its sign: it does not become 0.
 
         Raises:
-            MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value or is
-                not a truth value, TLT0613 an atom has no value. The message names the environments.
+            MonitorError: TLT0611, signals are missing; TLT0612, a signal has no finite value, or a
+                Boolean signal is neither 0 nor 1; TLT0613, an atom has no value. The message names
+                the environments. If not ``checked``, only TLT0611 is raised.
             ValueError: an array has another shape.
         """
         columns = self._columns(signals)
@@ -85,7 +85,10 @@ class BatchSamples:
         return narrow(values, self._result_dtype)
 
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """Return the signals that the atoms use, shape [signals, N], with contiguous rows."""
+        """Return the values of the signals that the atoms use, shape [signals, N], with contiguous rows.
+
+        ``signals`` and the errors are those of :meth:`atom_values`.
+        """
         if not isinstance(signals, Mapping):
             given = torch.as_tensor(signals)
             if given.shape != (self._count, len(self.names)):
@@ -113,7 +116,7 @@ class BatchSamples:
     def _in_range(self, columns: Tensor) -> bool:
         """Whether all signals are in their ranges, so that none has to be clamped.
 
-        A NaN makes both extremes of its row NaN, so that the comparison fails.
+        False if a value is NaN: both extremes of its row are then NaN, and the comparison fails.
         """
         extremes = zip(columns.amin(1).tolist(), columns.amax(1).tolist(), self._ranges, strict=True)
         return all(least >= low and greatest <= high for least, greatest, (low, high) in extremes)
@@ -156,8 +159,8 @@ class BatchSamples:
     def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
         """Return the error that says why an atom has no value in the environments ``indices``.
 
-        It is the error of the monitor for one automaton at the sample of the first of these
-        environments.
+        ``row`` is the index of the atom, and ``columns`` are the values of the signals, [signals, N].
+        The error is that of the monitor for one automaton, in the first of these environments.
         """
         sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
         try:
@@ -169,7 +172,7 @@ class BatchSamples:
 
 
 def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield all numbers that atoms are computed with, except the values of signals.
+    """Yield all numbers that are used to compute atoms, except the values of signals.
 
     They are the constants in expressions, the ends of the signals' ranges, and the values of the
     params.
@@ -182,9 +185,12 @@ def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
 
 
 def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
-    """Raise MonitorError, TLT0614, if two atoms of an ``exclusive`` declaration hold at once.
+    """Check that no two atoms of an ``exclusive`` declaration hold at once in an environment.
 
-    ``truth`` is bool [atoms, N].
+    ``truth``, bool [atoms, N], says which atoms hold.
+
+    Raises:
+        MonitorError: TLT0614, two such atoms hold at once. The message names the environments.
     """
     for group in fspa.exclusive:
         truths = truth[list(group)]

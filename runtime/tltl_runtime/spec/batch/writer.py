@@ -1,4 +1,7 @@
-"""Write torch code that computes expressions for N environments at once."""
+"""Write torch code that computes expressions for N environments at once.
+
+In the code, a column is a tensor of shape [N] that has a value for each environment.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +19,12 @@ _FAILURES: Final = (ZeroDivisionError, OverflowError, ValueError)
 
 @record
 class TensorTerm:
-    """The code for an expression.
+    """The value of an expression in the written code.
 
-    ``name`` is the name of a tensor or the text of a constant. ``constant`` is the value of the
-    constant, a number or a truth value; None for a tensor. ``fails`` is the name of a mask of the
-    environments in which the expression has no value; None if the expression always has a value.
+    ``name`` is the name of the tensor that has the value, or the text of a constant. ``constant`` is
+    the value of the constant, a number or a truth value; None for a tensor. ``fails`` is the name of
+    a mask tensor: it says in which environments the expression has no value, for example because of
+    a division by 0. It is None if the expression always has a value.
     """
 
     name: str
@@ -30,9 +34,9 @@ class TensorTerm:
 
 @record
 class TensorLine:
-    """A line of code, which assigns ``code`` to the tensor ``name``.
+    """A line of code: ``name = code``, which assigns a tensor.
 
-    ``operands`` are the names of the tensors in ``code`` that earlier lines assign.
+    ``operands`` are the names in ``code`` that earlier lines assign.
     """
 
     name: str
@@ -41,13 +45,12 @@ class TensorLine:
 
 
 class TensorWriter:
-    """Writes lines of code, each of which assigns a tensor to a new name.
+    """Writes lines of code that compute expressions. Each line assigns a tensor to a new name.
 
-    A line uses ``columns``, ``constants`` and earlier names.
-
-    ``columns[i]`` is the column of the i-th signal: its values in the N environments. Equal
-    right-hand sides are written once. ``constants`` are numbers, by the names of the
-    zero-dimensional tensors for them.
+    The code uses the variable ``columns``: ``columns[i]`` has the values of the i-th of ``signals`` in
+    the N environments. It also uses a zero-dimensional tensor for each of ``constants``, which maps
+    the names of these tensors to their numbers. ``params`` are the values of the params in the
+    expressions. Equal right-hand sides are written only once.
     """
 
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
@@ -63,14 +66,11 @@ class TensorWriter:
         return tuple(self._lines.values())
 
     def constant_column(self, constant: float) -> str:
-        """Write a line that makes a column in which each environment has the value ``constant``.
-
-        Return the column's name.
-        """
+        """Write a line that assigns a column with ``constant`` for each environment; return its name."""
         return self._line("columns.new_full((columns.shape[1],), {}.item())", self._constant_tensor(constant))
 
     def number(self, node: expressions.Expression) -> TensorTerm:
-        """Write the lines that compute an expression, and return the term for its value."""
+        """Write the lines that compute a numeric expression, and return the term for its value."""
         if isinstance(node, expressions.Const):
             return self._constant(node.value)
         if isinstance(node, expressions.ParamValue):
@@ -142,9 +142,9 @@ class TensorWriter:
         return TensorTerm(result, None, self._any_of([fails, own_failure]))
 
     def _extreme(self, op: str, first: TensorTerm, second: TensorTerm) -> TensorTerm:
-        """Write ``min`` or ``max`` of two terms, and return the term for the result.
+        """Write the ``min`` or the ``max`` of two terms, and return the term for the result.
 
-        As in Python, the result is the first of two equal values.
+        Of two equal values, such as 0 and -0, the result is the first, as in Python.
         """
         if first.constant is not None and second.constant is not None:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
@@ -186,10 +186,11 @@ class TensorWriter:
         return TensorTerm(self._infix(self._operand(left), node.op, self._operand(right)), None, fails)
 
     def _connective(self, node: expressions.Condition) -> TensorTerm:
-        """Write ``and`` or ``or`` from its last part to its first, and return the result's term.
+        """Write a condition with ``and`` or ``or``, and return the term for its truth value.
 
-        As in Python, a part is not evaluated if an earlier part decides the result. So a failure of
-        a part counts only where the parts before it leave the result open.
+        In Python, a part is not evaluated if an earlier part decides the result. So a failure of a
+        part counts only in environments where the parts before it do not decide the result. To
+        compute this, the parts are written from the last to the first.
         """
         sign = "&" if node.op == "and" else "|"
         result = self._condition(node.args[-1])
@@ -202,7 +203,11 @@ class TensorWriter:
         return result
 
     def _fold_constants(self, node: expressions.Op, args: list[TensorTerm], fails: str | None) -> TensorTerm:
-        """Compute an operation on constants now, and return its result as a constant term."""
+        """Compute an operation on constants now, and return the result as a constant term.
+
+        ``args`` are the terms of the operands, and ``fails`` is their mask. If the operation has no
+        value, the result is NaN and fails in all environments.
+        """
         # The evaluator multiplies only where the exponent is a literal of the spec. A computed constant exponent must
         # stay a power, so it is not passed on as a literal.
         parts = tuple(expressions.Const(term.constant if term.constant is not None else math.nan) for term in args)
@@ -230,9 +235,9 @@ class TensorWriter:
         return (f"({text})" if text.startswith("-") else text), value
 
     def _operand(self, term: TensorTerm) -> str:
-        """Return the name of a tensor with the value of the term.
+        """Return the name of a tensor with the value of a term.
 
-        A constant gets a tensor, too: torch is slower with numbers, and divides by numbers less
+        A constant gets a tensor, too: torch is slower with Python numbers, and divides by them less
         exactly.
         """
         return term.name if term.constant is None else self._constant_tensor(term.constant)
@@ -265,9 +270,10 @@ class TensorWriter:
         return self._line(f"{{}} {op} {{}}", left, right)
 
     def _line(self, form: str, *operands: str) -> str:
-        """Write the line that assigns ``form`` with its operands to a new name, and return the name.
+        """Write a line that assigns an expression to a new name, and return the name.
 
-        ``operands`` are names of tensors or texts of constants. Each replaces a ``{}`` in ``form``.
+        The expression is ``form``, in which each ``{}`` is replaced by one of ``operands``: names of
+        tensors or texts of constants. If an earlier line has this expression, return its name instead.
         """
         code = form.format(*operands)
         line = self._lines.get(code)

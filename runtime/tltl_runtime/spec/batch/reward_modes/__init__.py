@@ -1,8 +1,9 @@
 """Alternative rewards for N environments: one module per mode, loaded on first use.
 
-A module has the name of its mode, and its ``MODE`` is a class, a :class:`RewardMode`.
-The module of that name in :mod:`tltlc.monitor.reward_modes` gives equal rewards, for one automaton.
-If a mode has no module here, :class:`RowByRow` calls the function there for each environment.
+A module has the name of its mode. Its constant ``MODE`` is a class that implements
+:class:`RewardMode`. The module of the same name in :mod:`tltlc.monitor.reward_modes` computes the same
+rewards for one automaton. If a mode has a module only there, :class:`RowByRow` calls the function of
+that module for each environment.
 """
 
 from __future__ import annotations
@@ -36,31 +37,31 @@ class BatchTransition(NamedTuple):
 
 
 class RewardMode(Protocol):
-    """A way to reward N environments.
+    """The interface of a reward mode for N environments.
 
-    The memory of a mode is what the mode keeps from step to step: a tensor whose last dimension has
-    size N.
+    A mode may need values from earlier steps. They are its memory, a tensor whose last dimension has
+    size N. The caller keeps the memory and passes it to the next step.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None: ...
 
     def start(self, count: int) -> Tensor:
-        """Return the memory of ``count`` environments before the first sample."""
+        """Return the memory of ``count`` environments before their first sample."""
         ...
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward, shape [N], and the memory after the step.
+        """Return the rewards of a step, shape [N], and the memory after the step.
 
-        The caller may modify the reward.
+        ``memory`` is the memory before the step. The caller may modify the rewards in place.
         """
         ...
 
 
 def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> RewardMode:
-    """Return the reward mode with the name ``options.mode``.
+    """Return an object that computes rewards in the mode ``options.mode``.
 
-    The mode ``progress`` has no module:
-    :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes` computes its rewards.
+    The mode must not be ``progress``:
+    :class:`~tltl_runtime.spec.batch.progress_and_reward.Outcomes` computes the rewards of that mode.
     """
     if importlib.util.find_spec(f"{__name__}.{options.mode}") is None:
         return RowByRow(fspa, options, device, dtype)
@@ -69,13 +70,13 @@ def reward_mode(fspa: Fspa, options: RewardOptions, device: torch.device, dtype:
 
 
 class RowByRow:
-    """A reward mode that calls the mode's function for one automaton, once for each environment.
+    """A reward mode for N environments that calls a function for one automaton in each environment.
 
     The function is in :mod:`tltlc.monitor.reward_modes` and runs on the CPU, so each step waits for
-    the torch device. The memory, int64 [N], has an index for each environment into a list of the
-    values that the function remembers. After the end of an episode the index is -1, and the
-    function is not called. Each step makes a new list, so only the memory of the last step is
-    valid.
+    the torch device. The function may remember any Python value from step to step. This object keeps
+    these values in a list. The memory, int64 [N], has an index into this list for each environment.
+    After the end of an episode, the index is -1, and the function is not called. Each step makes a new
+    list, so only the memory of the last step is valid.
     """
 
     def __init__(self, fspa: Fspa, options: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -84,11 +85,14 @@ class RowByRow:
         self._remembered: list[Any] = [None]
 
     def start(self, count: int) -> Tensor:
-        """Return 0 for each environment: the index of None, as nothing is remembered yet."""
+        """Return the memory before the first sample: 0 for each environment, the index of the value None."""
         return torch.zeros(count, dtype=torch.int64, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward and the indices of what the function remembers after the step."""
+        """Return the rewards, [N], and the indices of the values that the function remembers after the step.
+
+        The reward is 0 in an environment whose episode has ended before this step.
+        """
         columns = step.source, step.target, step.values.T, step.done, step.success, memory
         rewards: list[float] = []
         indices: list[int] = []

@@ -16,9 +16,9 @@ from tltlc.api import Fspa, Implicant, RewardOptions
 
 
 class EdgeReward:
-    """Rewards each step with the robustness of the most robust edge that leaves the state.
+    """Rewards each step with the robustness of the most robust edge to another state.
 
-    Edges into traps do not count. The reward is 0 if there is no other edge that leaves the state.
+    Edges into traps do not count. The reward is 0 if no edge counts.
     """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -34,7 +34,7 @@ class EdgeReward:
         return torch.zeros(count, dtype=self._dtype, device=self._device)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward, in [-1, 1], and the same memory."""
+        """Return the rewards, in [-1, 1], and the unchanged memory."""
         return self._leaving.robustness_of(step.source, step.values) + 0.0, memory
 
 

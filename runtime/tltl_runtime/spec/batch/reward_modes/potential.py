@@ -17,8 +17,9 @@ from tltlc.api import Fspa, RewardOptions, monitors
 
 
 class PotentialReward:
-    """A reward for success, shaped with progress as the potential.
+    """Rewards success with 1, and shapes this reward with progress as the potential.
 
+    The reward of a step is 1 on success, else 0, plus ``gamma * potential after - potential before``.
     The memory is the potential before the step, [N].
     """
 
@@ -31,11 +32,14 @@ class PotentialReward:
         self._gamma = options.gamma
 
     def start(self, count: int) -> Tensor:
-        """Return the potential in each environment before its first sample."""
+        """Return the memory before the first sample: the base progress of the initial state, [count]."""
         return self._base[:1].repeat(count)
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward and the potential after the step."""
+        """Return the rewards and the potential after the step, each [N].
+
+        The potential is 0 if the step ends the episode.
+        """
         nearest = self._improving.robustness_of(step.target, step.values)
         potential = self._base.index_select(0, step.target) + approach(nearest, self._size)
         after = potential.masked_fill_(step.done, 0.0)

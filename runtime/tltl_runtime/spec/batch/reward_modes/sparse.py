@@ -1,4 +1,4 @@
-"""Reward the robustness of the whole trace at its end.
+"""Reward the robustness of the whole trace, at the end of the episode.
 
 See :mod:`tltlc.monitor.reward_modes.sparse`.
 """
@@ -16,11 +16,11 @@ from tltlc.api import Fspa, RewardOptions
 
 
 class SparseReward:
-    """The robustness of the whole trace, once, at the end of the episode.
+    """Rewards the robustness of the whole trace at the end of the episode, and 0 before.
 
-    A run is a path through the automaton with one edge for each sample, whether its guard is true
-    or not. The width of a run is the least robustness of its edges. The memory has the width of the
-    widest run to each state, shape [states, N]; -2 if no run leads there.
+    A run is a path through the automaton with one edge for each sample so far, whether or not the
+    guards of these edges are true. The width of a run is the least robustness of its edges. The
+    memory has the width of the widest run to each state, shape [states, N]; -2 if no run leads there.
     """
 
     def __init__(self, fspa: Fspa, _: RewardOptions, device: torch.device, dtype: torch.dtype) -> None:
@@ -34,13 +34,16 @@ class SparseReward:
         self._dtype = dtype
 
     def start(self, count: int) -> Tensor:
-        """Return the width of the widest run to each state before the first sample, [states, N]."""
+        """Return the width of the widest run to each state before the first sample, [states, count].
+
+        It is 1 for the initial state, and -2 for all others.
+        """
         widths = torch.full((len(self._incoming), count), -2.0, dtype=self._dtype, device=self._sources.device)
         widths[0] = 1.0
         return widths
 
     def reward(self, step: BatchTransition, memory: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the reward, in [-1, 1], and the width of the widest run to each state."""
+        """Return the rewards, [N] in [-1, 1], and the width of the widest run to each state, [states, N]."""
         widths_through_edges = torch.minimum(
             memory.index_select(0, self._sources), self._guards.all_robustness(step.values)
         )
