@@ -1,4 +1,4 @@
-"""Many environments at once, stepped by worker processes.
+"""Vector environments: many Gymnasium environments at once, stepped by worker processes.
 
 Begin with :class:`WorkerVectorEnv`.
 """

@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 
 
 def check_batch(space: Space[Any], batch: Any, count: int) -> None:
-    """Raise ValueError unless ``batch`` has ``count`` values of ``space``.
+    """Check that ``batch`` has ``count`` actions of ``space``, batched as Gymnasium does it.
 
     The range of a Box is not checked here; the environment does that.
+
+    Raises:
+        ValueError: the batch has another shape, keys or type, or a value outside the space.
     """
     if isinstance(space, spaces.Dict):
         if not isinstance(batch, Mapping) or batch.keys() != space.keys():
@@ -40,7 +43,7 @@ def check_batch(space: Space[Any], batch: Any, count: int) -> None:
 
 
 def _outside_space(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return a mask of the numbers that are not in the space."""
+    """Return a mask of ``values``: True where a number is not in the space; never for a Box."""
     if isinstance(space, (spaces.Discrete, spaces.MultiDiscrete)):
         size = space.n if isinstance(space, spaces.Discrete) else space.nvec
         return np.asarray((values < space.start) | (values >= space.start + size))

@@ -17,7 +17,12 @@ def check_arguments(
     autoreset: AutoresetMode,
     on_death: str,
 ) -> None:
-    """Raise ValueError or TypeError if the arguments of a ``WorkerVectorEnv`` are invalid."""
+    """Check the arguments of a ``WorkerVectorEnv``.
+
+    Raises:
+        ValueError: an argument has an invalid value.
+        TypeError: an argument is of another type.
+    """
     if not functions:
         raise ValueError("expected at least one function that makes an environment")
     if not all(map(callable, functions)):
@@ -37,10 +42,13 @@ def check_arguments(
 
 
 def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
-    """Return the mask ``options["reset_mask"]``, and ``options`` without it.
+    """Split the options of a reset: return the mask ``options["reset_mask"]``, and the other options.
 
-    By default, the mask chooses all environments. Raises ValueError unless the mask is an array of
-    one bool per environment, at least one of them true.
+    The mask has a bool for each of ``count`` environments: whether to reset it. If there is no mask
+    in ``options``, the returned mask is True for all environments.
+
+    Raises:
+        ValueError: the mask is not an array of one bool per environment, or none of them is true.
     """
     if options is None or "reset_mask" not in options:
         return np.ones(count, dtype=np.bool_), options

@@ -18,19 +18,19 @@ from tltlc.api import Diagnostic, TltlError
 _TO_ANSWER_S: Final = 10.0
 """The seconds that a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""The seconds that further actors may take to start after the first one."""
+"""The seconds that the other actors may take to start after the first actor has started."""
 _REPORT_INTERVAL_S: Final = 10.0
 """Seconds between two reports that no actor has started."""
 
 
 @contextmanager
 def cluster() -> Iterator[Any]:
-    """Connect to a Ray cluster and yield the module ``ray``.
+    """Connect to a Ray cluster for the duration of a context, and yield the module ``ray``.
 
-    An existing connection is used as it is. Otherwise the function connects to a running cluster:
-    to that of the environment variable ``RAY_ADDRESS``, or to one that ``ray start`` began on this
-    machine. If no cluster is running, the function starts one on this machine. A connection that it
-    made is closed at the end of the context.
+    If this process is connected already, that connection is used and stays open. Otherwise, the
+    function connects to a running cluster: the cluster at the address in the environment variable
+    ``RAY_ADDRESS``, or a cluster that ``ray start`` began on this machine. If there is neither, it
+    starts a cluster on this machine. At the end of the context, it closes the connection.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster at ``RAY_ADDRESS``.
@@ -63,7 +63,7 @@ def cluster() -> Iterator[Any]:
 
 @contextmanager
 def keep_sigterm_handler() -> Iterator[None]:
-    """Restore the handler of SIGTERM at the end of this context, because Ray replaces it.
+    """Restore the handler of SIGTERM at the end of a context in which Ray replaces it.
 
     With Ray's handler, the process would end with another exit status and without cleanup.
     """
@@ -77,9 +77,10 @@ def keep_sigterm_handler() -> Iterator[None]:
 
 
 def free_cores(ray: Any) -> int:
-    """Return how many cores of the cluster are free for this process, at least 1.
+    """Return how many free cores of the cluster this process may use, at least 1.
 
-    Processes of torchrun share the free cores equally.
+    Processes that torchrun started together share the free cores equally. ``ray`` is the connected
+    module.
     """
     return max(1, int(ray.available_resources().get("CPU", 1)) // torchrun_variable("WORLD_SIZE", 1))
 
@@ -87,11 +88,12 @@ def free_cores(ray: Any) -> int:
 def wait_for_actors(
     ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
 ) -> list[int]:
-    """Wait until actors have started; return their indices, in order.
+    """Wait until actors have started; return the indices of the started actors, in order.
 
-    The first actor may take ``patience`` seconds. Until it starts, ``waiting`` is called now and
-    then with the seconds left. The remaining actors then have up to 30 seconds more. Actors that do
-    not start, because other programs use the cores, are missing in the result.
+    The first actor may take ``patience`` seconds to start. Until it starts, ``waiting`` is called
+    every 10 seconds with the seconds that are left. The other actors then have up to 30 seconds more,
+    but no more than ``patience`` in all. Actors that do not start in time, for example because other
+    programs use the cores, are missing in the result.
 
     Raises:
         TltlError: TLT0852, no actor starts in time.
@@ -112,9 +114,9 @@ def wait_for_actors(
 
 
 def no_worker_error(ray: Any, waited_s: float) -> TltlError:
-    """Return the error TLT0852: no worker started within ``waited_s`` seconds.
+    """Return the error TLT0852: no worker started on the cluster within ``waited_s`` seconds.
 
-    Ray gives no reason: other programs may use all cores, or the process of a worker may start
+    Ray does not say why: other programs may use all cores, or the process of a worker may start
     slowly.
     """
     cores = int(ray.cluster_resources().get("CPU", 0))
@@ -125,9 +127,12 @@ def no_worker_error(ray: Any, waited_s: float) -> TltlError:
 
 
 def _check_address(address: str) -> None:
-    """Raise OSError if nothing answers at the address HOST:PORT.
+    """Check that something answers at the address ``HOST:PORT``, because Ray would try for minutes.
 
-    Ray itself would try for minutes.
+    Other addresses, such as the empty one, are not checked.
+
+    Raises:
+        OSError: nothing answers.
     """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdecimal():

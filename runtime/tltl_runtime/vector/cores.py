@@ -13,7 +13,9 @@ def cores() -> int:
 
 
 def torchrun_variable(variable: str, default: int) -> int:
-    """Return the integer in an environment variable that torchrun sets, by default ``default``.
+    """Return the integer in an environment variable that torchrun sets, such as ``WORLD_SIZE``.
+
+    If the variable is not set, return ``default``, which is also the least value.
 
     Raises:
         TltlError: TLT0862, the value is not an integer, or is below ``default``.

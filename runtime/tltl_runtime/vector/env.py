@@ -33,9 +33,9 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
     "progress": np.float64,
     "success": np.bool_,
 }
-"""The keys of a TltlEnv's ``info`` that each step returns, and their types in NumPy.
+"""The keys of a TltlEnv's ``info`` that every step returns, with their NumPy types.
 
-Further keys are returned only with a reset and at the end of an episode.
+Other keys are returned only at a reset and at the end of an episode.
 """
 
 _ALL: Final = slice(None)
@@ -45,35 +45,37 @@ _log = logging.getLogger(__name__)
 
 
 class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """A vector environment whose environments are stepped by ``workers`` processes.
+    """A vector environment whose environments are stepped by worker processes.
 
-    ``functions`` make the environments, which must have equal spaces. A worker steps its share of
-    the environments one after the other. Observations, actions and the results of steps are in
-    shared memory. By default there are as many ``workers`` as cores, but never more than
-    environments. The same seeds and actions give the same episodes, bit for bit, for any number of
-    workers and in this process. With ``workers="ray"`` the workers are actors of a Ray cluster (see
-    :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes of torchrun
-    share these cores.
+    Each of ``functions`` makes an environment; all environments must have equal spaces. Each worker
+    steps its share of the environments one after the other. Observations, actions and the results of
+    steps are in shared memory. The same seeds and actions give the same episodes, bit for bit, for any
+    number of workers, and also if a single process steps the environments without workers.
 
-    ``autoreset`` is ``SAME_STEP`` (the observation is that of the new episode; ``final_obs`` and
-    ``final_info`` describe the old one) or ``NEXT_STEP``, as Gymnasium defines them. At every step,
-    ``infos`` has an array for each key of ``info``. By default these are keys of a
-    :class:`~tltl_runtime.spec.wrapper.TltlEnv`: ``verdict``, ``state``, ``progress``, ``success``.
-    Further entries of an environment's info are returned with a reset and with the end of an
-    episode. The end of an episode also has ``episode``: the sum of rewards ``r`` and the length
-    ``l``.
+    ``workers`` is the number of processes, by default the number of cores, but never more than there
+    are environments. With ``workers="ray"`` the workers are actors of a Ray cluster (see
+    :func:`~tltl_runtime.vector.cluster.cluster`), one on each free core; processes that torchrun
+    started together share these cores.
 
-    A worker is lost if it ends, raises or is silent for ``timeout`` seconds. A report then says
-    what happened to the worker. For each of its environments, the report gives the name (from
-    ``names``, which has one for each environment), the seed, the episode and the step. With
-    ``on_death="stop"``, a :class:`WorkerError` with this report is raised, and this vector
-    environment is closed. With ``"replace"``, a new worker takes over, the report goes to this
-    module's logger, and the affected environments begin episodes with new seeds. Their step is
-    ``truncated`` with reward 0, ``final_obs`` is their last observation, and ``infos["lost"]`` is
-    True for them.
+    ``autoreset`` is a mode of Gymnasium: ``SAME_STEP`` (the step that ends an episode returns the
+    first observation of the next; ``final_obs`` and ``final_info`` describe the end) or ``NEXT_STEP``.
+    ``info`` maps keys of the environments' info dicts to NumPy types. At every step, ``infos`` has an
+    array for each of these keys. All other entries are returned only at a reset and at the end of an
+    episode. By default, the keys are ``verdict``, ``state``, ``progress`` and ``success`` if the
+    environments are wrapped in a :class:`~tltl_runtime.spec.wrapper.TltlEnv`; otherwise there are none.
+    The end of an episode also has ``episode``: the sum of rewards ``r`` and the length ``l``.
 
-    If an environment has a method ``prepare``, its worker calls the method while idle, until it
-    returns False. So the environment can prepare the next reset in small steps.
+    A worker is lost if its process ends, if an environment raises, or if it is silent for ``timeout``
+    seconds. A report then says what happened to the worker. For each of its environments, the report
+    gives the name (one of ``names``), the seed, the episode and the step. With ``on_death="stop"``, a
+    :class:`WorkerError` with this report is raised, and this vector environment is closed. With
+    ``"replace"``, a new worker takes over, the report goes to this module's logger, and the
+    environments of the lost worker begin episodes with new seeds. Their step is ``truncated`` with
+    reward 0, ``final_obs`` is their last observation, and ``infos["lost"]`` is True for them.
+
+    If an environment has a method ``prepare``, its worker calls this method again and again while it
+    waits for a command, until the method returns False. So the environment can prepare the next reset
+    in small steps.
 
     Functions that cannot be imported, such as lambdas, are pickled by value. A process starts by
     importing the main module, so a script needs ``if __name__ == "__main__"`` around its own work.
@@ -136,15 +138,20 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin an episode in each environment.
+        """Begin an episode in each environment, or in those that ``options["reset_mask"]`` chooses.
 
-        The i-th environment gets the seed ``seed + i``, or the i-th seed of a sequence. Without a
-        seed, or with None, an environment continues with its random generator. The first reset
-        without a seed draws a seed for each environment.
+        If ``seed`` is a number, the i-th environment gets the seed ``seed + i``; if it is a sequence,
+        the i-th seed. Without a seed, or if its seed in the sequence is None, an environment continues
+        with its random generator. If no seed is given, environments that have not had one yet get
+        seeds that are drawn from ``self.np_random``.
 
-        ``options["reset_mask"]``, one bool per environment, chooses the environments to reset.
-        Environments that it does not choose continue their episodes. The mask is not passed on to
-        the environments.
+        The mask has one bool per environment. The other environments continue their episodes. The
+        mask is not passed on to the environments; all other options are.
+
+        Raises:
+            ValueError: the mask or the number of seeds is invalid.
+            ResetNeeded: the first reset does not choose all environments.
+            WorkerError: a worker was lost, and ``on_death`` is ``stop``.
         """
         self._check_open()
         if self._workers.is_waiting:
@@ -195,18 +202,21 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self._read_observations(), *ends, self._add_columns(infos)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Return an attribute of each environment; if it is callable, the result of calling it."""
+        """Return the attribute ``name`` of each environment; if it is callable, call it and return the results."""
         return self._ask_all("call", [(name, args, kwargs)] * len(self._workers.shares))
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """Return an attribute of each environment."""
+        """Return the attribute ``name`` of each environment; call it without arguments if it is callable."""
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set an attribute of each environment.
+        """Set the attribute ``name`` of each environment.
 
-        If ``values`` is a list or tuple, it has a value for each environment. Otherwise it is the
-        value for all environments.
+        If ``values`` is a list or tuple, it has a value for each environment. Otherwise, all
+        environments get this value.
+
+        Raises:
+            ValueError: the list or tuple has another length.
         """
         env_values = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
         if len(env_values) != self.num_envs:
@@ -229,7 +239,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _ask_all(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
         """Send a command to all workers; return the results of all environments, in order.
 
-        A lost worker is not replaced: this vector environment is closed, and WorkerError is raised.
+        ``arguments`` has the arguments for each worker. A lost worker is not replaced here, whatever
+        ``on_death`` says: this vector environment is closed, and WorkerError is raised.
         """
         self._check_ready()
         answers = self._workers.ask(command, arguments)
@@ -265,7 +276,10 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return self._observations
 
     def _add_columns(self, infos: dict[str, Any]) -> dict[str, Any]:
-        """Add to ``infos`` the entries that workers write to shared memory, for all environments."""
+        """Add to ``infos`` the arrays that workers write to shared memory, and return it.
+
+        As in Gymnasium, each key also gets a mask with a leading underscore, here True for all.
+        """
         for key, column in self._rows.info.items():
             infos[key] = column.copy()
             infos[f"_{key}"] = np.ones(self.num_envs, dtype=np.bool_)
@@ -274,9 +288,10 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     # --- lost workers -----------------------------------------------------------------------------
 
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a worker that was lost during a step.
+        """Replace a worker that was lost during a step; end the episodes of its environments as truncated.
 
-        Return the row (index) and the info of each of its environments.
+        Return pairs of the index and the info of these environments. The info describes the end of
+        the old episode and the start of the new one.
         """
         share = self._workers.shares[loss.worker]
         resets = self._replace(loss)
@@ -288,11 +303,13 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return infos
 
     def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
-        """Replace a lost worker, and begin episodes in its environments.
+        """Replace a lost worker, and begin episodes in its environments with new seeds.
 
-        Return the row (index) and the info of each of these environments. Raise WorkerError instead
-        if workers are not to be replaced, if the lost worker is itself new and has not taken a
-        step, or if the new worker is lost before its episodes begin.
+        Return pairs of the index and the info of these environments.
+
+        Raises:
+            WorkerError: workers are not replaced; or the lost worker had itself replaced another and
+                had not taken a step; or the new worker is lost before its episodes begin.
         """
         if not self._replaces or loss.worker in self._unproven:
             self._stop(loss)
@@ -334,7 +351,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
 
 def _modules(env: gymnasium.Env[Any, Any]) -> Iterator[str]:
-    """Yield the modules of an environment and of its wrappers, except that of the script that runs."""
+    """Yield the names of the modules of an environment and its wrappers, except ``__main__``."""
     while True:
         if type(env).__module__ != "__main__":
             yield type(env).__module__

@@ -21,10 +21,11 @@ The likely cause is that the worker could not import the main module.
 class Playing:
     """The episode that an environment was playing when its worker was lost.
 
-    To get the same episode, reset the environment with ``seed``, then ``episode`` - 1 times without
-    a seed. ``env`` is the number of the environment, ``name`` its name. A ``seed`` of None means
-    that the environment was not reset yet. ``step`` is the step of the episode that was in
-    progress, or the last step that was finished. ``busy`` means that the environment was at work.
+    ``env`` is the index of the environment, and ``name`` its name. To get the same episode again,
+    reset the environment with ``seed``, then ``episode`` - 1 times without a seed. ``seed`` is None
+    if the environment was not reset yet. ``busy`` says whether the environment was in a reset or a
+    step when the worker was lost. ``step`` is the number of that step or, if there was none, of the
+    last finished step.
     """
 
     env: int
@@ -41,13 +42,14 @@ class Playing:
 
 @record
 class Loss:
-    """The loss of a worker: how it ended.
+    """The loss of a worker: which worker, and how it ended.
 
-    ``status`` is its exit status; None for an actor of Ray, and for a process that had to be
-    killed. If it is negative, the signal ``-status`` ended the worker. ``silent`` is the number of
-    seconds for which it was silent before it was killed; None if it ended by itself. ``traceback``
-    is that of the exception that ended the worker; empty if it ended without one. ``starting``
-    means that the worker had not made its environments yet.
+    ``worker`` is the index of the worker. ``status`` is the exit status of its process; if it is
+    negative, the signal ``-status`` ended the process. It is None for an actor of Ray, and for a
+    process that had to be killed. ``silent`` is the number of seconds for which the worker was silent
+    before it was killed; None if it was lost in another way. ``traceback`` belongs to the exception
+    that ended the worker; it is empty if there was none. ``starting`` says that the worker had not
+    made its environments yet.
     """
 
     worker: int
@@ -69,7 +71,7 @@ class Loss:
 
 
 class WorkerError(RuntimeError):
-    """A worker was lost: the ``loss``, and what its environments were ``playing``."""
+    """Raised if a worker is lost. ``loss`` says how, and ``playing`` what its environments were playing."""
 
     def __init__(self, loss: Loss, playing: tuple[Playing, ...]) -> None:
         super().__init__(report(loss, playing))

@@ -1,4 +1,4 @@
-"""The levels of the game as vector environments."""
+"""The levels of games as vector environments."""
 
 from __future__ import annotations
 
@@ -35,9 +35,10 @@ def make_vec(
 ) -> WorkerVectorEnv:
     """Make a vector environment of ``num_envs`` environments of a level, stepped by ``workers``.
 
-    :meth:`~tltl_runtime.game.game.Game.make_env` makes the environments. ``wrapper`` receives the
-    function that makes an environment, and returns the environment to use. The wrapper must be
-    importable. ``options`` are those of :class:`~tltl_runtime.vector.WorkerVectorEnv`.
+    :meth:`~tltl_runtime.game.game.Game.make_env` makes the environments; see there for the arguments
+    that are not explained here. By default, the ``spec`` is that of the level. ``wrapper`` is an
+    importable function. It gets a function that makes an environment, and returns the environment to
+    use. ``workers`` and ``options`` are arguments of :class:`~tltl_runtime.vector.WorkerVectorEnv`.
 
     Raises:
         ValueError: the render mode is ``human`` and there are several environments, each of which

@@ -1,4 +1,4 @@
-"""Workers of a Ray cluster that step environments, with the same methods as the local workers."""
+"""Workers on a Ray cluster that step environments, with the same methods as local worker processes."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ from tltlc.api import replace
 
 
 class RayWorkers:
-    """Actors that step environments, one on each free core; actor w steps those in slice w of ``shares``.
+    """Actors that step environments, one on each free core of a Ray cluster.
 
-    Actors share no memory. So actions are sent with each command, and the rows that come back (the
-    observation and results of each environment) are copied to ``rows``. In all other respects, the
-    actors are like the processes of :class:`~tltl_runtime.vector.workers.Workers`. ``info`` has the
-    types of the info columns of ``rows``, by name.
+    ``shares`` has a slice for each actor: the indices of the environments that it steps. The actors
+    do not share memory with this process. So actions are sent with each command, and the rows that
+    come back (the observation and results of each environment) are copied to ``rows``. In all other
+    respects, the actors are like the processes of :class:`~tltl_runtime.vector.workers.Workers`.
+    ``info`` has the types of the info columns of ``rows``, by name.
 
     Raises:
         TltlError: TLT0730, Ray is not installed; TLT0852, there is no cluster, or no worker starts.
@@ -56,7 +57,7 @@ class RayWorkers:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether an answer is still pending, as after a Ctrl-C."""
+        """Whether an answer is pending, for example after a Ctrl-C during a command."""
         return bool(self._pending)
 
     def pid(self, worker: int) -> int | None:
@@ -64,7 +65,7 @@ class RayWorkers:
         return None
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers and wait until they have made their environments.
+        """Start the workers with these indices, and wait until they have made their environments.
 
         Return a :class:`Loss` for each worker that was lost while it started.
 
@@ -80,7 +81,10 @@ class RayWorkers:
         return [replace(answer, starting=True) for answer in answers if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Send a command to all workers, each with its own arguments, and return their answers."""
+        """Send a command to all workers, each with its own arguments; return their answers in order.
+
+        The answer of a lost worker is a :class:`Loss`.
+        """
         for worker, worker_arguments in enumerate(arguments):
             self.send(worker, command, worker_arguments)
         return self.answers()
@@ -91,10 +95,10 @@ class RayWorkers:
         self._pending[self._actors[worker].do.remote(command, arguments, actions)] = worker
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for the pending answers and return them in order of the workers.
+        """Wait for the pending answers, and return them in the order of the workers.
 
-        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its
-        answer is a :class:`Loss`.
+        A worker that does not answer within ``patience`` seconds, by default ``timeout``, is killed.
+        The answer of a lost worker is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
@@ -121,7 +125,11 @@ class RayWorkers:
         self._stack.close()
 
     def _start_actors(self, most: int) -> list[Any]:
-        """Start ``most`` actors; return those that get a core in time, and end the others."""
+        """Start ``most`` actors; return the actors that get a core in time, and end the others.
+
+        Raises:
+            TltlError: TLT0852, no actor starts in time.
+        """
         # No restarts: Ray would continue silently with a new actor, and with its environments back at their beginning.
         actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_EnvironmentActor).remote() for _ in range(most)]
         started: list[Any] = []
@@ -156,10 +164,10 @@ class _EnvironmentActor:
         info: Mapping[str, DTypeLike],
         autoreset: AutoresetMode,
     ) -> tuple[None, None]:
-        """Make the environments of this actor, one from each of ``functions``.
+        """Make the environments of this actor, one with each of ``functions``.
 
-        They use the rows ``share`` of a table of ``count`` rows. Returns no answer and no rows: a
-        pair like that of :meth:`do`.
+        They use the rows ``share`` of a table with ``count`` rows. Return (None, None), which has the
+        form of the results of :meth:`do`: no answer, and no rows.
         """
         context = multiprocessing.get_context("spawn")
         rows = Rows(context, count, spaces["observation_space"], spaces["action_space"], info)
@@ -168,6 +176,10 @@ class _EnvironmentActor:
         return None, None
 
     def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:
-        """Store ``actions`` and carry out a command; return its result and the rows after it."""
+        """Store ``actions`` in the rows, and carry out a command with ``arguments``.
+
+        ``command`` is the name of a method of :class:`Share`. Return its result, and the rows of this
+        actor's environments after the command.
+        """
         self._table["action"] = actions
         return getattr(self._share, command)(*arguments), self._table

@@ -16,26 +16,28 @@ from gymnasium import Space, spaces
 from numpy.typing import DTypeLike, NDArray
 
 SharedColumns = Any
-"""The values of all rows for a space.
+"""The values of all rows for a space, called the columns of the space.
 
-This is an array. For a Dict or Tuple space, it is a dict or tuple of columns.
+This is an array with one row for each environment. For a Dict or Tuple space, it is a dict or tuple
+with the columns of the space's parts.
 """
 
 
 class Rows:
-    """``count`` rows, one for each environment.
+    """A table in shared memory with ``count`` rows, one for each environment.
 
     ``spaces`` are the observation space and the action space that all environments share, under the
-    keys ``observation_space`` and ``action_space``. An instance can only be passed to a process
-    while that process is being started.
+    keys ``observation_space`` and ``action_space``. An instance can be passed to another process only
+    as an argument when that process is started.
 
     - ``observation`` and ``action`` are the columns of the two spaces.
     - ``reward``, ``terminated`` and ``truncated`` are the results of a step.
     - ``episode`` counts the episodes since the last reset with a seed, from 1.
-    - ``step`` counts the steps of the episode, including the one in progress; ``total`` sums its
-      rewards.
+    - ``step`` counts the steps of the episode, including a step in progress; ``total`` is the sum of
+      the episode's rewards.
     - ``busy`` says whether the environment is in a reset or a step.
-    - ``info`` are further columns, by name; ``table`` has all columns of all rows.
+    - ``info`` are further columns, by name.
+    - ``table`` is the structured array with all columns of all rows.
 
     Raises:
         ValueError: a space has no fixed size.
@@ -87,7 +89,7 @@ class Rows:
 
 
 def write(columns: SharedColumns, row: int, value: Any) -> None:
-    """Write a value of a space into one row of the columns of this space."""
+    """Write ``value``, which is in a space, into one row of the space's columns."""
     if isinstance(columns, dict):
         for key, column in columns.items():
             write(column, row, value[key])
@@ -99,9 +101,9 @@ def write(columns: SharedColumns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: SharedColumns, batch: Any) -> None:
-    """Write a batch of values of a space into its columns: one value into each row.
+    """Write a batch of values of a space into the space's columns: one value into each row.
 
-    ``batch`` has passed :func:`tltl_runtime.vector.actions.check_batch`.
+    :func:`tltl_runtime.vector.actions.check_batch` must have checked ``batch``.
     """
     if isinstance(columns, dict):
         for key, column in columns.items():
@@ -114,7 +116,7 @@ def write_batch(columns: SharedColumns, batch: Any) -> None:
 
 
 def read(columns: SharedColumns, rows: int | slice) -> Any:
-    """Return a copy of the value in a row, or of the values in a slice of rows as a batch."""
+    """Return a copy of the value in one row, or of the values in a slice of rows as a batch."""
     if isinstance(columns, dict):
         return {key: read(column, rows) for key, column in columns.items()}
     if isinstance(columns, tuple):

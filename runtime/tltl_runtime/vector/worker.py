@@ -1,4 +1,4 @@
-"""A worker process: makes its environments, and resets and steps them on command."""
+"""The code of a worker process, which makes its environments, and resets and steps them on command."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
     """Serve the commands from ``connection`` until ``close`` arrives or the other process is gone.
 
     ``functions`` is a ``CloudpickleWrapper`` of the functions that make the environments. The first
-    environment uses row ``first`` of ``rows``, the next one the next row, and so on. A command is a
-    pair: the name of a method of :class:`Share`, and its arguments. The answer is a pair, too:
-    ``done`` and the result, or ``failed`` and a traceback. After ``failed`` the worker ends. The
-    first answer comes without a command, when all environments are made.
+    environment uses row ``first`` of ``rows``, the second the row after it, and so on.
+
+    A command is a pair: the name of a method of :class:`Share`, and its arguments. The answer is a
+    pair, too: ``done`` and the result, or ``failed`` and a traceback. After ``failed``, the worker
+    ends. The first answer needs no command: it is sent when all environments are made.
     """
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -51,7 +52,14 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
 
 
 class Share:
-    """The environments of one worker."""
+    """The environments of one worker; its methods are the commands that the worker serves.
+
+    The i-th environment uses the row ``first + i`` of ``rows``: it takes its actions from there and
+    writes its observations and results there.
+
+    Raises:
+        ValueError: a space of an environment differs from that in ``rows``.
+    """
 
     def __init__(self, functions: Sequence[EnvFunction], rows: Rows, first: int, autoreset: AutoresetMode) -> None:
         self._rows = rows
@@ -69,7 +77,10 @@ class Share:
     def reset(
         self, seeds: Sequence[int | None], options: dict[str, Any] | None, chosen: Sequence[bool]
     ) -> list[tuple[int, Info]]:
-        """Begin an episode in each chosen environment; return pairs of their rows and infos."""
+        """Begin an episode in each chosen environment; return a pair of row and info for each.
+
+        ``seeds`` and ``chosen`` have a value for each environment of this worker.
+        """
         infos = []
         for index in range(len(self._envs)):
             if chosen[index]:
@@ -79,9 +90,9 @@ class Share:
         return infos
 
     def step(self) -> list[tuple[int, Info]]:
-        """Take a step with the actions in the rows.
+        """Take a step in each environment, with the actions in the rows.
 
-        Return pairs of a row and an info for the environments whose episodes ended or began.
+        Return pairs of a row and an info for the environments in which an episode ended or began.
         """
         actions = read(self._rows.action, slice(self._first, self._first + len(self._envs)))
         infos = []
@@ -110,19 +121,22 @@ class Share:
         return infos
 
     def prepare(self) -> bool:
-        """Let one environment with a method ``prepare`` do a little work ahead of time.
+        """Let one environment do a little work ahead of time, by its own method ``prepare``.
 
-        Return False if none has work to do.
+        Return whether an environment had work to do.
         """
         return any(prepare() for prepare in self._preparing)
 
     def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
-        """Return an attribute of each environment; if it is callable, the result of calling it."""
+        """Return the attribute ``name`` of each environment; if it is callable, call it and return the results."""
         attributes = [env.get_wrapper_attr(name) for env in self._envs]
         return [attribute(*args, **kwargs) if callable(attribute) else attribute for attribute in attributes]
 
     def set_attr(self, name: str, values: Sequence[Any]) -> tuple[()]:
-        """Set an attribute of each environment; ``values`` has a value for each of them, in order."""
+        """Set the attribute ``name`` of each environment; ``values`` has their values, in order.
+
+        Return an empty tuple: no environment has a result.
+        """
         for env, value in zip(self._envs, values, strict=True):
             env.set_wrapper_attr(name, value)
         return ()
@@ -144,9 +158,9 @@ class Share:
         return observation, info
 
     def _statistics(self, row: int) -> dict[str, Any]:
-        """Return the sum of rewards ``r`` and the length ``l`` of the episode.
+        """Return the sum of rewards ``r`` and the length ``l`` of the episode in a row.
 
-        The names are those of Gymnasium's statistics.
+        The keys are those of Gymnasium's wrapper ``RecordEpisodeStatistics``.
         """
         return {"r": float(self._rows.total[row]), "l": int(self._rows.step[row])}
 

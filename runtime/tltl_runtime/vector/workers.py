@@ -1,4 +1,4 @@
-"""Start, command, watch and stop worker processes, in the process that uses them."""
+"""Worker processes as seen by the process that uses them: start, command, watch and stop them."""
 
 from __future__ import annotations
 
@@ -19,22 +19,23 @@ from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.api import fileio, replace
 
 TO_START_S: Final = 120.0
-"""Seconds that a worker has to import its modules and make its environments.
+"""The seconds that a worker has to import its modules and make its environments.
 
-If ``timeout`` is longer, it has that time.
+If the ``timeout`` of the workers is longer, that time counts instead.
 """
 _TO_END_S: Final = 5.0
 """The seconds that a worker may take to end after a command to close, or after it was killed."""
 
 
 class Workers:
-    """Processes that step environments; worker w has the w-th slice of ``shares``.
+    """Processes that step environments.
 
-    A process is never forked from this one: forking while threads of torch or OpenBLAS exist is
-    unsafe (:func:`~tltl_runtime.support.child_processes.worker_context`). A command to all workers
-    returns their answers in order of the workers. A worker is lost if it ends, raises, or is silent
-    for ``timeout`` seconds. Its answer is then a :class:`Loss`, and ``start`` starts a new process
-    in its place.
+    ``shares`` has a slice for each worker: the indices of the environments that it steps. A worker is
+    lost if its process ends, if an environment raises, or if it is silent for ``timeout`` seconds. Its
+    answer is then a :class:`Loss`, and :meth:`start` can start a new process in its place.
+
+    No worker is forked from this process: forking while threads of torch or OpenBLAS exist is unsafe
+    (:func:`~tltl_runtime.support.child_processes.worker_context`).
     """
 
     def __init__(
@@ -57,7 +58,7 @@ class Workers:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether an answer is still pending, as after a Ctrl-C."""
+        """Whether an answer is pending, for example after a Ctrl-C during a command."""
         return bool(self._pending)
 
     def pid(self, worker: int) -> int | None:
@@ -65,7 +66,7 @@ class Workers:
         return self._processes[worker].pid
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these workers and wait until they have made their environments.
+        """Start the workers with these indices, and wait until they have made their environments.
 
         Return a :class:`Loss` for each worker that was lost while it started.
         """
@@ -88,7 +89,10 @@ class Workers:
         return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Send a command to all workers, each with its own arguments, and return their answers."""
+        """Send a command to all workers, each with its own arguments; return their answers in order.
+
+        The answer of a lost worker is a :class:`Loss`.
+        """
         for worker, worker_arguments in enumerate(arguments):
             self.send(worker, command, worker_arguments)
         return self.answers()
@@ -101,10 +105,10 @@ class Workers:
             self._connections[worker].send((command, arguments))
 
     def answers(self, patience: float | None = None) -> list[Any]:
-        """Wait for the pending answers and return them in order of the workers.
+        """Wait for the pending answers, and return them in the order of the workers.
 
-        A worker that is silent for ``patience`` seconds, by default ``timeout``, is killed; its
-        answer is a :class:`Loss`.
+        A worker that does not answer within ``patience`` seconds, by default ``timeout``, is killed.
+        The answer of a lost worker is a :class:`Loss`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
@@ -141,9 +145,9 @@ class Workers:
         self._pending.discard(worker)
 
     def _ready(self, deadline: float) -> set[int]:
-        """Return the workers that have answered or ended, among those with pending answers.
+        """Wait until a worker with a pending answer has answered or ended; return all such workers.
 
-        The set is empty once the deadline has passed.
+        The set is empty if there is none before ``deadline``, a time of ``time.monotonic()``.
         """
         left = max(0.0, deadline - time.monotonic())
         return {key.data for key, _ in self._selector.select(left)}
@@ -161,7 +165,11 @@ class Workers:
         return self._end_lost(worker)
 
     def _end_lost(self, worker: int, *, silent: float | None = None, traceback: str = "") -> Loss:
-        """End a lost worker and return how it was lost."""
+        """End a lost worker, and return how it was lost.
+
+        ``silent`` is the number of seconds for which it was silent; None if it ended by itself.
+        ``traceback`` belongs to the exception that ended it.
+        """
         process = self._processes[worker]
         if silent is None:
             process.join(_TO_END_S)
@@ -170,7 +178,7 @@ class Workers:
         return Loss(worker, status, silent, traceback)
 
     def _end(self, worker: int) -> None:
-        """Kill a worker unless it has ended, and release its process object and its connection."""
+        """Kill a worker if it still runs, and release its process object and its connection."""
         self._unwatch(worker)
         process, connection = self._processes.pop(worker), self._connections.pop(worker)
         connection.close()
@@ -182,7 +190,7 @@ class Workers:
 
 
 def split_evenly(count: int, workers: int) -> Iterator[slice]:
-    """Yield a slice of ``count`` environments for each worker.
+    """Divide ``count`` environments among workers: yield the slice of indices of each worker, in order.
 
     The lengths of the slices differ by at most one.
     """
