@@ -1,4 +1,4 @@
-"""Evaluations of policies: reproducible episodes and their statistics.
+"""Evaluate policies: play reproducible episodes, and compute their statistics.
 
 Begin with :mod:`~tltl_runtime.evaluation.evaluate`.
 """

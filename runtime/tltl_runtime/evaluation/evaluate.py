@@ -1,4 +1,4 @@
-"""Evaluate a policy over many episodes, on one core, on several or on a Ray cluster."""
+"""Evaluate a policy over many episodes, on one core, on several cores or on a Ray cluster."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tltl_runtime.vector.cores import cores
 from tltlc.api import Diagnostic, Fspa, TltlError
 
 Pool = int | Literal["ray"]
-"""Where to play: in this process (1), in this many workers (0: one per core), or on Ray."""
+"""Where to play: in this process (1), in this many worker processes (0: one per core), or on a Ray cluster."""
 
 
 def evaluate(
@@ -38,10 +38,11 @@ def evaluate(
 ) -> Iterator[EpisodeSummary]:
     """Play ``episodes`` episodes with a policy; yield their summaries in order.
 
-    ``level``, ``variant`` and ``spec`` default to those that the policy was trained for; on another
-    level, the variant defaults to ``v0``. If ``sampled``, actions are sampled; otherwise the
-    likeliest action is taken. The episodes do not depend on ``workers``. Worker processes import
-    the main module, so put the code of a script under ``if __name__ == "__main__"``.
+    ``policy`` is a policy or the path of its file. ``level``, ``variant`` (of the level) and ``spec``
+    default to those that the policy was trained for. If ``level`` is given, the variant defaults to
+    ``v0``. If ``sampled``, actions are sampled; otherwise the likeliest action is taken. The episodes
+    depend on ``seed``, but not on ``workers``. Worker processes import the main module, so put the code
+    of a script under ``if __name__ == "__main__"``.
 
     Raises:
         TltlError: the errors of :func:`set_up`, :func:`results` and ``read_policy``.
@@ -60,10 +61,11 @@ def set_up(
     seed: int,
     recorded: RecordMode | None = None,
 ) -> Setup:
-    """Check the arguments of an evaluation and return its setup.
+    """Check the arguments of an evaluation, and return its setup.
 
-    ``level``, ``variant`` and ``spec`` default to those that the policy was trained for.
-    ``recorded`` says which episodes to record.
+    ``level``, ``variant`` and ``spec`` default to those that the policy was trained for. If ``level``
+    is given, the variant defaults to ``v0``. ``seed`` is the seed of the evaluation. ``recorded`` says
+    which episodes to record; see :class:`~tltl_runtime.evaluation.player.Setup`.
 
     Raises:
         TltlError: the level, variant or spec does not exist; the level lacks something that the
@@ -87,7 +89,11 @@ def set_up(
 
 
 def check_limit(fspa: Fspa) -> None:
-    """Raise TltlError, TLT0851, if a spec has no limit."""
+    """Check that a spec has a limit of steps, so that every episode ends.
+
+    Raises:
+        TltlError: TLT0851, the spec has no limit.
+    """
     if fspa.limit_steps is None:
         title = f"`{fspa.name}` has no limit, so an episode may go on for ever"
         raise TltlError([Diagnostic("TLT0851", title, help="write a limit in the spec, such as `limit 400 steps`")])
@@ -103,8 +109,8 @@ def results(
     """Play the requested episodes and yield them in order. Closing the iterator ends the workers.
 
     While no core of a Ray cluster is free, ``waiting`` is called now and then with the seconds that
-    are left to wait. If a worker is lost, the error shows a command that plays only the lost
-    episode. ``replay_command`` returns that command; by default it is ``tltlc evaluate``.
+    are left to wait. If a worker is lost, the error shows a shell command that plays only the lost
+    episode. ``replay_command`` returns this command; by default, it is a ``tltlc evaluate`` command.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
@@ -135,12 +141,13 @@ def local_results(
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
-    Each process calls ``make`` once, which returns its player of episodes. If there are worker
-    processes, ``make`` must be picklable, and ``modules`` are the modules that its players need.
+    ``make`` returns an object that plays episodes. Each process calls it once. If there are worker
+    processes, ``make`` must be picklable, and ``modules`` are the names of the modules that such an
+    object needs.
 
     Raises:
-        TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
-            ``seed``; errors while an episode is played.
+        TltlError: TLT0850, a worker was lost (the message names its episode and the evaluation's
+            ``seed``); errors while an episode is played.
         ValueError: ``workers`` is below 0.
     """
     if workers == 1:

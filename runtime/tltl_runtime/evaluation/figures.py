@@ -13,9 +13,9 @@ from tltlc.api import record
 class FailureGroup:
     """Failed episodes that ended in the same way and in the same state.
 
-    ``state`` is the automaton state at the end, or before the violation. ``label`` says what
-    remained to be done in that state. ``share`` is the share among all episodes that were played,
-    in [0, 1]. ``episodes`` are the indices of the failed episodes, and ``count`` is their number.
+    ``state`` is the automaton's state at the end, or its state before the violation. ``label`` says
+    what remained to be done in that state. ``episodes`` are the indices of the episodes, and ``count``
+    is their number. ``share`` is their share of all episodes of the evaluation, in [0, 1].
     """
 
     state: int
@@ -30,10 +30,10 @@ class FailureGroup:
 class Figures:
     """The statistics of ``episodes`` episodes.
 
-    ``pass_rate`` is in [0, 1]; ``pass_interval`` is its 95 % Wilson interval. Each other field has
-    a mean and a standard deviation over the episodes. ``progress`` is about the best progress of
-    each episode, in [0, 1], ``reward`` about its undiscounted return, and ``steps`` about its
-    number of decisions.
+    ``pass_rate`` is the share of successful episodes, in [0, 1]; ``pass_interval`` is its 95 % Wilson
+    interval. The other fields are means and standard deviations over the episodes: ``progress`` of the
+    best progress of each episode, in [0, 1], ``reward`` of the undiscounted return, and ``steps`` of
+    the number of decisions.
     """
 
     episodes: int
@@ -46,7 +46,7 @@ class Figures:
 
 @record
 class Evaluation:
-    """The result of an evaluation: the figures, how failed episodes ended, and all episodes."""
+    """The result of an evaluation: the statistics, the groups of failed episodes, and all episodes."""
 
     figures: Figures
     ended: tuple[FailureGroup, ...]
@@ -54,7 +54,11 @@ class Evaluation:
 
 
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
-    """Return the statistics of some episodes. Raises ValueError if there are none."""
+    """Return the statistics of ``episodes``.
+
+    Raises:
+        ValueError: there are no episodes.
+    """
     passed = sum(episode.success for episode in episodes)
     # Compute this first: without episodes, it raises an error with a clear message.
     interval = wilson(passed, len(episodes))
@@ -69,12 +73,16 @@ def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
 
 
 def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
-    """Return the statistics, failures and summaries of some episodes. Raises ValueError if there are none."""
+    """Return the statistics, the groups of failures and the summaries of ``episodes``.
+
+    Raises:
+        ValueError: there are no episodes.
+    """
     return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes))
 
 
 def _failure_groups(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:
-    """Group the failed episodes by how and in which state they ended, the largest group first."""
+    """Group the failed episodes by how and in which state they ended; return the largest group first."""
     groups: dict[tuple[int, str, End], list[int]] = {}
     for episode in episodes:
         if not episode.success:

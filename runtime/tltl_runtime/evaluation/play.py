@@ -16,12 +16,12 @@ _OF_LEVEL, _OF_ACTIONS = 0, 1
 
 
 def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> EpisodeSummary:
-    """Play episode ``index`` of the evaluation with ``seed`` to its end, and return its summary.
+    """Play one episode of an evaluation to its end, and return its summary.
 
-    ``env`` is a :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a
-    limit. If ``sampled``, actions are sampled, otherwise the likeliest action is taken. The episode
-    depends only on the policy, the environment, ``seed``, ``index`` and ``sampled``. The seed of
-    the environment does not depend on ``sampled``.
+    ``seed`` is the seed of the evaluation, and ``index`` the index of the episode. ``env`` is a
+    :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a limit. If
+    ``sampled``, actions are sampled, otherwise the likeliest action is taken. The episode depends only
+    on the arguments. The seed of the environment's reset does not depend on ``sampled``.
 
     Raises:
         TltlError: TLT0854, the environment or the policy gives values that are not finite.
@@ -57,7 +57,10 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
 
 
 def episode_seed(seed: int, index: int) -> int:
-    """Return the environment's seed, in [0, 2**31), for episode ``index`` of an evaluation."""
+    """Return the seed, in [0, 2**31), of the environment's reset for episode ``index`` of an evaluation.
+
+    ``seed`` is the seed of the evaluation.
+    """
     return int(_stream(seed, index, _OF_LEVEL).generate_state(1)[0]) >> 1
 
 

@@ -1,4 +1,4 @@
-"""The setup of an evaluation, and the player that each worker makes to play its episodes."""
+"""The setup of an evaluation, and the object with which each worker plays its episodes."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 """The names of the two ways to choose actions."""
 
 _POLICY: Final = "policy"
-"""The first word of the names of all policies."""
+"""The first word of the name of every policy in recordings."""
 
 _HASH_DIGITS: Final = 8
-"""A name has this many digits of the hash of the policy's file."""
+"""The name of a policy in recordings has this many digits of the hash of its file."""
 
 
 @record
 class EpisodeRequest:
-    """A request to play episode ``index``.
+    """A request to play episode ``index`` of an evaluation.
 
     If ``sampled``, actions are sampled; otherwise the likeliest actions are taken.
     """
@@ -43,7 +43,7 @@ class EpisodeRequest:
 
 @record
 class PlayerName:
-    """The name that recordings give to the policy of an evaluation.
+    """The parts of the name that recordings give to the policy of an evaluation.
 
     ``labels`` say what the policy was trained for, and ``sha256`` is the hash of its file. Both may be
     empty.
@@ -53,33 +53,37 @@ class PlayerName:
     sha256: str = ""
 
     def text(self, request: EpisodeRequest) -> str:
-        """Return the name of the player in the recording of an episode."""
+        """Return the name for the recording of an episode: ``policy LABEL 0123abcd, sampled, episode 3``."""
         labels = "".join(f" {label}" for label in self.labels)
         return f"{_POLICY}{labels}{self._hash_mark}, {CHOICES[request.sampled]}, episode {request.index}"
 
     def is_of(self, player: str) -> bool:
-        """Whether ``player`` is the name of a policy with this hash, whatever its labels."""
+        """Whether ``player`` is a name of a policy with this hash, whatever its labels.
+
+        Without a hash, every name of a policy counts.
+        """
         return player.startswith(_POLICY) and f"{self._hash_mark}, " in player
 
     @property
     def _hash_mark(self) -> str:
-        """The part of a name that shows the hash; empty without a hash."""
+        """The part of the name that shows the hash, `` 0123abcd``; empty without a hash."""
         return f" {self.sha256[:_HASH_DIGITS]}" if self.sha256 else ""
 
 
 def is_labelled_policy(player: str) -> bool:
-    """Whether ``player`` is the name of a policy with labels or a hash, as :class:`PlayerName` makes it."""
+    """Whether ``player`` is a name from :class:`PlayerName` that has labels or a hash."""
     return player.startswith(f"{_POLICY} ")
 
 
 @record
 class Setup:
-    """The setup of an evaluation: ``policy`` plays a level with a spec and default reward options.
+    """The setup of an evaluation: ``policy`` plays a level, and the spec ``fspa`` judges the episodes.
 
     ``level`` and ``variant`` are arguments of :meth:`~tltl_runtime.game.game.Game.load_level`.
     ``seed`` is the seed of the evaluation. ``params`` are the values of the spec's params, in SI
-    units. ``recorded`` says which episodes to record. Unless it is None, the results also have the
-    trajectories of all episodes. ``player`` names the policy in recordings.
+    units. ``recorded`` says which episodes to record. If it is None, the results have neither
+    recordings nor trajectories; otherwise, they have the trajectories of all episodes. ``player``
+    names the policy in recordings. The rewards are those of the default :class:`RewardOptions`.
     """
 
     policy: Policy
@@ -94,10 +98,10 @@ class Setup:
 
 @record
 class PlayedEpisode:
-    """A played episode: its request, and its summary.
+    """A played episode: its request and its summary.
 
-    If the setup asks for them, there are also its ``trajectory`` and its ``recording``, which has
-    the bytes of the file.
+    ``recording`` has the bytes of a file with the episode. Unless the setup asks for them,
+    ``trajectory`` is None and ``recording`` is empty.
     """
 
     request: EpisodeRequest
@@ -107,19 +111,19 @@ class PlayedEpisode:
 
 
 class EpisodePlayer(Protocol):
-    """What a worker needs to play episodes, one after the other."""
+    """The interface of an object with which a worker plays episodes, one after the other."""
 
     def play(self, request: EpisodeRequest) -> PlayedEpisode:
         """Play the requested episode to its end, and return it."""
 
     def close(self) -> None:
-        """Free the environment and its resources."""
+        """Close the environment."""
 
 
 class PolicyPlayer:
-    """Lets the policy of an evaluation play the requested episodes, one after the other.
+    """Plays the requested episodes of an evaluation with its policy, one after the other.
 
-    Each player has an environment of its own.
+    Each instance has an environment of its own.
 
     Raises:
         TltlError: TLT0843, the observations or actions of the environment are not those of the
@@ -157,5 +161,5 @@ class PolicyPlayer:
         return PlayedEpisode(request, summary, trajectory(episode), recording)
 
     def close(self) -> None:
-        """Free the environment and its resources."""
+        """Close the environment."""
         self._env.close()

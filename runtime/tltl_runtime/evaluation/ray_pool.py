@@ -1,4 +1,4 @@
-"""Workers on a Ray cluster."""
+"""Workers on a Ray cluster that play the episodes of an evaluation."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ PATIENCE_S: Final = 120.0
 
 @contextmanager
 def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
-    """Return a context manager that starts a worker on each free core of a Ray cluster, up to ``most``.
+    """Start a worker on each free core of a Ray cluster, at most ``most``, for the duration of a context.
 
-    It gives the list of the workers that have started, and ends them at its exit. ``waiting`` is
-    called now and then with the seconds that are left to wait for the first worker.
+    The context manager yields the list of the workers that have started, and ends them at its exit.
+    ``waiting`` is called now and then with the seconds that are left to wait for the first worker.
 
     Raises:
         TltlError: the errors of :func:`cluster`; TLT0852, no worker starts in time.
@@ -37,7 +37,10 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
 
 
 class RayWorker:
-    """A worker in a process of a Ray cluster (an actor); ``setup`` is a Ray reference to a :class:`Setup`."""
+    """A worker that plays episodes in a process of a Ray cluster (an actor).
+
+    ``ray`` is the connected module, and ``setup`` a Ray reference to a :class:`Setup`.
+    """
 
     def __init__(self, ray: Any, setup: Any) -> None:
         self._ray, self._setup = ray, setup
@@ -47,7 +50,8 @@ class RayWorker:
     def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
 
-        The future raises :class:`WorkerLostError` if the worker's process ends.
+        The future raises the exception that the episode raised, or :class:`WorkerLostError` if the
+        worker's process ends.
         """
         future: Future[PlayedEpisode] = Future()
         playing = self.actor.play.remote(self._setup, request).future()
@@ -73,8 +77,8 @@ class RayWorker:
 class _EvaluationActor:
     """A Ray actor that plays episodes. It makes its :class:`PolicyPlayer` in the first call of ``play``.
 
-    If that call fails, Ray reports the error. If a constructor failed, Ray would report only that
-    it failed.
+    The constructor does not make it: if a constructor raises, Ray reports only that it failed. If a
+    method raises, Ray reports the error.
     """
 
     def __init__(self) -> None:

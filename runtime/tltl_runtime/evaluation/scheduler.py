@@ -12,11 +12,11 @@ from tltlc.api import Diagnostic, TltlError
 
 
 class WorkerLostError(Exception):
-    """Raised if a worker ended before it returned its episode; the message says how it ended."""
+    """Raised if a worker ended before it had played its episode; the message says how it ended."""
 
 
 class EpisodeWorker(Protocol):
-    """Plays one episode at a time, for example in another process."""
+    """The interface of a worker that plays one episode at a time, for example in another process."""
 
     def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play the requested episode; return a future of its result.
@@ -29,7 +29,7 @@ class EpisodeWorker(Protocol):
 
 
 ReplayCommand = Callable[[EpisodeRequest], str]
-"""A function that returns the command that plays one episode alone."""
+"""A function that returns a shell command that plays only the requested episode."""
 
 
 def play_all(
@@ -40,12 +40,14 @@ def play_all(
 ) -> Iterator[PlayedEpisode]:
     """Give each free worker the next request; yield the episodes in the order of the requests.
 
-    If an episode fails, all episodes that are already played are yielded before the error is
-    raised, even if earlier episodes are missing.
+    If an episode raises an error, or its worker is lost, all episodes that are already played are
+    yielded before the error is raised, even if earlier episodes are missing.
 
     Raises:
         TltlError: TLT0850, a worker was lost; the message names its episode and the evaluation's
-            ``seed``.
+            ``seed``, and the help shows the command that ``replay_command`` returns, by default a
+            ``tltlc evaluate`` command.
+        Exception: the error that an episode raised.
     """
     remaining = iter(enumerate(requests))
     running: dict[Future[PlayedEpisode], tuple[EpisodeWorker, int]] = {}

@@ -1,4 +1,4 @@
-"""Statistics for reported figures."""
+"""Statistics of episodes: means, standard deviations and confidence intervals."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Z_95: Final = NormalDist().inv_cdf(0.975)
 
 @record
 class Spread:
-    """The mean and the sample standard deviation (divisor n - 1; 0 for a single value)."""
+    """A mean and a sample standard deviation (divisor n - 1; 0 for a single value)."""
 
     mean: float
     std: float
@@ -24,7 +24,8 @@ class Spread:
 def spread_of(values: Sequence[float]) -> Spread:
     """Return the mean and the sample standard deviation of ``values``.
 
-    Raises ValueError if there are no values.
+    Raises:
+        ValueError: there are no values.
     """
     if not values:
         raise ValueError("there are no values")
@@ -36,7 +37,8 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
 
     Both ends are in [0, 1]. Source: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
-    Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
+    Raises:
+        ValueError: ``count`` is 0, or ``successes`` is not in [0, ``count``].
     """
     if not 0 <= successes <= count or count == 0:
         raise ValueError(f"{successes} of {count} is not a share")

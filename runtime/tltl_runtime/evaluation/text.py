@@ -20,10 +20,10 @@ _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of tim
 
 
 def report_text(evaluations: Mapping[str, Evaluation]) -> str:
-    """Return the figures of evaluations as a table, and how failed episodes ended.
+    """Return the statistics of evaluations as a table, and below it how failed episodes ended.
 
-    The table has a column for each evaluation. The keys of ``evaluations`` say how actions were
-    chosen: ``sampled`` or ``arg-max``.
+    The table has a column for each evaluation. The keys of ``evaluations`` are the headings of the
+    columns. They say how actions were chosen: ``sampled`` or ``arg-max``.
     """
     columns = [evaluation.figures for evaluation in evaluations.values()]
     lines = [

@@ -1,4 +1,4 @@
-"""The versions of Python and of the packages on which the course of an episode, or its judgement, depends."""
+"""The versions of Python and of the packages on which episodes and the judgement of traces depend."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ _PACKAGES: Final = (*_JUDGING, "gymnasium", "pybullet", "numpy")
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python and of those of these packages that are installed, by name."""
+    """Return the versions of Python, tltlc, Gymnasium, PyBullet and NumPy: ``{"python": "3.11.9", …}``.
+
+    Packages that are not installed are left out.
+    """
     return _versions(_PACKAGES)
 
 
 def judging_versions() -> dict[str, str]:
-    """Return the versions of Python and of tltlc, which alone decide how recorded traces are judged."""
+    """Return the versions of Python and tltlc, by name: how recorded traces are judged depends on these alone."""
     return _versions(_JUDGING)
 
 

@@ -1,4 +1,4 @@
-"""Worker processes on this machine."""
+"""Worker processes on this machine that play the episodes of an evaluation."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from tltlc.api import fileio
 class WorkerProcess:
     """A process on this machine that plays episodes.
 
-    Each worker has an executor of its own. So if the process ends, it is known which episode was
-    lost. The process calls ``make``, which returns its player of episodes; ``make`` must be
-    picklable. ``modules`` are the modules that a player needs; a fork server imports them once.
+    The process calls ``make`` once, which returns the object that plays the episodes. ``make`` must be
+    picklable. ``modules`` are the names of the modules that this object needs; on Linux, a fork server
+    imports them once for all workers. Each worker has an executor of its own. So if the process ends,
+    it is known which episode was lost.
     """
 
     def __init__(self, make: Callable[[], EpisodePlayer], modules: Sequence[str] = ()) -> None:
@@ -32,7 +33,8 @@ class WorkerProcess:
     def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
         """Start to play an episode; return a future of its result.
 
-        The future raises :class:`WorkerLostError` if the process ends.
+        The future raises the exception that the episode raised, or :class:`WorkerLostError` if the
+        process ends.
         """
         future: Future[PlayedEpisode] = Future()
         try:
@@ -53,7 +55,7 @@ _PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perha
 
 _make: Callable[[], EpisodePlayer]
 _player: EpisodePlayer | None = None
-"""The player of this worker process, once it has been made."""
+"""The object with which this worker process plays episodes; None before the first episode."""
 
 
 def _begin(make: Callable[[], EpisodePlayer]) -> None:
@@ -67,7 +69,7 @@ def _begin(make: Callable[[], EpisodePlayer]) -> None:
 def _end_with_parent() -> None:
     """Wait until the parent process has ended, then end this process.
 
-    Otherwise a worker would wait forever if its parent is killed.
+    Without this, a worker would wait forever if its parent is killed.
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
