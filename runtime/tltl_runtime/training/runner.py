@@ -1,4 +1,4 @@
-"""The runner: rollouts and updates of rsl-rl, one iteration at a time."""
+"""The runner: it makes rollouts and updates with rsl-rl, one iteration at a time."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Runner(OnPolicyRunner):
     """An rsl-rl runner whose learning loop is a generator: it yields after each iteration.
 
     The runner prints nothing. Updates run in ``cfg["threads"]`` threads, because the environments
-    wait during an update. In the first ``cfg["warm_up"]`` iterations only the critic learns. If there are
-    several processes, each must use the runner within
+    wait during an update. In the first ``cfg["warm_up"]`` iterations only the critic learns. If the
+    training has several processes, each must use the runner within
     :func:`~tltl_runtime.training.ppo.distributed.join_process_group`.
     """
 
@@ -53,7 +53,7 @@ class Runner(OnPolicyRunner):
                 group["fused"] = True
 
     def load_algorithm(self, saved: Mapping[str, Any]) -> None:
-        """Restore what ``alg.save`` returned, even if the weights had another memory layout."""
+        """Restore what ``alg.save`` returned; the weights may have been saved in another memory layout."""
         self.alg.load(saved, None, strict=True)
         for parameter, state in self.alg.optimizer.state.items():
             # The fused optimiser assumes that its averages have the memory layout of the weights.
@@ -66,11 +66,10 @@ class Runner(OnPolicyRunner):
         self.alg.actor.load_state_dict({name: torch.from_numpy(weight).float() for name, weight in weights.items()})
 
     def scale_inverse_temperature(self, factor: float) -> None:
-        """Multiply the actor's logits by ``factor``: above 1, it makes likely choices likelier.
+        """Multiply the actor's logits by ``factor``; above 1, this makes likely choices likelier.
 
-        The variances of an action's numbers are divided by it.
-
-        In the first ``cfg["warm_up"]`` iterations this does nothing.
+        The continuous numbers of an action have normal distributions. Their variances are divided
+        by ``factor``. Do nothing until more than ``cfg["warm_up"]`` iterations have ended.
         """
         if self.current_learning_iteration <= self.cfg.get("warm_up", 0):
             return
@@ -112,9 +111,9 @@ class Runner(OnPolicyRunner):
             )
 
     def _configure_multi_gpu(self) -> None:
-        """Configure several processes like rsl-rl's method, but for any device.
+        """Set the attributes for several processes; unlike rsl-rl's method, allow any device.
 
-        The process group must exist already.
+        If there are several processes, they must have joined torch's process group before.
         """
         group = process_group()
         self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = group.count, group.rank, group.local_rank
@@ -133,8 +132,8 @@ class Runner(OnPolicyRunner):
     def _imitate(self) -> dict[str, float]:
         """Take the self-imitation steps of an iteration; return their mean loss under ``imitation``.
 
-        Return an empty dict if there is nothing to imitate. If any process has a batch, all
-        processes take the step together, so that their weights stay equal.
+        Return an empty dict if there is nothing to imitate. If any process has a batch to imitate,
+        all processes take the step together, so that their weights stay equal.
         """
         self_imitation, losses = self.env.self_imitation, []
         for _ in range(self.cfg["imitation"] if self_imitation else 0):

@@ -1,4 +1,4 @@
-"""Actions as a training stores them: rows of numbers, whatever the action space."""
+"""Actions as a training stores them: rows of numbers, for every kind of action space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from tltl_runtime.policies.spaces.layouts import is_plain_action
 from tltl_runtime.policies.spaces.values import action_value, squashed
 
 Row = Sequence[float]
-"""An action: the choices, which count from 0, and then the numbers before they are squashed to their bounds."""
+"""An action as a policy outputs it: first its discrete choices, which count from 0, then its continuous numbers.
+
+The numbers are not squashed to their bounds yet.
+"""
 Actions = Sequence[Row]
 
 _MOST_CHOICES: Final = 1 << 7
@@ -22,14 +25,19 @@ _MOST_CHOICES: Final = 1 << 7
 
 
 class ActionEncoding:
-    """Converts the rows of an action space to its values.
+    """Converts the actions of a space between three forms: rows, flat actions and values.
 
-    A training stores what its policy gave, before squashing: imitating an action needs it, and a
-    number at its bound could not be turned back. ``layout`` describes the rows, ``dtype`` is the
-    type in which files and messages to workers store them.
+    - A *row* [width] is what a policy outputs: first the discrete choices, which count from 0, then
+      the continuous numbers, before they are squashed to their bounds.
+    - A *flat action* [width] is a row whose numbers are squashed.
+    - A *value* is an element of the Gymnasium space.
+
+    A training stores rows, because imitation needs the numbers before squashing, and squashing
+    cannot be undone for a number at its bound. ``layout`` describes the space, ``dtype`` is the
+    type in which files and messages to workers store actions.
 
     Raises:
-        TltlError: TLT0844, no policy can choose in the space.
+        TltlError: TLT0844, policies do not support the space.
     """
 
     def __init__(self, space: spaces.Space[Any]) -> None:
@@ -39,7 +47,7 @@ class ActionEncoding:
         self.dtype: np.dtype[Any] = np.dtype(np.float64 if self.layout.number_count else choices)
 
     def rows(self, outputs: NDArray[Any]) -> NDArray[Any]:
-        """Return the outputs of a policy [n, width] as rows, in int64 if there are only choices.
+        """Return a policy's outputs [n, width] as rows, in int64 if all are choices, else float64.
 
         Raises:
             ValueError: an output is not finite.
@@ -49,20 +57,23 @@ class ActionEncoding:
         return outputs.astype(np.float64 if self.layout.number_count else np.int64)
 
     def values(self, rows: NDArray[Any]) -> Any:
-        """Return the actions of rows [n, width] as a batch of the space."""
+        """Convert rows [n, width] to a batch of n values of the space."""
         return rows if self._is_plain else action_value(self.layout, squashed(self.layout, rows), len(rows))
 
     def flat(self, rows: Sequence[Row]) -> NDArray[Any]:
-        """Return the flat actions [n, width] of rows, squashed, for :meth:`value`; [0] if there are none."""
+        """Convert rows to flat actions [n, width], for :meth:`value`; without rows, the shape is [0]."""
         array = np.array(rows, self.dtype)
         return squashed(self.layout, array) if array.size and self.layout.number_count else array
 
     def value(self, flat: NDArray[Any]) -> Any:
-        """Return the action of a flat action [width]."""
+        """Convert a flat action [width] to a value of the space."""
         return flat if self._is_plain else action_value(self.layout, flat)
 
     def check(self, stored: NDArray[Any], count: int) -> None:
-        """Raise ValueError unless an array has ``count`` rows of this space."""
+        """Raise ValueError unless ``stored`` is an array of ``count`` valid rows.
+
+        It must have the type ``dtype`` and the shape [count, width], or [0] if ``count`` is 0.
+        """
         shape = (count, self.layout.width) if count else (0,)
         if stored.dtype != self.dtype or stored.shape != shape:
             raise ValueError(f"must be {self.dtype} of the shape {list(shape)}, not {stored.dtype} of {stored.shape}")

@@ -26,10 +26,11 @@ from tltlc.api import record, replace
 class EpisodeStart:
     """The start of an episode: its seed, and ``actions`` to replay first, as rows [n, width].
 
-    For a start in a demonstration, ``segment`` is a pair: the end of the demonstration, as
-    :func:`~tltl_runtime.training.exploration.search.end_of` returns it, and the index of the
-    segment, from 0. For the level's start it is None. The episode is cut off after
-    ``max_decisions`` decisions of the agent. If that is None, it is not cut off.
+    An episode may start in a segment of a demonstration. ``segment`` is then a pair: which atoms
+    were true at the end of the demonstration, as a bit mask
+    (:func:`~tltl_runtime.training.exploration.search.end_of`), and the index of the segment, from
+    0. Otherwise ``segment`` is None. The episode is cut off after ``max_decisions`` decisions of
+    the agent; None means that it is never cut off.
     """
 
     seed: int
@@ -39,12 +40,13 @@ class EpisodeStart:
 
 
 class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment whose episodes begin at ``next_start``: a seed, and flat actions to replay.
+    """An environment whose episodes begin after replayed actions.
 
-    ``next_start`` keeps its value for all later episodes; setting it to None does nothing. Until it
-    is first set, episodes begin as in the wrapped environment. ``make`` makes the wrapped
-    environment. It is called twice: while the agent plays in one environment, :meth:`prepare`
-    replays the actions for the next episode in the other.
+    Set ``next_start`` to a seed and to the actions to replay. It keeps its value for all later
+    episodes; setting it to None does nothing. Until it is first set, episodes begin as in the
+    wrapped environment. ``make`` returns a new environment to wrap. It is called twice: while the
+    agent plays in one environment, :meth:`prepare` replays the actions for the next episode in the
+    other.
     """
 
     def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
@@ -57,9 +59,9 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     @property
     def next_start(self) -> tuple[int, NDArray[Any]] | None:
-        """The seed of the next episodes and the flat actions [n, width] to replay.
+        """The seed of the next episodes, and the actions [n, width] to replay, squashed to their bounds.
 
-        None before it is first set.
+        It is None until it is first set.
         """
         return self._next_start
 
@@ -71,11 +73,11 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._replay = self._replay_in_spare(*next_start)
 
     def prepare(self) -> bool:
-        """Take one step of the replay for the next episode; return False if no step is left."""
+        """Replay one action for the next episode; return False if the replay has ended."""
         return self._replay is not None and next(self._replay, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Finish the replay; return the observation and the info with which the episode begins.
+        """Finish the replay, and begin the episode at its end; return observation and info there.
 
         ``seed`` and ``options`` are used only before ``next_start`` is first set.
         """
@@ -96,7 +98,7 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def _replay_in_spare(self, seed: int, actions: NDArray[Any]) -> Iterator[None]:
         """Replay ``actions`` in the environment in which the agent does not play.
 
-        This is a generator: each step of it replays one action.
+        This is a generator: it yields once before each action.
         """
         observation, info = self._spare_env.reset(seed=seed)
         for action in actions:
@@ -108,10 +110,11 @@ class ReplayedStartEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 class EpisodesInProgress:
     """The current episode of each environment of ``env``: its start and all actions so far.
 
-    The environments are :class:`ReplayedStartEnv`, and ``draw`` draws the start of each next
-    episode. The constructor begins the first episodes; ``observation`` is their first observation.
-    ``starts`` and ``actions`` are those of the current episodes. ``replayed`` counts the replayed
-    decisions.
+    The environments of ``env`` are :class:`ReplayedStartEnv`. ``draw`` is called for the start of
+    each new episode. The constructor begins the first episodes; ``observation`` is the batch of
+    their first observations. ``starts`` and ``actions`` have an entry for each environment: the
+    start of its current episode, and all actions of the episode, including the replayed ones.
+    ``replayed`` counts all replayed actions.
 
     Raises:
         WorkerError: from any method, a worker was lost; the error names the seeds of the episodes.
@@ -131,9 +134,10 @@ class EpisodesInProgress:
         self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[Any]) -> tuple[Any, ...]:
-        """Record actions, as rows [num_envs, width], and step all environments with them.
+        """Record actions, given as rows [num_envs, width], and step all environments with them.
 
-        Return the five results of the vector environment's step.
+        Return what the vector environment's ``step`` returns: observation, reward, terminated,
+        truncated and infos.
         """
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
@@ -143,7 +147,7 @@ class EpisodesInProgress:
     def start_next(self, mask: NDArray[np.bool_]) -> None:
         """Record that the environments in ``mask`` [num_envs] have begun their next episodes.
 
-        Draw the starts of the episodes after these, and send them to the environments.
+        Then draw the starts of the episodes after these, and send them to the environments.
         """
         rows = np.flatnonzero(mask).tolist()
         if rows:
@@ -168,9 +172,9 @@ class EpisodesInProgress:
         return start.max_decisions is not None and len(self.actions[row]) - len(start.actions) >= start.max_decisions
 
     def _advance(self, rows: Iterable[int]) -> None:
-        """Make the next episodes of the environments ``rows`` the current ones.
+        """Make the next episode of each environment in ``rows`` the current one.
 
-        Draw the starts of the episodes after these.
+        Then draw the starts of the episodes after these.
         """
         for row in rows:
             start = self.starts[row] = self._next[row]
@@ -187,15 +191,15 @@ class EpisodesInProgress:
             raise WorkerError(error.loss, tuple(map(self._with_start, error.playing))) from error
 
     def _with_start(self, playing: Playing) -> Playing:
-        """Return ``playing`` with the seed, the episode number and the step of the environment's episode.
+        """Correct the seed, episode number and step of an episode that a lost worker was playing.
 
-        Only this class knows them, because each episode begins with replayed actions.
+        Workers do not know them, because each episode begins with replayed actions.
         """
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
     def _send_starts(self, rows: Iterable[int]) -> None:
-        """Send the starts of their next episodes to the environments with the indices ``rows``."""
+        """Send each environment in ``rows`` the start of its next episode."""
         next_starts: list[tuple[int, NDArray[Any]] | None] = [None] * self._env.num_envs
         for row in rows:
             next_starts[row] = self._next[row].seed, self._encoding.flat(self._next[row].actions)

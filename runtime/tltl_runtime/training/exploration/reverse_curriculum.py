@@ -28,7 +28,7 @@ _MAX_DEMONSTRATIONS = 6
 _MAX_ENDS = 8
 """At most this many ends are kept: the first that were found."""
 _START_SHARES = 0.2, 0.97
-"""The least share of decisions and the greatest share of episodes from the level's start.
+"""How much of the training begins at the level's start, not in a demonstration: two shares in [0, 1].
 
 At least the first share of decisions is made in episodes that begin at the level's start. At most
 the second share of episodes begins there. The first counts decisions, because failed episodes
@@ -56,7 +56,7 @@ start and for mean lengths.
 _MAX_FAILURES = 32
 """At most this many failed episodes from the level's start are kept: the last ones."""
 _DECISION_LIMIT = 1.5, 20
-"""The most decisions that the agent may make from a start in a demonstration, in two numbers.
+"""How many decisions the agent may make from a start in a demonstration.
 
 The limit is the first number times the demonstration's remaining decisions, plus the second number.
 """
@@ -65,16 +65,18 @@ The limit is the first number times the demonstration's remaining decisions, plu
 class ReverseCurriculum:
     """Draws the starts of training episodes, and learns from the results of these episodes.
 
-    Nothing else may draw from ``generator``, because equal seeds must give equal trainings.
-    ``segments`` is the number of segments of a demonstration, ``encoding`` that of the actions.
+    ``segments`` is the number of segments of a demonstration. ``encoding`` checks and stores the
+    actions. Nothing else may draw from ``generator``, because equal seeds must give equal
+    trainings.
 
+    The *end* of a demonstration is a number for the atoms that are true in its last step.
     ``demonstrations`` maps each end to the shortest known demonstrations with that end, including
     the agent's own successes. They are kept by end because a spec may be met in several ways, and
     the shortest of all demonstrations would hide the other ways. ``rates`` maps each end to the
-    success rates [segments] from the segments of its demonstrations. ``start_rate`` is the success
-    rate from the level's start. All rates are in [0, 1]. ``lengths`` has two mean numbers of the
-    agent's decisions: in episodes from the level's start, and in episodes from demonstrations.
-    ``failures`` are the last failed episodes from the level's start.
+    success rates [segments] of episodes that began in each segment of its demonstrations.
+    ``start_rate`` is the success rate from the level's start. All rates are in [0, 1]. ``lengths``
+    has two mean numbers of the agent's decisions: in episodes from the level's start, and in
+    episodes from demonstrations. ``failures`` are the last failed episodes from the level's start.
     """
 
     def __init__(self, segments: int, generator: np.random.Generator, encoding: ActionEncoding) -> None:
@@ -88,7 +90,10 @@ class ReverseCurriculum:
         self.failures: deque[FailedEpisode] = deque(maxlen=_MAX_FAILURES)
 
     def add(self, demonstration: SuccessfulEpisode) -> None:
-        """Keep a demonstration if it is among the shortest with its end."""
+        """Keep a demonstration if it is among the shortest with its end.
+
+        A demonstration with a new end is not kept if there are ``_MAX_ENDS`` ends already.
+        """
         if demonstration.end not in self.demonstrations:
             if len(self.demonstrations) == _MAX_ENDS:
                 return
@@ -123,11 +128,12 @@ class ReverseCurriculum:
         return EpisodeStart(demonstration.seed, demonstration.actions[:at], (demonstration.end, segment), max_decisions)
 
     def draw_decisions(self, count: int) -> list[tuple[SuccessfulEpisode, int]]:
-        """Draw up to ``count`` decisions to imitate: demonstrations with indices of their actions.
+        """Draw up to ``count`` decisions to imitate: pairs of a demonstration and the index of an action.
 
-        Decisions are drawn like starts. A decision is dropped with the probability that the agent
-        already succeeds from its segment. A success from an earlier segment, or from the level's
-        start, counts for all later segments.
+        First draw ``count`` decisions from the same segments as :meth:`draw` does. Then drop each
+        decision with a probability: the agent's success rate from the decision's segment, or from
+        an earlier segment or the level's start, if that is greater. Return an empty list if there
+        are no demonstrations.
         """
         if not self.demonstrations:
             return []
@@ -149,10 +155,10 @@ class ReverseCurriculum:
     def record_episode(self, start: EpisodeStart, actions: Actions, end: int | None, state: int | None = None) -> None:
         """Update the curriculum with the result of an episode that began at ``start``.
 
-        ``actions`` are all of its actions, including the replayed ones. ``end`` is the end of a
-        successful episode (see :func:`~tltl_runtime.training.exploration.search.end_of`), None for
-        a failed one. ``state`` is the automaton state in which the episode failed, None if the
-        episode was cut off.
+        ``actions`` are all actions of the episode, including the replayed ones. If the episode was
+        successful, ``end`` says which atoms were true at its end (see
+        :func:`~tltl_runtime.training.exploration.search.end_of`); otherwise it is None. ``state``
+        is the automaton state in which the episode failed, None if the episode was cut off.
         """
         segment_step, start_step = _STEP_SIZES
         success = end is not None
@@ -169,7 +175,10 @@ class ReverseCurriculum:
             self.add(SuccessfulEpisode(start.seed, actions, end))
 
     def state(self) -> dict[str, NDArray[Any]]:
-        """Return everything but the generator as arrays, for :meth:`load`."""
+        """Return the state of the curriculum as arrays by name, for :meth:`load`.
+
+        The state of the random generator is not included.
+        """
         demonstrations = [demonstration for same_end in self.demonstrations.values() for demonstration in same_end]
         return {
             **_arrays(
@@ -217,9 +226,10 @@ class ReverseCurriculum:
 
 
 def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]], dtype: np.dtype[Any]) -> dict[str, NDArray[Any]]:
-    """Return the seeds, actions and ends (or states) of episodes as arrays.
+    """Store episodes as arrays, whose names begin with ``name``.
 
-    The names of the arrays begin with ``name``. ``dtype`` is the type of actions.
+    Each episode has a seed, actions, and a number: the end of a success, or the automaton state of
+    a failure. ``dtype`` is the type of the actions.
     """
     return {
         f"{name}_seeds": np.array([seed for seed, _, _ in episodes], dtype=np.int64),
@@ -230,7 +240,7 @@ def _arrays(name: str, episodes: Sequence[tuple[int, Actions, int]], dtype: np.d
 
 
 def _episodes(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int, Actions, int]]:
-    """Yield the episodes that :func:`_arrays` stored: seed, actions, and end or state."""
+    """Yield the episodes that :func:`_arrays` stored, each as seed, actions, and end or state."""
     seeds, ends, lengths = (arrays[f"{name}_{field}"].tolist() for field in ("seeds", "ends", "lengths"))
     actions = np.split(arrays[f"{name}_actions"], np.cumsum(lengths)[:-1]) if lengths else []
     for seed, episode_actions, end in zip(seeds, actions, ends, strict=True):
@@ -277,7 +287,7 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the weights with which segments are drawn, given the success rates from them.
+    """Return the weight with which each segment is drawn; ``rates`` are the success rates from each.
 
     A segment counts as learned if its success rate is at least ``_LEARNED_RATE``. From the first
     learned segment on, the weight is greatest at a success rate of one half. Before that segment,

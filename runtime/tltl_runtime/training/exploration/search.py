@@ -1,12 +1,12 @@
 """Search for demonstrations, which are episodes that meet the spec, with random actions.
 
-The search runs before learning begins. Robustness ignores walls: an agent that only increases it
-gets stuck behind a wall, where the distance to its goal is least. Random actions alone never
-crouch, climb and jump in the right order. So the search returns to a cell that it has reached, by
-replaying the actions that led there, and takes random actions from there. This is Go-Explore:
-Ecoffet et al., First return, then explore, Nature 590, 2021. A cell of the search is a cell of the
-level's floor together with a state of the automaton. The search needs to know nothing else about
-the level.
+The search runs before learning begins. The robustness of a spec, which says how nearly it is met,
+ignores walls: an agent that only increases it gets stuck behind a wall, where the distance to the
+goal is least. Random actions alone never crouch, climb and jump in the right order. So the search
+returns to a cell that it has reached, by replaying the actions that led there, and takes random
+actions from there. This is Go-Explore: Ecoffet et al., First return, then explore, Nature 590,
+2021. A cell of the search is a cell of the level's floor together with a state of the automaton.
+The search needs to know nothing else about the level.
 
 An episode from a cell keeps the seed of the episode that reached the cell. So everything that the
 level draws from the seed stays the same, for example which door opens. The search keeps one
@@ -32,9 +32,9 @@ from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import record
 
 _REPEAT_PROBABILITY = 0.9
-"""The probability that the next decision repeats a choice or a number of the action.
+"""The probability that a choice or a number of an action stays the same in the next decision.
 
-With independent choices, the player would hardly leave its place.
+With independent decisions, the player would hardly leave its place.
 """
 _RANDOM_DECISIONS = 60
 """The number of random decisions from a cell. If they reach a new cell, more decisions follow."""
@@ -49,12 +49,12 @@ _REPORT_INTERVAL_S = 0.5
 """The least time, in seconds, between two reports of progress."""
 
 PolicyFunction = Callable[[Any], NDArray[Any]]
-"""A function that returns an action, as a row [width], for the observation of one environment."""
+"""A policy as a function from the observation of one environment to an action, as a row [width]."""
 
 
 @record
 class SearchSettings:
-    """The settings of the search before the training, and of how its demonstrations are used.
+    """The settings of the search for demonstrations, and of how the training uses them.
 
     The search ends when ``ways`` episodes with different seeds have met the spec (0: no search), or
     after ``steps`` decisions, not counting replayed ones. Each demonstration is divided into
@@ -70,9 +70,9 @@ class SearchSettings:
 
 @record
 class SuccessfulEpisode:
-    """A demonstration, an episode that met the spec: its seed, all actions, and how it ended.
+    """A demonstration, which is an episode that met the spec: its seed and all actions.
 
-    ``end`` is the result of :func:`end_of`.
+    ``end`` says which atoms were true at the end, as a bit mask (see :func:`end_of`).
     """
 
     seed: int
@@ -81,11 +81,11 @@ class SuccessfulEpisode:
 
 
 def end_of(infos: Mapping[str, Any], row: int) -> int:
-    """Return which atoms were true at the end of an episode.
+    """Return which atoms were true at the end of an episode, as a bit mask.
 
-    ``infos`` is the ``final_info`` of a vector environment, and ``row`` the row of the environment
-    in which the episode ended. The result is a bit mask: bit i says whether the spec's i-th atom
-    was true. It has the first 63 atoms only.
+    Bit i says whether the spec's i-th atom, from 0, was true; only the first 63 atoms are included.
+    ``infos`` is the ``final_info`` of a vector environment, and ``row`` the index of the
+    environment in which the episode ended.
     """
     atoms = infos["atoms"]
     # Gymnasium adds a mask `_name` for each name. An int64 holds at most 63 bits.
@@ -97,10 +97,11 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class SearchProgress:
     """The progress of a search.
 
-    ``steps`` counts decisions without the ``replayed`` ones. ``places`` counts the cells that were
-    reached. ``lengths`` are the lengths of the demonstrations, in decisions. ``complete`` is true
-    if the search ended because it had enough demonstrations or had taken enough steps. It is false
-    if the search goes on or the training ran out of time.
+    ``steps`` counts decisions, except replayed ones, which ``replayed`` counts. ``places`` counts
+    the cells that were reached: pairs of a place in the level and an automaton state. ``lengths``
+    are the lengths of the demonstrations, in decisions. ``complete`` is true if the search ended
+    because it had enough demonstrations or had taken enough steps. It is false if the search goes
+    on or the training ran out of time.
     """
 
     steps: int
@@ -112,7 +113,7 @@ class SearchProgress:
 
 
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
-    """Combine the progress of two searches of one training: add numbers, and join ``lengths``.
+    """Combine the progress of two searches of one training: add the counts, and join ``lengths``.
 
     ``places`` and ``complete`` are those of the later search.
     """
@@ -130,7 +131,7 @@ def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchPr
 class FailedEpisode:
     """A failed episode from the level's start: its seed and all actions.
 
-    ``state`` is the automaton's state at the end, or before a violation.
+    ``state`` is the automaton state at the end, or the state just before the spec was violated.
     """
 
     seed: int
@@ -139,15 +140,16 @@ class FailedEpisode:
 
 
 class TrajectorySearch:
-    """A search for demonstrations in the environments of ``env``.
+    """A search for demonstrations, which are episodes that meet the spec, with random actions.
 
-    The environments are
+    The environments of ``env`` are
     :class:`~tltl_runtime.training.exploration.replayed_starts.ReplayedStartEnv`. ``demonstrations``
     are those found so far. Equal seeds give equal searches, whatever the number of workers.
 
-    With ``failures``, the search starts in these episodes and explores only the states in which
-    they failed. Without ``failures``, it starts at the level's start. ``policy`` plays the first
-    episode of each environment; random actions then continue from the cells that it reached.
+    With ``failures``, the search starts in these episodes and explores only the automaton states in
+    which they failed. Without ``failures``, it starts at the level's start. If there is a
+    ``policy``, it plays the first episode of each environment; random actions then continue from
+    the cells that it reached.
     """
 
     def __init__(
@@ -169,7 +171,7 @@ class TrajectorySearch:
         self.demonstrations: list[SuccessfulEpisode] = []
 
     def run(self) -> Iterator[SearchProgress]:
-        """Search; yield the progress from time to time, and once at the end."""
+        """Search until the settings' limits; yield the progress from time to time, and once at the end."""
         began = reported = time.perf_counter()
         episodes = EpisodesInProgress(self._env, self._draw)
         action = self._random_actions()
@@ -208,7 +210,11 @@ class TrajectorySearch:
         yield self._progress(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
     def _random_actions(self) -> NDArray[Any]:
-        """Draw actions uniformly, as rows [num_envs, width]; numbers before squashing have a deviation of 1."""
+        """Draw random actions, as rows [num_envs, width].
+
+        Choices are uniform. Numbers, before they are squashed to their bounds, have a standard
+        normal distribution.
+        """
         layout = ActionEncoding(self._env.single_action_space).layout
         choices = self._random.integers(0, np.array(layout.sizes), size=(self._env.num_envs, len(layout.sizes)))
         if not layout.number_count:
@@ -218,9 +224,9 @@ class TrajectorySearch:
     def _record_cell(self, episodes: EpisodesInProgress, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Record the current cell of an environment; return whether it is new.
 
-        The cell is not recorded, and counts as not new, in three cases: the player is in the air, so
-        that the cell has no number; the search already has a demonstration with the seed of the
-        episode; or the search began with failures, and none of them failed in the current state.
+        Record nothing and return False in three cases: the player is in the air, where there is no
+        cell; the search already has a demonstration with the seed of the episode; or the search
+        began with failed episodes, and none of them failed in the current automaton state.
         """
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         is_done = any(demonstration.seed == seed for demonstration in self.demonstrations)
@@ -255,9 +261,10 @@ class TrajectorySearch:
 
 
 class _CellArchive:
-    """The cells that the search has reached, each with the shortest known actions that lead to it.
+    """The cells that the search has reached, each with the fewest known actions that lead to it.
 
-    It also counts how often each cell was drawn.
+    A cell is a place in the level together with an automaton state. The archive also counts how
+    often each cell was drawn.
     """
 
     def __init__(self, random: np.random.Generator) -> None:
@@ -269,7 +276,7 @@ class _CellArchive:
         return bool(self._starts)
 
     def add(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
-        """Keep actions that lead to a cell if they are the fewest so far; return whether the cell is new."""
+        """Keep ``actions``, which lead to a cell, if they are the fewest so far; return whether the cell is new."""
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)
         if known is None or len(actions) < len(known.actions):
@@ -278,9 +285,10 @@ class _CellArchive:
         return known is None
 
     def draw(self) -> EpisodeStart:
-        """Draw a cell: first a state uniformly, then a cell with weight 1 / sqrt(1 + times drawn).
+        """Draw a cell; return the start of an episode that replays the actions leading to it.
 
-        So later states, which have few cells, count as much as the first ones.
+        First draw an automaton state, uniformly. Then draw one of its cells, with the weight
+        1 / sqrt(1 + times drawn). So later states, which have few cells, count as much as the first.
         """
         state = list(self._starts)[self._random.integers(len(self._starts))]
         draw_counts = self._draw_counts[state]
@@ -290,7 +298,7 @@ class _CellArchive:
         return self._starts[state][cell]
 
     def remove(self, seed: int) -> None:
-        """Remove the cells whose shortest actions are for this seed."""
+        """Remove the cells whose actions are from episodes with this seed."""
         for state in list(self._starts):
             remaining = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
             if remaining:

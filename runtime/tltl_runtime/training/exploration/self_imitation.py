@@ -31,10 +31,11 @@ BATCH: Final = 256
 
 
 class SelfImitation:
-    """Draws self-imitation batches from the demonstrations of ``curriculum``.
+    """Draws batches of decisions to imitate from the demonstrations of ``curriculum``.
 
-    To get the observations, it replays the demonstrations in an environment that ``make`` makes.
-    ``layouts`` are those of the environment; None if the network reads its observations as they are.
+    To get the observations, it replays the demonstrations in an environment that ``make`` returns.
+    ``layouts`` say how observations become arrays; None if the network uses them without
+    conversion.
     """
 
     def __init__(
@@ -53,10 +54,10 @@ class SelfImitation:
         """
 
     def draw(self) -> tuple[TensorDict, Tensor] | None:
-        """Draw up to ``BATCH`` decisions to imitate.
+        """Draw up to ``BATCH`` decisions to imitate; return None if there is nothing to imitate.
 
-        Returns observations, tensors [n, ...] by key, and actions, as rows [n, width]; None if there
-        is nothing to imitate.
+        The result has the observations, as tensors [n, ...] by key, and the actions, as rows
+        [n, width].
         """
         decisions = self._curriculum.draw_decisions(BATCH)
         if not decisions:
@@ -95,7 +96,7 @@ class SelfImitation:
 
 
 def imitate(ppo: PPO, observations: TensorDict, actions: Tensor) -> float:
-    """Take an optimiser step that makes these actions likelier; return the loss.
+    """Take one optimiser step of ``ppo`` that makes these actions likelier; return the loss.
 
     ``observations`` [n, ...] and ``actions`` [n, width] are a batch of decisions. The loss is
     the sum of the actions' negative log-likelihoods in nats, divided by ``BATCH``. The divisor

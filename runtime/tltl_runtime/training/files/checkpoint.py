@@ -27,10 +27,10 @@ _MOST: Final = 2**53
 
 @record
 class BestPolicy:
-    """The best policy of a training, and its score.
+    """The best policy of a training so far, and its score.
 
-    ``actor`` maps names to the weights of its network. ``steps`` is the number of steps of the
-    training after which the network had these weights.
+    ``actor`` are the weights of its network, by name. The network had them after ``steps`` steps of
+    the training.
     """
 
     score: Score
@@ -43,7 +43,7 @@ class Checkpoint:
     """The state of a training after iteration number ``iteration``.
 
     - ``run`` is the :func:`~tltl_runtime.training.files.run_file.identity` of the training.
-    - ``losses`` are the losses of the iteration.
+    - ``losses`` are the losses of that iteration.
     - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
       decisions.
     - ``searched`` is the progress of the searches so far.
@@ -51,10 +51,11 @@ class Checkpoint:
     - ``processes`` has the state of each process, by rank: the states of torch's random generators
       by device, and the arrays of its
       :class:`~tltl_runtime.training.exploration.reverse_curriculum.ReverseCurriculum`.
-    - ``window`` and ``unbroken`` are the arguments of
+    - ``window`` describes the last episodes. ``unbroken`` is the number of successive episodes, up
+      to the last one, that met the spec. Both are arguments of
       :meth:`tltl_runtime.training.ppo.recent_episodes.RecentEpisodes.load`.
-    - ``standstill`` has the arguments of
-      :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
+    - ``standstill`` has the greatest pass rate so far and the step at which it was reached, as
+      arguments of :class:`~tltl_runtime.training.ppo.recent_episodes.Standstill`.
     - ``best`` is the best policy so far; None if there is none yet. ``met`` says whether this
       policy has met the spec in all the episodes that
       :class:`~tltl_runtime.training.files.settings.Stop` demands.
@@ -81,7 +82,7 @@ class Checkpoint:
 
     @property
     def weights(self) -> Mapping[str, Tensor]:
-        """The weights, by name, of the best actor; of the current actor if there is no best one."""
+        """The weights of the best actor, by name; if there is none yet, those of the current actor."""
         last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
         return self.best.actor if self.best else last
 
@@ -95,7 +96,7 @@ _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint. If that fails, even by a power cut, the older file stays.
+    """Write a checkpoint to a file. If writing fails, even by a power cut, the older file stays.
 
     Raises TltlError, TLT0005, if the file cannot be written.
     """
@@ -118,8 +119,8 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
 
     Raises:
         TltlError: TLT0001, the file cannot be read; TLT0864, it is not a checkpoint, is damaged,
-            has another version, or is of another training than ``run``; TLT0868, it is of ``run``
-            on another level; TLT0922, it is of ``run`` with other demonstrations.
+            has another version, or is of another training than ``run``; TLT0868, only the level
+            differs from that of ``run``; TLT0922, only the demonstrations differ.
     """
     if not path.exists():
         return None
@@ -142,7 +143,10 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
 
 
 def deep_copy(value: Any) -> Any:
-    """Return a deep copy of tensors, mappings and lists, which further learning does not change."""
+    """Return a deep copy of nested mappings, lists and tensors, so that learning cannot change it.
+
+    Tensors in the copy have no gradients. Values of other types are not copied.
+    """
     if isinstance(value, Tensor):
         return value.detach().clone()
     if isinstance(value, Mapping):
@@ -183,7 +187,7 @@ def _checkpoint(content: Mapping[str, Any]) -> Checkpoint:
 
 
 def _check_figures(checkpoint: Checkpoint) -> None:
-    """Raise RecordJsonError for counts, times and pass rates that are below 0 or too large."""
+    """Raise RecordJsonError if a count, a time or a pass rate is below 0 or too large."""
     best, searched, (rate, since) = checkpoint.best, checkpoint.searched, checkpoint.standstill
     names = ("iteration", "steps", "seconds", "replayed", "unbroken")
     _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})
@@ -225,7 +229,7 @@ def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
 
 
 def _lists(value: object) -> object:
-    """Return plain values with tuples replaced by lists, as in JSON."""
+    """Return nested plain values with every tuple replaced by a list, as in JSON."""
     if isinstance(value, dict):
         return {name: _lists(item) for name, item in value.items()}
     return [_lists(item) for item in value] if isinstance(value, (tuple, list)) else value
@@ -249,7 +253,7 @@ def _check_run(path: Path, actual: Mapping[str, str], expected: Mapping[str, str
 
 
 def checkpoint_error(path: Path, reason: str) -> TltlError:
-    """Return error TLT0864: a checkpoint is damaged or does not fit, for this reason."""
+    """Return error TLT0864: the checkpoint at ``path`` cannot be used, for ``reason``."""
     help_ = "put back a copy of it, or move it away: --resume then starts the training from its beginning"
     return TltlError([Diagnostic("TLT0864", f"cannot use the checkpoint `{path}`: {reason}", help=help_)])
 

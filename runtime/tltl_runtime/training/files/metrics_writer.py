@@ -21,8 +21,8 @@ _ITERATION_VALUES: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 class Metrics:
     """Writes the metrics files in the folder of a training.
 
-    When a training is resumed after iteration ``after``, which ended at ``steps``, the metrics of
-    later iterations are removed, because these iterations run again.
+    A resumed training continues after iteration ``after``, at which it had taken ``steps`` steps.
+    The metrics of later iterations are removed, because these iterations run again.
 
     Raises:
         TltlError: TLT0005, the folder cannot be written to, here or in ``add``; the errors of

@@ -33,8 +33,8 @@ _POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "rewa
 def write_record(run: TrainingRun, last: TrainingReport) -> dict[str, Any]:
     """Write ``record.json``, ``curve.png`` and the record in the policy file; return the record.
 
-    ``last`` is the last report of the training. The metrics have no lines after this report,
-    because the training has removed those that a killed process left.
+    ``last`` is the last report of the training. No line of ``metrics.jsonl`` is of a later
+    iteration.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; the errors of ``read_policy``.
@@ -59,8 +59,8 @@ def training_record(
 ) -> dict[str, Any]:
     """Return the record of a training as JSON data; ``docs/training.md`` describes it.
 
-    ``card`` is the metadata of its policy, ``last`` its last report, and ``metrics`` are the lines
-    of ``metrics.jsonl``.
+    ``card`` is the metadata of the trained policy, ``last`` the last report of the training, and
+    ``metrics`` are the lines of ``metrics.jsonl``.
     """
     return {
         "format": "tltl-training",
@@ -94,10 +94,9 @@ def training_record(
 
 
 def _initial_policy(run: TrainingRun) -> dict[str, Any] | None:
-    """Return what the record says of the policy that the training began with.
+    """Describe the policy that the training began with; None if it began with random weights.
 
-    None if the training began without one. The path is left out, because it is valid only on this
-    machine.
+    The path of the policy's file is left out, because it is valid only on this machine.
     """
     return (
         None if run.initial is None else {name: value for name, value in to_json(run.initial).items() if name != "path"}
@@ -127,15 +126,20 @@ def record_so_far(folder: Path) -> dict[str, Any]:
 
 
 def _best_policy(pass_rate: float | None, steps: int | None, *, confirmed: bool) -> dict[str, Any] | None:
-    """Return what the record says of the best policy; None if there is no best policy yet."""
+    """Return the entry ``best`` of the record; None if there is no best policy yet.
+
+    ``steps`` is the number of steps after which the policy had its weights. ``confirmed`` says
+    whether it met the spec in all episodes of its confirmation.
+    """
     return None if pass_rate is None else {"pass_rate": round(pass_rate, 6), "steps": steps, "confirmed": confirmed}
 
 
 def finished_record(run: TrainingRun) -> dict[str, Any] | None:
-    """Return the record of a training if it would end at once when it is resumed; else None.
+    """Return the record of a training that would end at once if it were resumed, else None.
 
-    In the record, ``end`` is ``met`` if the training met its goal. Otherwise it is the limit of
-    ``run`` that the training has reached, even if another limit ended the training.
+    In the record, ``end`` is ``met`` if the policy met the spec. Otherwise it is the limit in the
+    settings of ``run`` that the training has reached, ``steps`` or ``minutes``, even if the
+    training ended at another limit.
     """
     document = _read_record(run.folder)
     if document is None or document["end"] == "met":
@@ -145,16 +149,15 @@ def finished_record(run: TrainingRun) -> dict[str, Any] | None:
 
 
 def recorded_end(folder: Path) -> StopReason | None:
-    """Return why the training in a folder ended; None if it has no valid record."""
+    """Return why the training in a folder ended; None if the folder has no valid record."""
     document = _read_record(folder)
     return None if document is None else document["end"]
 
 
 def _read_record(folder: Path) -> dict[str, Any] | None:
-    """Return the content of ``record.json`` in a folder.
+    """Return the content of ``record.json`` in a folder; None if it is missing or invalid.
 
-    None if the file cannot be read, or if it does not say how the training ended. Its other fields
-    are not checked.
+    Only the fields that say how the training ended are checked.
     """
     try:
         document = fileio.load_json(folder / RECORD, fileio.limits.REPORT)
@@ -174,7 +177,7 @@ class _EndFields:
 
 
 def _cloning_steps(metrics: Sequence[Mapping[str, Any]]) -> int:
-    """Return after how many steps the behavioural cloning ended; 0 without cloning."""
+    """Return the number of steps at which behavioural cloning ended; 0 if there was no cloning."""
     return max((line["steps"] for line in metrics if "cloning" in line["losses"]), default=0)
 
 

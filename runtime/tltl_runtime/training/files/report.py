@@ -39,10 +39,11 @@ class EpisodeWindow:
     """Statistics of the last ``count`` episodes, of which ``successes`` met the spec.
 
     ``progress`` in [0, 1], ``reward`` and ``steps`` are means over the episodes; they are 0 if
-    there is no episode. ``reward`` always has the undiscounted terminal penalty. ``states`` maps an
-    automaton state to the share of episodes that ended in it, or were in it before a violation.
-    ``violated`` maps a state to the share of episodes that were in it before a violation. Both are
-    shares of all episodes, in [0, 1]. States with a share of 0 are left out.
+    there is no episode. In ``reward``, the terminal penalty of failed episodes is not discounted,
+    whatever the settings of the training. ``states`` maps an automaton state to the share of
+    episodes that ended in it, or were in it just before they violated the spec. ``violated`` maps a
+    state to the share of episodes that were in it just before they violated the spec. Both are
+    shares of all episodes, in (0, 1]; states that no episode ended in are left out.
     """
 
     count: int
@@ -61,7 +62,7 @@ class EpisodeWindow:
 
 @record
 class Confirmation:
-    """The result of testing a policy in up to ``of`` fresh episodes, before a training ends.
+    """The result of testing a policy in up to ``of`` new episodes, before a training ends.
 
     The first ``met`` of these episodes met the spec. If ``met`` is less than ``of``, the next
     episode failed and was the last one.
@@ -80,18 +81,18 @@ class Confirmation:
 class TrainingReport:
     """An iteration, and the state of the training after it.
 
-    - ``steps`` counts all decisions so far, of all environments and processes, without those of
-      searches and without ``replayed`` ones.
+    - ``steps`` counts all decisions so far, of all environments and processes. Decisions of
+      searches and ``replayed`` decisions do not count.
     - ``seconds`` is the training time so far, over all resumptions.
     - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec; a
       failed confirmation resets it.
-    - ``confirmation`` is the result of the confirmation in this iteration, None if no confirmation
-      was due.
-    - ``best_pass_rate`` and ``best_steps`` are the pass rate of the best policy and the number of
-      steps at which it had its weights; None if there is no best policy yet.
+    - ``confirmation`` is the result of testing the policy in new episodes after this iteration;
+      None if no test was due.
+    - ``best_pass_rate`` is the pass rate of the best policy, and ``best_steps`` the number of steps
+      after which it had its weights; None if there is no best policy yet.
     - ``stop`` says why the training ends here; None if it goes on.
     - ``checkpointed`` says whether a checkpoint is written for this iteration.
-    - ``searched`` is the progress of the searches, None if there was no search.
+    - ``searched`` is the progress of the searches for demonstrations, None if there was no search.
     - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
     - ``imitated`` describes the demonstrations that the agent imitates; None for other trainings.
     """

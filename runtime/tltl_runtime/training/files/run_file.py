@@ -47,9 +47,9 @@ _MOST_NAMED: Final = 8
 
 @record
 class InitialPolicy:
-    """A policy whose weights a training begins with.
+    """The policy whose weights a training begins with.
 
-    ``path`` is its file; the other fields describe what the file contained when it was read.
+    ``path`` is its file. The other fields describe the content of the file when it was read:
     ``weights`` is the SHA-256, in hexadecimal, of its weights. ``level``, ``variant`` and
     ``level_hash`` are from the policy's metadata and say on which level it was trained.
     """
@@ -199,12 +199,12 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 
 def identity(run: TrainingRun) -> dict[str, str]:
-    """Return what a checkpoint depends on, by name, so that a message can say what differs.
+    """Return the inputs of a training as texts by name; a checkpoint fits only equal inputs.
 
-    ``level`` and ``spec`` are hashes, ``seed`` is the seed. ``settings`` is a SHA-256, in
-    hexadecimal, of the observation version, the params, the sensors and all settings except
-    :data:`MAY_CHANGE`. With imitation, ``demonstrations`` is a hash of the recordings. With an
-    initial policy, ``policy`` is the hash of its weights.
+    ``level`` and ``spec`` are hashes, ``seed`` is the seed. ``settings`` is a hash of the version
+    of the observations, the params, the sensors and all settings except :data:`MAY_CHANGE`. With
+    imitation, ``demonstrations`` is a hash of the recordings. With an initial policy, ``policy`` is
+    the hash of its weights. All hashes are in hexadecimal. Errors name the inputs that differ.
     """
     relevant = {
         "observation": OBSERVATION,
@@ -224,7 +224,7 @@ def identity(run: TrainingRun) -> dict[str, str]:
 
 
 def current_level_hash(run: TrainingRun) -> str:
-    """Return the hash of the level of a training; the level is read from its file as it is now."""
+    """Read the level of a training from its file, which may have changed; return the level's hash."""
     game = game_of(run.level)
     return game.level_hash(game.load_level(run.level, run.variant))
 
@@ -235,7 +235,10 @@ def demonstrations_of(run: TrainingRun) -> Path:
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the name (``table.key``) and the value of each setting in the JSON data of settings."""
+    """Yield the dotted name and the value of each setting: ``{"stop": {"steps": 9}}`` -> ``("stop.steps", 9)``.
+
+    ``settings`` are settings as JSON data, and ``path`` is the prefix of the names.
+    """
     if not isinstance(settings, dict):
         yield path, settings
         return
@@ -249,7 +252,7 @@ def resume_command(folder: Path) -> str:
 
 
 def named_trainings(folder: Path) -> str:
-    """Return a help text that names the trainings directly in a folder; empty if there are none."""
+    """Return a help text that lists the folders of trainings directly in ``folder``; empty if there are none."""
     trainings = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
     return f"name one of them: {short_list([f'`{path}`' for path in trainings], _MOST_NAMED)}" if trainings else ""
 

@@ -91,7 +91,8 @@ class RewardSettings:
 
     The ``penalty_schedule`` ``rising`` matters only if ``mode`` is ``progress`` and
     ``terminal_penalty`` is ``discounted``. Then the penalty begins as the discounted one, and rises
-    to the undiscounted one as the pass rate rises from one half to 1.
+    to the undiscounted one as the pass rate rises from one half to 1. ``gamma`` is the discount
+    factor.
     """
 
     mode: monitors.Mode
@@ -131,7 +132,7 @@ class Stop:
         return 0 < self.minutes * 60 <= seconds
 
     def reached_limit(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
-        """Return the limit that a training has reached; None if it has reached neither."""
+        """Return the limit that a training has reached after ``steps`` and ``seconds``; None if none."""
         if steps >= self.steps:
             return "steps"
         return "minutes" if self.is_out_of_time(seconds) else None
@@ -141,7 +142,8 @@ class Stop:
 class Classes:
     """The names of the classes of the runner and of the algorithm that train.
 
-    They have the form of :func:`rsl_rl.utils.resolve_callable`.
+    Names are in the form that :func:`rsl_rl.utils.resolve_callable` reads, such as ``PPO`` or
+    ``package.module:Class``.
     """
 
     runner: str
@@ -191,7 +193,7 @@ class TrainingSettings:
 
 
 def read_settings(path: Path | None = None) -> TrainingSettings:
-    """Return the default settings. If ``path`` is given, its TOML file overrides some of them.
+    """Return the default settings; if ``path`` is given, settings in this TOML file replace them.
 
     Raises:
         TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
@@ -226,7 +228,7 @@ def default_text() -> str:
 
 
 def settings_text(settings: TrainingSettings) -> str:
-    """Return settings as TOML: the text of the defaults, with the values that differ replaced."""
+    """Return settings as TOML: the text of the default settings, in which other values are put in."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():
@@ -252,9 +254,10 @@ def _toml(value: object) -> str:
 
 
 def algorithm_name(settings: TrainingSettings) -> str:
-    """Return the name of the algorithm's class.
+    """Return the name of the algorithm's class, from the setting ``classes.algorithm``.
 
-    With imitation, :class:`~tltl_runtime.training.imitation.gail.Gail` replaces ``PPO``.
+    With imitation, the default ``PPO`` becomes
+    :class:`~tltl_runtime.training.imitation.gail.Gail`.
     """
     name = settings.classes.algorithm
     return _GAIL if settings.imitates and name == _PPO else name
@@ -263,10 +266,11 @@ def algorithm_name(settings: TrainingSettings) -> str:
 def rsl_config(
     settings: TrainingSettings, shapes: Shapes, branches: Sequence[int], layouts: SpaceLayouts | None = None
 ) -> dict[str, Any]:
-    """Return rsl-rl's configuration.
+    """Return rsl-rl's configuration of the runner, the networks and the algorithm.
 
-    ``shapes`` are the shapes of an observation by key. ``branches`` has the number of choices of
-    each branch of an action. With ``layouts``, these describe the observation and the action.
+    ``shapes`` are the shapes of the parts of an observation, by key. An action has several discrete
+    branches; ``branches`` has the number of choices of each. If ``layouts`` is given, the networks
+    are built for these layouts of observation and action, and ``branches`` is not used.
     """
     ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)

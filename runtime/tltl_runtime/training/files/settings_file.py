@@ -1,4 +1,4 @@
-"""Read settings from TOML: the known keys, and which values each of them may have."""
+"""Read the settings of a training from TOML, and check their keys and values."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class NumberSetting:
     open: bool = False
 
     def read(self, value: object) -> float | None:
-        """Return the number, or None if it is invalid."""
+        """Return ``value`` as a float; None if it is not a finite number in the range."""
         if not isinstance(value, (int, float)) or isinstance(value, bool) or not isfinite(value):
             return None
         return float(value) if self.low <= value <= self.high and not (self.open and value == self.low) else None
@@ -41,7 +41,7 @@ class IntegerSetting:
     high: int
 
     def read(self, value: object) -> int | None:
-        """Return the number, or None if it is invalid."""
+        """Return ``value``, or None if it is not an integer in the range."""
         return value if type(value) is int and self.low <= value <= self.high else None
 
     def __str__(self) -> str:
@@ -56,7 +56,7 @@ class IntegerListSetting:
     max_length: int
 
     def read(self, value: object) -> tuple[int, ...] | None:
-        """Return the numbers, or None if they are invalid."""
+        """Return the list as a tuple; None if ``value`` is not such a list."""
         is_list = isinstance(value, list) and 1 <= len(value) <= self.max_length
         return tuple(value) if is_list and all(self.item.read(number) is not None for number in value) else None  # type: ignore[attr-defined, arg-type]
 
@@ -66,12 +66,12 @@ class IntegerListSetting:
 
 @record
 class ChoiceSetting:
-    """A setting that is one of a few texts."""
+    """A setting that is one of the texts ``words``."""
 
     words: tuple[str, ...]
 
     def read(self, value: object) -> str | None:
-        """Return the text, or None if it is invalid."""
+        """Return ``value``, or None if it is not one of the texts."""
         return value if isinstance(value, str) and value in self.words else None
 
     def __str__(self) -> str:
@@ -82,14 +82,14 @@ class ChoiceSetting:
 class TextSetting:
     """A setting that is a text and matches the regular expression ``pattern``.
 
-    Messages describe it as ``description``.
+    ``description`` says in messages which texts are valid.
     """
 
     pattern: str
     description: str
 
     def read(self, value: object) -> str | None:
-        """Return the text, or None if it is invalid."""
+        """Return ``value``, or None if it is not a text that matches ``pattern``."""
         return value if isinstance(value, str) and re.fullmatch(self.pattern, value) else None
 
     def __str__(self) -> str:
@@ -164,17 +164,17 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     },
     "classes": {"runner": _CLASS, "algorithm": _CLASS},
 }
-"""The kinds of values, by table and key. The table ``""`` has the keys before the first table."""
+"""The valid values of each setting, by table and key. The table ``""`` has the keys above the first table."""
 
 _TOP: Final = "at the top, above the first `[...]`"
 _HELP: Final = 'write values as in `envs = 32` and `device = "cpu"`'
 
 
 def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
-    """Return the values in a settings text, by table and key.
+    """Return the values in a settings file, by table and key; settings that it leaves out are missing.
 
-    Raises TltlError with all errors: TLT0860, not TOML; TLT0861, an unknown key; TLT0862, an
-    invalid value.
+    The table ``""`` has the keys above the first table. Raises TltlError with all errors: TLT0860,
+    not TOML; TLT0861, an unknown key; TLT0862, an invalid value.
     """
     log: list[Diagnostic] = []
     values: dict[str, dict[str, Any]] = {"": {}}
@@ -219,15 +219,15 @@ def _read(table: str, key: str, entry: Entry, values: dict[str, Any], log: list[
 
 
 def _suggestion(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
-    """Suggest a setting whose name is similar to ``key``; None if no name is.
+    """Return a hint for the unknown setting ``key``: a similar name, or else the names in ``known``.
 
-    After too many errors there are no suggestions, because each takes time.
+    Return None if ``log`` already has many errors, because each search takes time.
     """
     return suggestion(key, known) if len(log) < MOST_SUGGESTIONS else None
 
 
 def _place_of_key(key: str) -> str | None:
-    """Say where a key in the wrong table belongs; None for an unknown key."""
+    """Return a hint that says to which table ``key`` belongs; None if no table has such a key."""
     places = [f"under `[{table}]`" if table else _TOP for table, kinds in KINDS.items() if key in kinds]
     return f"it belongs {' or '.join(places)}" if places else None
 

@@ -35,14 +35,14 @@ _OPCODES: Final = 20
 
 
 class TorchArchiveError(ValueError):
-    """The bytes are not plain data and tensors of ``torch.save``; the message says why."""
+    """Raised for bytes that are not a valid file of ``torch.save``; the message says why."""
 
 
 def read_torch(data: bytes) -> Any:
-    """Return the plain data and tensors that ``torch.save`` wrote, on the CPU.
+    """Load the bytes of a ``torch.save`` file that contains only plain data and tensors.
 
-    Raises TorchArchiveError if the bytes are something else, are damaged, or exceed
-    :data:`tltlc.io.limits.CHECKPOINT`.
+    All tensors are put on the CPU. Raises TorchArchiveError if the bytes are something else, are
+    damaged, or exceed :data:`tltlc.io.limits.CHECKPOINT`.
     """
     archive = _checked_archive(data)
     try:
@@ -94,10 +94,10 @@ def _archive(contents: Mapping[str, bytes]) -> bytes:
 
 
 def _check_calls(pickled: bytes) -> None:
-    """Refuse a pickle that is too long, or does more than make plain data and tensors.
+    """Raise TorchArchiveError if a pickle is too long, or does more than make plain data and tensors.
 
-    Tuples must not be keys of dicts. If each of several nested tuples contains the next one twice,
-    the time to hash them doubles with each level.
+    Tuples must not be keys of dicts: if each of several nested tuples contains the next one twice,
+    the time to hash the outermost doubles with each level.
     """
     stack: list[str] = []
     marks: list[int] = []
@@ -124,10 +124,10 @@ def _check_calls(pickled: bytes) -> None:
 
 
 def _pop_operands(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """Take the operands of a pickle operation from the stack; return their kinds.
+    """Take the operands of a pickle operation from the stack; return their kinds without the mark.
 
-    The result leaves out the pickle mark. ``marks`` are the positions at which marks were put on
-    the stack. Some of these marks may no longer be there.
+    ``marks`` are the positions on the stack at which MARK operations put marks. Some of these marks
+    may no longer be there.
     """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []

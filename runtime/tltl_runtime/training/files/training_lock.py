@@ -11,9 +11,9 @@ from tltlc.api import Diagnostic
 
 
 def lock_training(folder: Path) -> AbstractContextManager[None]:
-    """Return a context that locks the folder, so that no other process trains in it.
+    """Return a context manager that locks ``folder``, so that no other process trains in it.
 
-    The folder is created if it is missing.
+    Entering the context creates the folder if it is missing, and raises the errors below.
 
     Raises:
         TltlError: TLT0005, the folder cannot be written to; TLT0865, another process trains in it.

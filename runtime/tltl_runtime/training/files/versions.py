@@ -10,5 +10,5 @@ _PACKAGES: Final = ("tltlc", "torch", "rsl-rl-lib", "gymnasium", "pybullet", "nu
 
 
 def versions() -> dict[str, str]:
-    """Return the installed versions, by name."""
+    """Return the versions of Python and of the installed packages, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

@@ -26,10 +26,11 @@ MOST_FAILURES: Final = 20
 
 @record
 class ImitationSummary:
-    """The numbers of ``episodes`` and ``decisions`` of the demonstrations, and who played them.
+    """A summary of the demonstrations that an agent imitates.
 
-    ``left_out`` are the file names of the recordings that are not demonstrations, each with the
-    reason.
+    ``episodes`` counts the demonstrations, and ``decisions`` the actions in them. ``players`` are
+    the names of those who played them, such as ``expert``. ``left_out`` has a text ``FILE: REASON``
+    for each recording that is not a demonstration.
     """
 
     episodes: int
@@ -42,7 +43,7 @@ class ImitationSummary:
 class Attempt:
     """An episode that was played to record a demonstration.
 
-    ``path`` is the file of its recording, or None if the episode does not meet the spec and was not
+    ``path`` is the file of its recording, or None if the episode is not a demonstration and was not
     kept. ``kept`` is the number of demonstrations in the folder after this attempt.
     """
 
@@ -87,9 +88,10 @@ class Demonstrations:
         return [seed for name, seed in self._players_and_seeds if name == player]
 
     def add(self, episode: RecordedEpisode) -> Attempt:
-        """Write an episode to the folder if it is a demonstration; return the attempt.
+        """Write an episode to the folder if it is a demonstration; otherwise keep nothing.
 
-        Raises TltlError, TLT0005, if the file cannot be written.
+        The ``path`` of the returned attempt is the new file, or None if nothing was kept. Raises
+        TltlError, TLT0005, if the file cannot be written.
         """
         path = None
         if not self._rejection(episode):
@@ -128,16 +130,17 @@ def recordings(folder: Path) -> list[Path]:
 
 
 def error_text(error: TltlError) -> str:
-    """Return the error of a recording that cannot be read, as ``CODE, title``."""
+    """Return why a recording cannot be read: the code and the title of the error, as ``CODE, TITLE``."""
     (diagnostic, *_) = error.diagnostics
     return f"{diagnostic.code}, {diagnostic.title}"
 
 
 def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Attempt]:
-    """Let the scripted expert play until there are ``number`` demonstrations; yield each attempt.
+    """Let the scripted expert play until ``store`` has ``number`` demonstrations; yield each attempt.
 
-    An episode that meets the spec is written to the folder of ``store``. Seeds count up from
-    ``seed``, or from the seed after the expert's last demonstration, so that an interrupted
+    An episode that meets the spec is written to the folder of ``store``. The first episode has the
+    seed ``seed``, and each later one the next seed. If the expert has demonstrations with ``seed``
+    or later seeds, the first episode has the seed after the last of them. So an interrupted
     recording continues where it stopped.
 
     Raises:

@@ -1,4 +1,4 @@
-"""The discriminator of GAIL: is a decision from a demonstration or from the agent?"""
+"""The discriminator of GAIL: it predicts whether a decision is from a demonstration or from the agent."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from torch.nn.functional import one_hot, softplus
 from tltlc.api import record
 
 Decisions = tuple[Mapping[str, Tensor], Tensor]
-"""Observations by key, each [n, ...], and actions [n, branches]."""
+"""n decisions: observations by key, each [n, ...], and actions [n, width], a row for each decision."""
 
 
 @record
 class DiscriminatorLoss:
-    """The ``loss`` of a discriminator, and the mean probabilities that it predicts.
+    """The ``loss`` of a discriminator on a batch, and how well it tells decisions apart.
 
-    It predicts the probability that a decision is from a demonstration.
-    ``demonstration_probability`` is the mean over decisions of demonstrations,
-    ``agent_probability`` the mean over the agent's decisions. Both are in [0, 1].
+    The discriminator predicts the probability that a decision is from a demonstration.
+    ``demonstration_probability`` is the mean of this probability over decisions of demonstrations,
+    ``agent_probability`` its mean over decisions of the agent. Both are in [0, 1].
     """
 
     loss: Tensor
@@ -31,12 +31,12 @@ class DiscriminatorLoss:
 
 
 class Discriminator(nn.Module):
-    """Predicts whether a decision is from a demonstration, as a logit.
+    """A network that predicts, as a logit, whether a decision is from a demonstration.
 
-    ``config`` is rsl-rl's configuration of a model. The network's inputs are observations and
-    one-hot actions. ``observations`` is an example of a batch, and ``branches`` gives the number of
-    choices of each branch. Source: Ho and Ermon, Generative adversarial imitation learning, NIPS
-    2016.
+    Its inputs are the observation and the action, whose choices become one-hot vectors. ``config``
+    is rsl-rl's configuration of the network. ``observations`` is an example of a batch. An action
+    has several discrete branches; ``branches`` has the number of choices of each. Source: Ho and
+    Ermon, Generative adversarial imitation learning, NIPS 2016.
     """
 
     def __init__(self, observations: Mapping[str, Tensor], branches: Sequence[int], config: Mapping[str, Any]) -> None:
@@ -62,8 +62,8 @@ class Discriminator(nn.Module):
     def loss(self, demonstrations: Decisions, agent: Decisions, penalty: float) -> DiscriminatorLoss:
         """Return the loss: the cross entropy, plus ``penalty`` times the gradient penalty.
 
-        ``demonstrations`` and ``agent`` are equally many decisions of demonstrations and of the
-        agent.
+        ``demonstrations`` are decisions of demonstrations, and ``agent`` are as many decisions of
+        the agent.
         """
         demonstration_logits, agent_logits = self(demonstrations), self(agent)
         loss = softplus(-demonstration_logits).mean() + softplus(agent_logits).mean()
@@ -73,9 +73,11 @@ class Discriminator(nn.Module):
         return DiscriminatorLoss(loss, *means)
 
     def _gradient_penalty(self, demonstrations: Decisions, agent: Decisions) -> Tensor:
-        """Return the mean of (|gradient| - 1)² at random points between the two sets of decisions.
+        """Return the mean of (|gradient| - 1)² at random points between demonstrations and agent.
 
-        Gulrajani et al., Improved training of Wasserstein GANs, NIPS 2017; ML-Agents uses it, too.
+        Each point is a random mixture of a demonstrated decision and a decision of the agent. The
+        gradient is that of the logit with respect to the network's inputs. Source: Gulrajani et
+        al., Improved training of Wasserstein GANs, NIPS 2017; ML-Agents uses it, too.
         """
         first, second = self._inputs(demonstrations), self._inputs(agent)
         share = torch.rand(demonstrations[1].shape[0], device=demonstrations[1].device)
@@ -90,7 +92,11 @@ class Discriminator(nn.Module):
         return (norms - 1.0).square().mean()
 
     def update_normalization(self, decisions: Decisions) -> None:
-        """Update the scales of inputs without bounds from the agent's decisions; there are none here."""
+        """Do nothing: this network scales no inputs.
+
+        A subclass may use the agent's ``decisions`` to update the running mean and deviation of its
+        inputs.
+        """
 
     def _logits(self, inputs: Mapping[str, Tensor]) -> Tensor:
         """Return the logits [n] for the network's inputs."""

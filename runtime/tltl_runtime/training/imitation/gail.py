@@ -11,8 +11,8 @@ The paper leaves some points open. This implementation decides them as follows:
 - The observations are the same as for the agent that learns from the automaton's rewards, and
   include the automaton state, because the architecture is identical. The agent gets none of the
   automaton's rewards. All that it learns about the spec is whether an episode succeeded.
-- The 5 % refer to the limit that is reached first, of steps or of minutes, so that every training
-  has its share of cloning.
+- Cloning ends after 5 % of the limit of steps or 5 % of the limit of minutes, whichever comes
+  first.
 - During cloning, the actor plays episodes with sampled actions. These steps count towards the
   limit. The critic and the discriminator learn from them, so that GAIL begins with a trained
   critic. The actor learns from the demonstrations alone.
@@ -53,15 +53,22 @@ _Losses = dict[str, float]
 class Gail(PPO):
     """rsl-rl's PPO with rewards from a discriminator, after behavioural cloning.
 
-    ``gail`` is the entry of that name in :func:`~tltl_runtime.training.files.settings.rsl_config`.
-    The environment must have ``imitation_data``. Under ``successes`` in the extras of a step, it
-    must say which episodes ended in success. The losses are those of PPO and:
+    ``gail`` has the settings, from the entry ``gail`` of
+    :func:`~tltl_runtime.training.files.settings.rsl_config`. The environment must have
+    ``imitation_data``. The extras of its steps must have ``successes``: bools [num_envs] that say
+    which episodes ended in success.
 
-    - ``cloning``: the mean negative log-likelihood of the demonstrations, in nats per decision;
-    - ``discriminator``: the loss of the discriminator;
-    - ``discriminator_theirs``: the mean probability of being demonstrated, in [0, 1], that the
-      discriminator predicts for decisions of demonstrations;
-    - ``discriminator_agents``: the same for decisions of the agent.
+    The losses are those of PPO, or during cloning:
+
+    - ``value``: the loss of the critic;
+    - ``cloning``: the mean negative log-likelihood of the demonstrations, in nats per decision.
+
+    Further losses in both phases describe the discriminator, which predicts the probability that a
+    decision is from a demonstration:
+
+    - ``discriminator``: its loss;
+    - ``discriminator_theirs``: the mean of its predictions for decisions of demonstrations;
+    - ``discriminator_agents``: the mean of its predictions for decisions of the agent.
     """
 
     imitation_data: ImitationData
@@ -98,9 +105,11 @@ class Gail(PPO):
         return self.steps < self.cloning_steps and self.seconds < self.cloning_s
 
     def process_env_step(self, obs: Any, rewards: Tensor, dones: Tensor, extras: dict[str, Tensor]) -> None:
-        """Record a step of the environments, with terminal rewards in place of ``rewards``.
+        """Record a step of the environments; replace ``rewards`` [num_envs] by terminal rewards.
 
-        ``rewards`` is [num_envs]. Time-outs are not passed on, so that no return is bootstrapped.
+        An episode that ends gets plus ``terminal`` (a setting) if it succeeded, minus ``terminal``
+        if not. All other rewards become 0. Time-outs are not passed on to PPO, so that no return is
+        bootstrapped.
         """
         successes = extras["successes"].to(rewards.device)
         terminal_rewards = torch.where(successes, self._terminal, -self._terminal) * dones.to(torch.float32)
@@ -113,10 +122,10 @@ class Gail(PPO):
         super().compute_returns(obs)
 
     def update(self) -> _Losses:
-        """Train the networks on a rollout; return the mean losses by name.
+        """Train all networks on the rollout; return the mean losses by name.
 
-        Train the discriminator first. Then clone the actor and train the critic, or update both by
-        PPO.
+        Train the discriminator first. Then, during cloning, train the critic and clone the actor;
+        after cloning, update both by PPO.
         """
         storage = self.storage
         discriminator_losses = self._train_discriminator()
@@ -194,14 +203,14 @@ class Gail(PPO):
         }
 
     def _clone(self) -> _Losses:
-        """Train the critic and clone the actor, with the scales that the rollout gives, as PPO does."""
+        """Train the critic and clone the actor; first update their input scales from the rollout."""
         observations, _ = self._rollout()
         self.actor.update_normalization(observations)
         self.critic.update_normalization(observations)
         return {**self._train_critic(), **self._clone_actor()}
 
     def _train_critic(self) -> _Losses:
-        """Train only the critic, on the rollout of the actor that is being cloned."""
+        """Train the critic on the rollout, and leave the actor as it is; return the loss as ``value``."""
         losses = []
         for batch in self.storage.mini_batch_generator(self.num_mini_batches, self.num_learning_epochs):
             loss = (batch.returns - self.critic(batch.observations)).square().mean()
@@ -215,7 +224,10 @@ class Gail(PPO):
         return {"value": _mean(losses)}
 
     def _clone_actor(self) -> _Losses:
-        """Clone the actor in as many passes over the demonstrations as PPO makes over a rollout."""
+        """Train the actor to imitate the demonstrations; return the mean loss as ``cloning``.
+
+        Make as many passes over the demonstrations as PPO makes over a rollout.
+        """
         total = 0.0
         for _ in range(self.num_learning_epochs):
             for observations, actions in self.imitation_data.shuffled_batches(BATCH):
@@ -224,7 +236,7 @@ class Gail(PPO):
 
 
 def _discriminator(gail: Mapping[str, Any], example: TensorDict) -> Discriminator:
-    """Return a new discriminator; ``example`` is a batch of observations."""
+    """Return a new discriminator; ``gail`` has its settings, and ``example`` is a batch of observations."""
     if gail["layouts"] is None:
         return Discriminator(example, gail["branches"], gail["discriminator"])
     return SpaceDiscriminator(gail["layouts"], gail["network"])

@@ -32,10 +32,11 @@ from tltlc.api import Diagnostic, TltlError, record
 
 @record
 class ImitationData:
-    """All decisions of the demonstrations.
+    """The n decisions of all demonstrations.
 
-    ``observations`` are those of the environment, tensors [n, ...] by key, and ``actions`` is
-    [n, width], with numbers before they are squashed.
+    ``observations`` has tensors [n, ...] by key: the observation before each decision. ``actions``
+    is [n, width]: the choices of each action, and then its continuous numbers, as the policy's
+    network outputs them, before they are squashed to their bounds.
     """
 
     observations: TensorDict
@@ -47,16 +48,16 @@ class ImitationData:
         return self.observations[indices], self.actions[indices]
 
     def sample(self, count: int) -> tuple[TensorDict, Tensor]:
-        """Draw ``count`` decisions uniformly with replacement, with torch's generator.
+        """Draw ``count`` decisions uniformly with replacement; return their observations and actions.
 
-        Returns observations and actions.
+        The random numbers are from torch's default generator.
         """
         return self.rows(torch.randint(len(self.actions), (count,)))
 
     def shuffled_batches(self, size: int) -> Iterator[tuple[TensorDict, Tensor]]:
-        """Yield all decisions once, in random order by torch's generator, in batches of ``size``.
+        """Yield all decisions once, in random order, in batches of ``size``; the last may be smaller.
 
-        The last batch may be smaller.
+        The random numbers are from torch's default generator.
         """
         for indices in torch.randperm(len(self.actions)).split(size):
             yield self.rows(indices)
@@ -67,9 +68,9 @@ class ImitationData:
 
 
 def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report: Callable[[Attempt], None]) -> None:
-    """Record demonstrations of the expert until ``folder`` contains ``number`` demonstrations.
+    """Let the expert play and record until ``folder`` contains ``number`` demonstrations.
 
-    ``make`` makes the environment. ``report`` is called with each attempt. Raises the errors of
+    ``make`` returns a new environment. ``report`` is called with each attempt. Raises the errors of
     :func:`~tltl_runtime.training.imitation.demonstrations.expert_attempts`.
     """
     env = make()
@@ -85,10 +86,10 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
 def read_demonstrations(
     folder: Path, make: Callable[[], TltlEnv], layouts: SpaceLayouts | None = None
 ) -> ImitationData:
-    """Read the demonstrations in a folder; replay each one in an environment from ``make``.
+    """Read the demonstrations in a folder; replay each to get its observations.
 
-    ``layouts`` are those of the environment; None if the network reads its observations as they are.
-    With them, a recording has flat actions.
+    ``make`` returns a new environment. ``layouts`` say how its observations and actions become
+    arrays; None if the network uses them without conversion.
 
     A recording is left out if it is of another level, does not meet the spec in the replay, or
     cannot be read.
@@ -132,7 +133,7 @@ def read_demonstrations(
 def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
     """Return error TLT0921: no recording in a folder is a demonstration.
 
-    ``left_out`` are the names of the recordings, each with the reason; the message gives the first.
+    ``left_out`` has a text ``FILE: REASON`` for each recording; the message shows the first.
     """
     title = f"there is nothing to imitate in `{folder}`: "
     if left_out:

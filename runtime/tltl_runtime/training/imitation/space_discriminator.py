@@ -1,4 +1,4 @@
-"""The discriminator of GAIL for the observations and actions of any game."""
+"""The discriminator of GAIL for observation and action spaces of any kind."""
 
 from __future__ import annotations
 
@@ -17,15 +17,18 @@ from tltl_runtime.training.imitation.discriminator import Decisions, Discriminat
 from tltlc.api import replace
 
 _ACTION: Final = "~action"
-"""The key of the action. No part of an observation has it, because keys escape a tilde."""
+"""The key of the action among the network's inputs.
+
+No part of an observation has this key, because a tilde in a key is escaped.
+"""
 
 
 class SpaceDiscriminator(Discriminator):
-    """A discriminator whose network has the encoders of a policy for ``layouts``.
+    """A discriminator that encodes observations as the policy's network for ``layouts`` does.
 
-    Its further input is the action: one-hot choices, and numbers squashed to [-1, 1] if both their
-    bounds are known. The gradient penalty mixes what the encoders read: one-hot vectors, planes and
-    scaled numbers.
+    The action is one more input: its choices as one-hot vectors, and its continuous numbers. A
+    number with two bounds is squashed to [-1, 1] first. The gradient penalty is computed at
+    mixtures of encoded inputs: one-hot vectors, planes of images, and scaled numbers.
     """
 
     network: SpaceModel
@@ -44,7 +47,7 @@ class SpaceDiscriminator(Discriminator):
         self._is_bounded = bounded
 
     def update_normalization(self, decisions: Decisions) -> None:
-        """Update the scales of inputs without bounds from the agent's decisions."""
+        """Update the running mean and deviation of inputs without bounds from the agent's decisions."""
         self.network.update_normalization(self._observed(decisions))
 
     def _inputs(self, decisions: Decisions) -> dict[str, Tensor]:
@@ -55,7 +58,7 @@ class SpaceDiscriminator(Discriminator):
         return logits
 
     def _observed(self, decisions: Decisions) -> dict[str, Tensor]:
-        """Return observations and actions by key."""
+        """Return the observations by key, and under the key ``_ACTION`` the actions as vectors of numbers."""
         observations, actions = decisions
         sizes = self._action.sizes
         choices, numbers = actions.split([len(sizes), self._action.number_count], dim=-1)

@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 @record
 class ProcessGroup:
-    """The place of this process among the processes of a training, which exchange values.
+    """The place of this process among the processes of a training, and ways to exchange values.
 
     This is process ``rank`` of ``count``, and process ``local_rank`` of ``local_count`` on this
     machine; ranks count from 0. All processes must call the methods in the same order. Otherwise
@@ -67,9 +67,9 @@ def cores() -> int:
 
 @contextmanager
 def join_process_group(device: str) -> Iterator[tuple[ProcessGroup, str]]:
-    """Join torch's process group inside the block; yield the :class:`ProcessGroup` and ``device``.
+    """Join torch's process group inside the ``with`` block; leave it at the end.
 
-    A single process joins no group.
+    Yield the :class:`ProcessGroup` and ``device``. A single process joins no group.
     """
     group = process_group()
     if group.count == 1:

@@ -29,14 +29,14 @@ from tltlc.api import Diagnostic, TltlError
 class TrainingEnv(VecEnv):
     """A vector environment for rsl-rl.
 
-    ``env`` has environments of :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
-    autoreset.
+    The environments of ``env`` are :class:`~tltl_runtime.spec.wrapper.TltlEnv`, with ``SAME_STEP``
+    autoreset. ``seed`` is the argument of the vector environment's reset: a number, or one for each
+    environment.
 
-    Observation groups are the keys of the observation, tensors [num_envs, ...] on ``device``.
-    ``shapes`` are the shapes of one environment's observation. ``layouts`` are the layouts of
-    observation and action; None if the network takes and gives their values as they are, and
-    ``branches`` then has the numbers of choices of an action. ``seed`` is the argument of the vector
-    environment's reset: a number, or one for each environment.
+    An observation has a tensor [num_envs, ...] on ``device`` for each key; rsl-rl calls the keys
+    observation groups. ``shapes`` has the shape of each part for one environment. ``layouts`` say
+    how observations and actions become arrays. They are None if the network uses these without
+    conversion; ``branches`` then has the number of choices of each branch of an action.
 
     With a ``curriculum``, episodes begin at the starts that it draws, and ``seed`` is not used.
     :meth:`pop_finished` then leaves out the episodes that do not begin at the level's start.
@@ -45,7 +45,8 @@ class TrainingEnv(VecEnv):
     for the algorithm to imitate. ``extra_penalty`` maps the length of a failed episode, in steps,
     to the undiscounted penalty minus the penalty that the environment's reward already contains.
     ``penalty_weight``, in [0, 1] and initially 0, is the share of this difference that is
-    subtracted from the reward. ``limit_steps`` is the spec's limit; None if it has no limit.
+    subtracted from the reward. ``limit_steps`` is the spec's limit in steps; None if it has no
+    limit.
 
     Raises:
         TypeError: without ``layouts``, the observation space is not a Dict, or the action space is
@@ -93,11 +94,12 @@ class TrainingEnv(VecEnv):
         return self._observation
 
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
-        """Step all environments with actions [num_envs, width], before their numbers are squashed.
+        """Step all environments with actions [num_envs, width], as the policy's network outputs them.
 
-        Returns observations, rewards [num_envs], bools [num_envs] that say which episodes are over,
-        and extras. The extras are bools [num_envs]: ``time_outs`` says whether the episode ended at
-        a limit or was cut off, ``successes`` whether it met the spec.
+        Continuous numbers in the actions are squashed to their bounds first. Return observations,
+        rewards [num_envs], bools [num_envs] that say which episodes are over, and extras. The
+        extras are bools [num_envs]: ``time_outs`` says which episodes ended at a limit or were cut
+        off, ``successes`` which met the spec.
 
         Raises:
             TltlError: TLT0866, an action is not finite.
@@ -149,7 +151,7 @@ class TrainingEnv(VecEnv):
         self._observation = self._tensors(self._episodes.observation)
 
     def pop_finished(self) -> tuple[EpisodeSummary, ...]:
-        """Return and forget the summaries of the episodes that ended since the last call, in order of their ends."""
+        """Return the summaries of the episodes that ended since the last call, in order of their ends."""
         summaries, self._finished = tuple(self._finished), []
         return summaries
 
@@ -160,14 +162,14 @@ class TrainingEnv(VecEnv):
         return summaries
 
     def _episode_steps(self, row: int, episode: EpisodeSummary) -> int:
-        """Return the number of steps of the episode that ended in this row, with the replayed ones."""
+        """Return the number of steps of the episode that ended in this row, including replayed steps."""
         return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
     def _tensors(self, observation: Any) -> TensorDict:
         return self._encoding.batch(observation, self.num_envs, self.device)
 
     def _rows(self, actions: Tensor) -> NDArray[Any]:
-        """Return actions as rows [num_envs, width], in NumPy."""
+        """Convert actions to a NumPy array [num_envs, width]; raise TltlError, TLT0866, if one is not finite."""
         try:
             return self._actions.rows(actions.cpu().numpy())
         except ValueError as error:
@@ -176,7 +178,11 @@ class TrainingEnv(VecEnv):
 
 
 def _plain_shapes(env: WorkerVectorEnv) -> tuple[dict[str, tuple[int, ...]], tuple[int, ...]]:
-    """Return the shapes of an observation by key, and the numbers of choices of an action."""
+    """Return the shapes of an observation's parts by key, and the number of choices of each branch of an action.
+
+    Raises TypeError if the observation space is not a Dict, or the action space not a
+    MultiDiscrete.
+    """
     observation, action = env.single_observation_space, env.single_action_space
     if not isinstance(action, spaces.MultiDiscrete):
         raise TypeError(f"the action space must be a MultiDiscrete, not {action}")
@@ -192,12 +198,13 @@ def _update_curriculum(
     ends: Mapping[int, int],
     states: Mapping[int, int],
 ) -> NDArray[np.bool_]:
-    """Update the curriculum with the episodes that are over or have used up their decisions.
+    """Update the curriculum with all episodes that are over or have reached their limit of decisions.
 
-    ``ends`` maps the row of each environment whose episode met the spec to the result of
-    :func:`~tltl_runtime.training.exploration.search.end_of`. ``states`` maps rows to the automaton
-    states in which episodes ended. Return the mask [num_envs] of the episodes that have used up
-    their decisions: they must be cut off.
+    ``ends`` maps the index of each environment whose episode met the spec to the atoms that were
+    true at the end (:func:`~tltl_runtime.training.exploration.search.end_of`). ``states`` maps the
+    index of each environment whose episode is over to the automaton state in which it ended. Return
+    the mask [num_envs] of the episodes that have reached their limit of decisions, and that the
+    caller must cut off.
     """
     used_up = np.array([episodes.is_spent(row) for row in range(len(is_over))]) & ~is_over
     for row in [*np.flatnonzero(is_over).tolist(), *np.flatnonzero(used_up).tolist()]:
@@ -210,7 +217,8 @@ def _summaries(
 ) -> dict[int, EpisodeSummary]:
     """Return the summaries of the episodes that ended in the environments ``rows``, by row.
 
-    The indices of the episodes count from ``first_index``.
+    ``infos`` is the ``final_info`` of the vector environment. The first summary gets the index
+    ``first_index``, each later one the next number.
     """
     lengths = infos["episode"]["l"]
     return {

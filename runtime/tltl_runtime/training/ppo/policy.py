@@ -1,4 +1,4 @@
-"""Make policies, and the cards that describe them, from a training."""
+"""Make policies from a training, and the cards (metadata) that describe them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def card_of(run: TrainingRun, env: TrainingEnv) -> Card:
 
 
 def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
-    """Return the policy with the ``weights`` of an actor, by name.
+    """Return the policy that ``card`` describes, with the ``weights`` of an actor, by name.
 
     Raises:
         TltlError: TLT0866, a weight is not finite in half precision.

@@ -11,7 +11,7 @@ from tltl_runtime.training.ppo.distributed import ProcessGroup
 
 
 class Purpose(IntEnum):
-    """The purpose of a random stream.
+    """The purpose of a random stream, such as the seeds of the environments.
 
     Do not change the values: equal seeds must give equal trainings.
     """
@@ -25,9 +25,9 @@ class Purpose(IntEnum):
 
 
 def stream(run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
-    """Return the seed of this process's random stream for a purpose.
+    """Return the seed of a random stream, one for each process, purpose and iteration.
 
-    Each ``iteration`` has a stream of its own. So a training that is resumed after an iteration
-    does not repeat random numbers.
+    ``iteration`` is the iteration after which the stream begins. So a training that is resumed does
+    not repeat the random numbers that it used before.
     """
     return np.random.SeedSequence(run.seed, spawn_key=(group.rank, int(purpose), iteration))

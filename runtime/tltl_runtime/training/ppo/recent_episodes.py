@@ -24,12 +24,12 @@ little is left to find.
 
 
 class RecentEpisodes:
-    """The last ``windows * episodes`` episodes of a training, in windows of ``episodes`` each.
+    """The last ``windows * episodes`` episodes of a training.
 
-    ``limit_steps`` is the spec's limit in steps; None if it has no limit. ``unbroken`` is the number
-    of successive episodes, up to the last one, that met the spec, at most ``windows * episodes``.
-    When it is that many, the training confirms the policy in fresh episodes; if the policy fails
-    there, ``unbroken`` starts at 0 again.
+    ``limit_steps`` is the spec's limit in steps; None if it has no limit. ``unbroken`` is the
+    number of successive episodes, up to the last one, that met the spec, at most ``windows *
+    episodes``. When it has reached this maximum, the training tests the policy in new episodes. If
+    the policy fails there, ``unbroken`` starts at 0 again.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
@@ -40,7 +40,7 @@ class RecentEpisodes:
         self.unbroken = 0
 
     def add(self, finished: Iterable[EpisodeSummary]) -> None:
-        """Add episodes in the order of their ends."""
+        """Add episodes, in the order in which they ended."""
         for episode in finished:
             self._episodes.append(episode)
             self.unbroken = min(self.unbroken + 1, self._count) if episode.success else 0
@@ -74,7 +74,7 @@ class RecentEpisodes:
         return window.pass_rate, window.progress, window.reward
 
     def state(self) -> list[tuple[Any, ...]]:
-        """Return the episodes as plain values, for :meth:`load`."""
+        """Return the episodes as tuples of plain values, for :meth:`load`."""
         return [
             (episode.success, episode.progress, episode.steps, episode.unmet, episode.end == "violation")
             for episode in self._episodes
@@ -102,10 +102,7 @@ class RecentEpisodes:
     def _summary(
         self, index: int, success: bool, progress: float, steps: int, unmet: int, violated: bool
     ) -> EpisodeSummary:
-        """Return the summary of the episode ``index``.
-
-        The other arguments are its values as :meth:`state` returns them.
-        """
+        """Return the summary of the episode with this index, from the values that :meth:`state` stored."""
         return EpisodeSummary(
             index=index,
             seed=None,
@@ -122,17 +119,17 @@ class Standstill:
     """Detects a standstill: the agent succeeds sometimes, but its pass rate no longer rises.
 
     ``best`` is the greatest pass rate so far, in [0, 1]. ``since`` is the number of steps at which
-    it was reached, or at which the last standstill was detected.
+    that rate was reached, or at which the last standstill was detected.
     """
 
     def __init__(self, best: float = 0.0, since: int = 0) -> None:
         self._best, self._since = best, since
 
     def add(self, window: EpisodeWindow, steps: int) -> bool:
-        """Add the statistics after ``steps`` decisions; return whether there is a standstill.
+        """Add the statistics of the last episodes; return whether there is a standstill now.
 
-        ``steps`` counts the decisions of all environments. After a standstill, the count of steps
-        begins again.
+        ``steps`` counts the decisions of all environments so far. The next standstill can be
+        detected only ``_STANDSTILL_STEPS`` steps after this one.
         """
         if window.count >= _MIN_EPISODES and window.pass_rate >= self._best + _RISE:
             self._best, self._since = window.pass_rate, steps
@@ -143,5 +140,5 @@ class Standstill:
         return True
 
     def state(self) -> tuple[float, int]:
-        """Return the arguments of :class:`Standstill` to continue from here."""
+        """Return ``best`` and ``since``, with which a new :class:`Standstill` continues from here."""
         return self._best, self._since

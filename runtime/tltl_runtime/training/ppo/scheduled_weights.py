@@ -14,9 +14,9 @@ class ScheduledWeights:
     """The weights that change during a training.
 
     ``entropy`` is the weight of the entropy bonus; None if this weight is fixed.
-    ``penalty_weight``, in [0, 1], is that of
-    :class:`~tltl_runtime.training.ppo.environment.TrainingEnv`. ``inverse_temperature``, at least
-    1, is the total factor on the actor's logits.
+    ``penalty_weight``, in [0, 1], is how far the terminal penalty of failed episodes has risen from
+    the discounted to the undiscounted one. ``inverse_temperature``, at least 1, is the total factor
+    on the actor's logits.
     """
 
     entropy: float | None
@@ -28,8 +28,8 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
     """Return the weights for a ``pass_rate`` of the last episodes, in [0, 1].
 
     The entropy bonus fades as the spec is met more often, because less exploration is needed. From
-    a pass rate of one half on, the penalty weight rises, because the discounted penalty of a
-    failure costs the agent less than a longer, safe trajectory. The inverse temperature rises, too,
+    a pass rate of one half on, the penalty weight rises: with the discounted penalty, a failure
+    would cost the agent less than a longer, safe trajectory. The inverse temperature rises, too,
     because most failures then come from unlikely actions that were sampled by chance.
     """
     rise = max(0.0, 2 * pass_rate - 1)
@@ -41,10 +41,10 @@ def scheduled_weights(ppo: Ppo, pass_rate: float) -> ScheduledWeights:
 
 
 def penalty_rise(run: TrainingRun) -> Callable[[int], float] | None:
-    """Return a function from the length of a failed episode, in steps, to its greatest extra penalty.
+    """Return a function from the length of a failed episode, in steps, to the rise of its penalty.
 
-    The extra penalty is the undiscounted terminal penalty minus the one that the settings ask for.
-    Return None if the penalty does not rise during the training.
+    The rise is the undiscounted terminal penalty minus the discounted one. Return None if the
+    settings ask for no rising penalty, or the spec has no limit of steps.
     """
     limit, options = run.fspa.limit_steps, run.settings.reward.options
     if limit is None or run.settings.imitates or not run.settings.reward.penalty_rises:

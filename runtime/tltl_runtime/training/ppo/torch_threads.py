@@ -10,7 +10,7 @@ import torch
 
 @contextmanager
 def threads(count: int) -> Iterator[None]:
-    """Let torch compute in ``count`` threads within this context."""
+    """Let torch compute in ``count`` threads inside the ``with`` block, then in as many as before."""
     before = torch.get_num_threads()
     torch.set_num_threads(count)
     try:

@@ -19,7 +19,7 @@ _NETWORK: Final = "_state_dict"
 
 
 def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> None:
-    """Load the weights and optimisers of a checkpoint into a new runner.
+    """Check a checkpoint, and load its weights and optimisers into a new runner.
 
     ``states`` is the number of states of the spec's automaton.
 
@@ -49,10 +49,10 @@ def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> N
 
 
 def _check_part(saved: object, expected: object, where: str) -> None:
-    """Raise RecordJsonError unless a saved part of an algorithm fits the part of a new algorithm.
+    """Raise RecordJsonError unless a saved part of an algorithm fits the same part of a new algorithm.
 
-    Networks, optimisers and numbers are checked. Other parts of a user's algorithm are not.
-    ``where`` names the part in messages.
+    A part is a network, an optimiser or a number. Parts of other kinds, which an algorithm of a
+    user may have, are not checked. ``where`` names the part in messages.
     """
     if isinstance(expected, Mapping) and expected.keys() == {"state", "param_groups"}:
         _check_optimizer(saved, expected, where)
@@ -64,7 +64,7 @@ def _check_part(saved: object, expected: object, where: str) -> None:
 
 
 def _is_limit(value: Any) -> bool:
-    """Whether a number is 0 or greater. Infinity is allowed: it means no limit."""
+    """Whether a number is from 0 to 2**63 - 1, or infinite, which means no limit."""
     return value == inf or _is_count(value)
 
 
@@ -75,8 +75,8 @@ def _is_count(value: Any) -> bool:
 def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> None:
     """Raise RecordJsonError unless the saved state of an optimiser fits that of a new optimiser.
 
-    The saved state must be for the same weights, its options must fit, and its averages must be
-    tensors.
+    The saved state must be for the same weights, its options must fit, and the averages that it
+    keeps for each weight must be tensors of finite numbers. ``where`` names the state in messages.
     """
     if not isinstance(saved, Mapping) or saved.keys() != expected.keys():
         raise RecordJsonError(f"`{where}` is not the state of an optimizer")
@@ -96,10 +96,10 @@ def _check_optimizer(saved: object, expected: Mapping[str, Any], where: str) -> 
 
 
 def _check_options(saved: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
-    """Raise RecordJsonError if an option is missing or does not fit.
+    """Raise RecordJsonError if a saved option of an optimiser is missing or does not fit.
 
-    ``expected`` are the options of a new optimiser. Further saved options, from a newer torch, are
-    accepted.
+    ``expected`` are the options of a new optimiser. ``saved`` may have more options, which a newer
+    torch has added.
     """
     for name, option in expected.items():
         if name not in saved or not _option_fits(saved[name], option):
@@ -126,7 +126,7 @@ def _are_numbers(saved: Any, expected: list[int]) -> bool:
 
 
 def _number_or_none(value: object) -> object:
-    """Return a number as it is, and None for other values: tensors cannot be compared."""
+    """Return ``value`` if it is a number, else None, because a tensor cannot simply be compared."""
     return value if isinstance(value, (int, float)) else None
 
 
@@ -195,9 +195,10 @@ def _check_moments(optimizer: Optimizer) -> None:
 
 
 def _moments(optimizer: Optimizer) -> set[str]:
-    """Return the names of the averages that an optimiser keeps for a weight, as Adam does.
+    """Return the names of the averages that an optimiser keeps for each weight.
 
-    They depend on the optimiser's class and options.
+    Adam, for example, keeps ``exp_avg``, ``exp_avg_sq`` and ``step``. To find the names, a new
+    optimiser of the same class and options takes one step.
     """
     weight = nn.Parameter(torch.zeros(1))
     weight.grad = torch.zeros(1)

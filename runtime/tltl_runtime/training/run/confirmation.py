@@ -17,9 +17,9 @@ from tltl_runtime.training.files.run_file import TrainingRun, current_level_hash
 
 
 def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
-    """Let a policy play the fresh episodes that the settings ask for; stop at the first failure.
+    """Let a policy play as many new episodes as the settings ask for; stop at the first failure.
 
-    ``stream`` is the random stream from which the seed for the episodes is drawn.
+    The seed of the episodes is drawn from ``stream``.
 
     Raises:
         TltlError: TLT0868, the level has changed since the training began.

@@ -18,10 +18,7 @@ def initial_policy_of(path: Path, policy: Policy) -> InitialPolicy:
 
 
 def weights_hash(policy: Policy) -> str:
-    """Return the SHA-256, in hexadecimal, of a policy's weights and of their names.
-
-    The weights are as the policy's file stores them.
-    """
+    """Return the SHA-256, in hexadecimal, of a policy's weights and their names, as its file stores them."""
     digest = hashlib.sha256()
     for name, weight in sorted(policy.weights().items()):
         digest.update(name.encode() + b"\0" + weight.tobytes())

@@ -12,9 +12,10 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def class_of(setting: str, name: str, base: type) -> Any:
-    """Return the class called ``name``, which is the value of the setting ``classes.SETTING``.
+    """Return the class called ``name``, such as ``package.module:Class``.
 
-    Raises TltlError, TLT0862, unless it is a subclass of ``base``.
+    ``name`` is the value of ``setting``, which is ``runner`` or ``algorithm``. Raises TltlError,
+    TLT0862, unless it is a subclass of ``base``.
     """
     try:
         cls = resolve_callable(name)
@@ -29,10 +30,13 @@ def class_of(setting: str, name: str, base: type) -> Any:
 
 
 def device_of(device: str) -> str:
-    """Return the device of this process. With several processes, "cuda" gives each its own GPU.
+    """Return the torch device of this process, for the setting ``device``.
 
-    Raises TltlError, TLT0862: the device does not exist, several processes name one device, or there
-    are more processes than GPUs.
+    With several processes, ``cuda`` becomes ``cuda:0`` for the first process on this machine,
+    ``cuda:1`` for the second, and so on. Otherwise the device stays as it is.
+
+    Raises TltlError, TLT0862: the device does not exist, the setting names one GPU for several
+    processes, or there are more processes than GPUs.
     """
     if not device.startswith("cuda"):
         return device

@@ -1,7 +1,7 @@
 """Prepare a training.
 
-This makes its folder, environments and demonstrations, reads its initial policy, and runs the first
-search for demonstrations.
+The functions make the training's folder and environments, record or read demonstrations, read the
+policy to begin with, and run the first search for demonstrations.
 """
 
 from __future__ import annotations
@@ -47,12 +47,14 @@ from tltlc.api import Diagnostic, TltlError
 def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
     """Write ``run.json`` if needed; return the checkpoint to resume from.
 
-    Return None if the training starts from its beginning.
+    Return None if the training starts from its beginning: ``resume`` is false, or there is no
+    checkpoint yet.
 
     Raises:
         TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level has changed;
-            TLT0867, the folder holds a training and ``resume`` is false; TLT0005, the folder cannot
-            be written to.
+            TLT0922, the demonstrations have changed; TLT0867, the folder holds a training and
+            ``resume`` is false; TLT0005, the folder cannot be written to; the errors of
+            ``read_run``.
     """
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
@@ -72,7 +74,7 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
 
 
 def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorEnv:
-    """Make the vector environment in which this process trains, and perhaps ``searches``."""
+    """Make the vector environment in which this process trains, and searches if ``spaces.searches``."""
     settings, rollout = run.settings, run.settings.rollout
     return make_vec(
         run.level,
@@ -91,10 +93,10 @@ def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorE
 def load_imitation_data(
     run: TrainingRun, group: ProcessGroup, spaces: TrainingSpaces, on_attempt: Callable[[Attempt], None]
 ) -> ImitationData | None:
-    """Return the data to imitate; None if the agent does not learn from demonstrations.
+    """Return the demonstrations to imitate; None if the agent does not learn from demonstrations.
 
-    If no demonstrations are given, demonstrations of the expert are recorded first. ``on_attempt``
-    is called with each attempt.
+    If the run names no folder of demonstrations, the first process records demonstrations of the
+    expert before. ``on_attempt`` is called with each attempt.
 
     Raises:
         TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a
@@ -136,13 +138,15 @@ def prepare_environment(
     imitation_data: ImitationData | None,
     initial: Policy | None,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
-    """Search for demonstrations if needed; return the environment and the progress of the search.
+    """Search for demonstrations if needed; return the environment for rsl-rl and the search's progress.
 
-    The environment is for rsl-rl, and has begun new episodes. Their seeds depend on process and
-    iteration, so that they differ from those of episodes played before. The progress is None
-    without a search. A search is not repeated, unless it ended at a limit before it found a
-    demonstration. In the search, ``initial``, the policy that the training begins with, plays
-    first. ``on_search`` is called with the progress of the search.
+    The progress is None if there was no search. A resumed training searches again only if its
+    search was interrupted before it found a demonstration. ``initial``, the policy that the
+    training begins with, plays the first episodes of the search. ``on_search`` is called with the
+    progress from time to time.
+
+    All environments have begun new episodes. Their seeds depend on the process and the iteration,
+    so that resuming does not repeat episodes.
     """
     progress, curriculum, self_imitation = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
@@ -172,7 +176,7 @@ def prepare_environment(
 
 
 def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> PolicyFunction | None:
-    """Return a function that samples the actions of a policy; None without a policy.
+    """Return a function that samples an action of ``policy`` for an observation; None without a policy.
 
     The function raises TltlError, TLT0854, if the observation or the policy's output is not finite.
     """
@@ -194,7 +198,10 @@ def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | Non
 def _curriculum(
     run: TrainingRun, group: ProcessGroup, checkpoint: Checkpoint | None, encoding: ActionEncoding
 ) -> ReverseCurriculum:
-    """Return the curriculum of this process, with the demonstrations of the checkpoint."""
+    """Return the curriculum of this process; if there is a checkpoint, restore its state.
+
+    Raises TltlError, TLT0864, if this state is invalid.
+    """
     iteration = checkpoint.iteration if checkpoint else 0
     generator = np.random.default_rng(stream(run, group, Purpose.STARTS, iteration))
     curriculum = ReverseCurriculum(run.settings.exploration.parts, generator, encoding)

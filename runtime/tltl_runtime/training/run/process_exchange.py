@@ -14,18 +14,18 @@ from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import Diagnostic, TltlError, record, replace
 
 ProcessState = Mapping[str, Tensor]
-"""The state of a process, by name.
+"""The state of a process: tensors by name, for its random generators and its curriculum.
 
-It is an item of ``processes`` of :class:`~tltl_runtime.training.files.checkpoint.Checkpoint`.
+A :class:`~tltl_runtime.training.files.checkpoint.Checkpoint` has one for each process.
 """
 
 
 @record
 class GatheredIteration:
-    """An iteration of all processes.
+    """The result of an iteration in all processes.
 
     ``iteration`` has the episodes and steps of all processes, and the losses and times of this
-    process. ``processes`` are the states of the processes, by rank. ``replayed`` counts the
+    process. ``processes`` are the states of all processes, by rank. ``replayed`` counts the
     replayed decisions of all processes.
     """
 

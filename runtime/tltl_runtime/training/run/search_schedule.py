@@ -28,10 +28,10 @@ def search_before_training(
 ) -> SearchProgress | None:
     """Search for demonstrations before the training, and add them to ``curriculum``.
 
-    ``env`` are the environments of this process. ``policy`` plays their first episodes. Return
-    the progress of the search, or None if no search is needed. With a ``checkpoint``, a search is
-    needed only if the earlier search ended at a limit before it found a demonstration, and if time
-    is left.
+    ``env`` has the environments of this process. ``policy``, if there is one, plays their first
+    episodes. Return the progress of the search, or None if no search is needed. With a
+    ``checkpoint``, a search is needed only if the earlier search was interrupted, for example by
+    the limit of minutes, before it found a demonstration, and if time is left now.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
@@ -47,10 +47,10 @@ def search_before_training(
 def search_after_standstill(
     run: TrainingRun, group: ProcessGroup, env: TrainingEnv, state: Checkpoint, on_search: SearchCallback
 ) -> SearchProgress | None:
-    """Search for demonstrations from the agent's failed episodes.
+    """Search for demonstrations from the agent's failed episodes, and add them to the curriculum.
 
     ``state`` is the state of the training. All environments begin new episodes after the search.
-    Return the progress of the search, or None if no failed episodes are known.
+    Return the progress of the search. If no failed episodes are known, do nothing and return None.
     """
     if env.curriculum is None or not env.curriculum.failures:
         return None

@@ -1,4 +1,4 @@
-"""The spaces of the environment of a training, which are checked before anything starts."""
+"""Check the observation and action spaces of a training's environment, before anything starts."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from tltlc.api import Diagnostic, TltlError, record
 
 @record
 class TrainingSpaces:
-    """What a training must know of its environment before it begins.
+    """What a training must know about its environment before it begins.
 
-    ``layouts`` are those of observation and action; None if the network takes and gives their values
-    as they are. ``searches`` says whether the training searches for demonstrations: its settings ask
-    for that, and the environment says in the ``cell`` of its info where the player is.
+    ``layouts`` say how observations and actions become arrays; None if the network uses them
+    without conversion. ``searches`` says whether the training searches for demonstrations. This
+    needs two things: the settings ask for it, and the environment's info says in ``cell`` where the
+    player is.
     """
 
     layouts: SpaceLayouts | None
@@ -27,11 +28,11 @@ class TrainingSpaces:
 
 
 def training_spaces(run: TrainingRun) -> TrainingSpaces:
-    """Make an environment of the training, and return what it says of itself.
+    """Make an environment of the training, examine its spaces and its info, and close it.
 
     Raises:
-        TltlError: TLT0844, no policy can have its spaces; TLT0862, the settings ask for a search
-            that is not possible there; the errors of ``make_env``.
+        TltlError: TLT0844, policies do not support its spaces; TLT0862, the settings ask for a
+            search, but the info does not say where the player is; the errors of ``make_env``.
     """
     env = env_function(run)()
     try:
@@ -48,7 +49,7 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
 
 
 def env_function(run: TrainingRun) -> Callable[[], TltlEnv]:
-    """Return a function that makes an environment of the training."""
+    """Return a function that makes a new environment of the training."""
     return partial(
         game_of(run.level).make_env,
         run.level,

@@ -54,33 +54,33 @@ def train(
     """Train in ``run.folder``; yield a report after each iteration.
 
     The last report says why the training ends. The folder gets ``run.json``, ``checkpoint.pt``,
-    ``policy.safetensors`` and the files of :class:`~tltl_runtime.training.files.metrics_writer.Metrics`.
-    All files of an iteration are written before its report is yielded. Any end of the
-    training, even by Ctrl-C or by closing the iterator, leaves a checkpoint of the last complete
-    iteration. If the process is killed, however, the iterations after the last checkpoint are lost.
-    With ``resume``, the training continues from the checkpoint; a training that is over yields its
-    last report again.
+    ``policy.safetensors`` and the files of
+    :class:`~tltl_runtime.training.files.metrics_writer.Metrics`. All files of an iteration are
+    written before its report is yielded. Any end of the training, even by Ctrl-C or by closing the
+    iterator, leaves a checkpoint of the last complete iteration. If the process is killed, however,
+    the iterations after the last checkpoint are lost. With ``resume``, the training continues from
+    the checkpoint; a training that is over yields its last report again.
 
     First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
     progress. If the training begins with a policy, that policy plays first in the search. With
     imitation, there is no search. If no demonstrations are given, demonstrations of the expert are
     recorded first; ``on_attempt`` is called with each attempt.
 
-    Trainings of equal runs give equal numbers, and so do trainings that resume equal checkpoints.
-    With torchrun, each process trains with its own environments. The reports of all processes are
-    equal, except for losses, times and searches, which each process has for itself, and for
-    checkpoints, which only the first process writes.
+    Equal runs give equal results, and so do trainings that resume from equal checkpoints. With
+    torchrun, each process trains with its own environments. The reports of all processes are equal,
+    with two exceptions: each process reports its own losses, times and searches, and only the first
+    process writes checkpoints.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
-            not numbers; TLT0843, the policy to begin with is of another game; TLT0844, no policy can
-            have the observations or actions of the game; TLT0862, the device or a class does not
-            exist, the network is too large for a policy file, or the game has no cells to search;
-            TLT0864, the checkpoint cannot be resumed from; TLT0865, another
-            process trains in the folder; TLT0866, a loss is not finite; TLT0867, the folder holds a
-            training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and TLT0921,
-            there are no demonstrations to imitate; TLT0922, the demonstrations have changed;
-            TLT0940, the policy to begin with has changed.
+            not numbers; TLT0843, the policy to begin with is of another game; TLT0844, policies do
+            not support the observations or actions of the game; TLT0862, the device or a class does
+            not exist, the network is too large for a policy file, or the game has no cells to
+            search; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process trains
+            in the folder; TLT0866, a loss, an action or a weight is not finite; TLT0867, the folder
+            holds a training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and
+            TLT0921, there are no demonstrations to imitate; TLT0922, the demonstrations have
+            changed; TLT0940, the policy to begin with has changed.
         WorkerError: a worker process of the environments was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
@@ -116,14 +116,17 @@ def train(
 
 
 def _checked_spaces(run: TrainingRun) -> TrainingSpaces:
-    """Return what the environment of a training says of itself, and check that a policy for it fits a file."""
+    """Examine the environment of a training, and check that its policy is not too large for a file."""
     spaces = training_spaces(run)
     check_size(run.settings.network, run.fspa, run.sensors, spaces.layouts)
     return spaces
 
 
 class _Training:
-    """A training in this process; ``_state`` is the state after the last complete iteration."""
+    """The part of a training that runs in this process.
+
+    ``_state`` is the state of the training after the last complete iteration.
+    """
 
     def __init__(
         self,
@@ -249,7 +252,10 @@ class _Training:
         return self._group.broadcast(self._seconds_before + time.perf_counter() - self._started)
 
     def _apply_weights(self) -> float:
-        """Set entropy bonus and penalty weight by the pass rate; return the inverse temperature."""
+        """Set the entropy bonus and the penalty weight for the current pass rate.
+
+        Return the inverse temperature for this pass rate; the caller must apply it.
+        """
         # A few successes say little, so episodes that have not been played yet count as failures.
         pass_rate = self._episodes.window.successes / (self._stop.windows * self._stop.episodes)
         weights = scheduled_weights(self._run.settings.ppo, pass_rate)
@@ -266,9 +272,8 @@ class _Training:
     def _best_policy(self) -> BestPolicy | None:
         """Return the best policy so far; None until ``episodes`` episodes (a window) have ended.
 
-        It is the policy that played the latest episodes, unless an older one has a better score. If
-        the last ``windows * episodes`` episodes all met the spec, it is always the policy that
-        played the latest episodes.
+        The policy that played the latest episodes is the best one if its score is at least that of
+        the best policy before, or if the last ``windows * episodes`` episodes all met the spec.
         """
         best, score = self._state.best, self._episodes.score
         if score is None or (best is not None and score < best.score and not self._episodes.all_met):
@@ -277,7 +282,7 @@ class _Training:
         return BestPolicy(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: BestPolicy, iteration: int) -> Confirmation:
-        """Let the first process test a policy in fresh episodes; return the result in all processes.
+        """Let the first process test a policy in new episodes; return the result in all processes.
 
         Call this method only after the last ``windows * episodes`` episodes of the training met the
         spec.

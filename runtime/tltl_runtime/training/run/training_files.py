@@ -33,10 +33,11 @@ class TrainingFiles:
         self._metrics: Metrics | None = None
 
     def restore(self, state: Checkpoint) -> None:
-        """Make the files in the folder fit the ``state`` with which the training begins or resumes.
+        """Update the files in the folder to ``state``, with which the training begins or resumes.
 
-        Remove ``record.json`` and ``curve.png``, which are written at the end. Write a checkpoint
-        at once, so that the search need not be repeated if the process is killed soon.
+        Remove ``record.json`` and ``curve.png``, which are written at the end. Remove metrics of
+        later iterations. Write a checkpoint at once, so that the search need not be repeated if the
+        process is killed soon.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
@@ -56,9 +57,9 @@ class TrainingFiles:
         return time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
 
     def save(self, state: Checkpoint) -> None:
-        """Write ``state`` as the checkpoint, and the policy if it is a new best one or the training is over.
+        """Write ``state`` as the checkpoint; do nothing if it is saved already.
 
-        Do nothing if this state is saved already.
+        Also write the policy file if there is a new best policy, or the training is over.
         """
         if state is self._saved_state:
             return
@@ -75,7 +76,7 @@ class TrainingFiles:
         self._saved_state, self._saved_at = state, time.perf_counter()
 
     def close(self, state: Checkpoint) -> None:
-        """Save the final state and close the metrics."""
+        """Save the final state, and close the files of the metrics."""
         try:
             self.save(state)
         finally:
