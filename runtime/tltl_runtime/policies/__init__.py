@@ -1,4 +1,4 @@
-"""Policies: their networks, their files, and the cards that describe their training.
+"""Policies: their networks, their files, and their cards (metadata about task and training).
 
 Begin with :mod:`~tltl_runtime.policies.policy`.
 """

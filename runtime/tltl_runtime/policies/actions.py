@@ -35,14 +35,14 @@ class MultiCategorical(Distribution):
         return sum(self.branches)
 
     def update(self, mlp_output: Tensor) -> None:
-        """Set the distribution from ``mlp_output``: the logits of all branches, [..., sum(branches)]."""
+        """Set the distribution from the logits of all branches, ``mlp_output`` [..., sum(branches)]."""
         self._logs = tuple(part.log_softmax(-1) for part in mlp_output.split(self.branches, dim=-1))
 
     def sample(self) -> Tensor:
         """Return a sampled choice for each branch [..., branches].
 
-        It is the argmax of p / E, where p are the probabilities and E ~ Exp(1): an exponential
-        race.
+        The sample is the argmax of p / E, where p are the probabilities of the choices, and each
+        choice has its own E ~ Exp(1) (an exponential race).
         """
         return _argmax([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
 
@@ -109,7 +109,10 @@ class _LikeliestChoice(nn.Module):
 
 
 def _argmax(branches: list[Tensor]) -> Tensor:
-    """Return the argmax in each branch [..., branches], with the dtype of the inputs; the first one on ties."""
+    """Return the argmax of each branch as [..., branches], in the dtype of the inputs; on ties, the first.
+
+    ``branches`` has a tensor [..., choices] per branch.
+    """
     # A list, not a sequence: rsl-rl may export an actor to TorchScript, which has no sequences.
     return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)
 

@@ -1,8 +1,8 @@
-"""The network of a policy, computed by NumPy: playing needs no torch.
+"""The network of a policy, computed by NumPy, so that playing needs no torch.
 
-It computes what rsl_rl's ``MLPModel`` and ``CNNModel`` compute with
-:func:`~tltl_runtime.policies.network.model_config`, apart from rounding. Weights have the names
-that these models give them.
+The result is that of rsl_rl's ``MLPModel`` or ``CNNModel`` with the configuration from
+:func:`~tltl_runtime.policies.network.model_config`, apart from rounding. Weights have the same
+names as in these models.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ _Array = NDArray[np.float32]
 def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> dict[str, tuple[int, ...]]:
     """Return the shapes of the weights of a policy's network, by name.
 
-    ``shapes`` are the shapes in the observation. ``branches`` are the numbers of choices in the
-    branches of an action.
+    ``shapes`` are the shapes of the parts of an observation, by key. An action has several discrete
+    branches; ``branches`` has the number of choices of each.
 
     Raises:
-        ValueError: the convolutions do not fit a map.
+        ValueError: the convolutions do not fit a map of the observation.
     """
     weights: dict[str, tuple[int, ...]] = {}
     width = sum(shape[0] for shape in shapes.values() if len(shape) == 1)
@@ -46,8 +46,9 @@ def weight_shapes(network: Network, shapes: Shapes, branches: Sequence[int]) -> 
 class Actor:
     """The network of a policy with its weights.
 
-    The fully connected layers get the vectors of an observation in the order of its keys, and after
-    them the maps, each after its convolutions.
+    The observation has vectors (n,) and maps (channels, height, width). Each map goes through
+    convolutions. The fully connected layers get first all vectors, then all convolved maps, both in
+    the order of the keys in ``shapes``.
 
     Raises:
         ValueError: the names or shapes of the weights are not those of the network.
@@ -208,4 +209,4 @@ ACTIVATIONS: Final[Mapping[Activation, Callable[[_Array], _Array]]] = {
     "swish": _swish,
     "mish": _mish,
 }
-"""The functions between layers, by the name that rsl_rl gives them (D.-A. Clevert et al., ICLR 2016, for ELU)."""
+"""The activation functions, by their names in rsl_rl (for ELU: D.-A. Clevert et al., ICLR 2016)."""

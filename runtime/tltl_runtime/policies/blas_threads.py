@@ -11,12 +11,15 @@ from threadpoolctl import ThreadpoolController
 
 
 def blas_threads(count: int) -> AbstractContextManager[object]:
-    """Let NumPy multiply matrices in ``count`` threads within this context."""
+    """Return a context manager; inside it, NumPy multiplies matrices in ``count`` threads."""
     limits: AbstractContextManager[object] = _loaded_libraries().limit(limits=count, user_api="blas")
     return limits
 
 
 @cache
 def _loaded_libraries() -> ThreadpoolController:
-    """Find the libraries of this process that compute in threads. This takes 10 ms, once per process."""
+    """Find the libraries of this process that compute in threads.
+
+    The search takes 10 ms, so it is made only once per process.
+    """
     return ThreadpoolController()

@@ -16,17 +16,22 @@ OBSERVATION: Final = 1
 
 @record
 class Card:
-    """The task that a policy was trained for, its network, and the record of its training.
+    """The metadata of a policy: its task, its network, and the record of its training.
 
-    ``level`` and ``variant`` name the level of the training; ``level_hash`` is its
-    :meth:`~tltl_runtime.game.game.Game.level_hash`. ``fspa`` is the automaton of the spec, with
-    ``params`` in SI units. ``sensors`` are all sensors of the policy. ``shapes`` maps the keys of
-    the observation to shapes, in the order of the network's inputs. An action has several branches;
-    ``branches`` has the number of choices of each. ``versions`` are the versions of Python and of
-    the packages that trained the policy, by name. ``training`` is the record of the training as
-    JSON data. ``observation`` is the version of the observations (:data:`OBSERVATION`) that the
-    policy was trained with. ``spaces`` are the layouts of observation and action if the network does
-    not take and give their values as they are; ``branches`` is then empty.
+    - ``level`` and ``variant`` name the level of the training; ``level_hash`` is the hash of its
+      content (:meth:`~tltl_runtime.game.game.Game.level_hash`).
+    - ``fspa`` is the automaton of the spec, and ``params`` are the values of its params, in SI
+      units.
+    - ``sensors`` say what the policy observes.
+    - ``shapes`` has pairs of the key and the shape of each part of an observation, in the order of
+      the network's inputs.
+    - ``branches`` has the number of choices of each discrete branch of an action.
+    - ``versions`` are the versions of Python and of the packages that trained the policy, by name.
+    - ``training`` is the record of the training as JSON data, empty until the training ends.
+    - ``observation`` is the version of the observations (:data:`OBSERVATION`) that the policy was
+      trained with.
+    - ``spaces`` say how observations and actions become arrays; ``branches`` is then empty. None if
+      the network uses observations and actions without conversion.
     """
 
     level: str

@@ -24,9 +24,10 @@ _OWN_GAME: Final = "let it play its own game, or train a policy for this one"
 def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     """Check that a policy can play ``level`` by the spec ``fspa``.
 
-    By default, this is the spec that the policy was trained for. Any variant of the policy's own
-    level fits. Another level fits if it has everything that the policy observes. Another spec fits
-    if it judges episodes in the same way; its name does not matter.
+    If ``fspa`` is None, the policy plays by the spec that it was trained for. Any variant of the
+    policy's own level fits. Another level fits if it has everything that the policy observes.
+    Another spec fits if it judges episodes in the same way as that of the training; its name does
+    not matter.
 
     Raises:
         TltlError: TLT0843, the policy does not fit; the message says what differs.
@@ -55,8 +56,8 @@ def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Spac
     """Check that a policy can play in an environment with these spaces.
 
     Raises:
-        TltlError: TLT0843, the spaces are not those of the policy; the message names what differs.
-            TLT0844, no policy can have the spaces.
+        TltlError: TLT0843, the policy was trained with other spaces; the message names what
+            differs. TLT0844, policies do not support one of the spaces.
     """
     layouts = space_layouts(observation, action, card.sensors)
     if layouts is None and card.spaces is None:
@@ -80,10 +81,10 @@ def _parts_by_key(layouts: SpaceLayouts) -> dict[str, ObservationPart]:
 
 
 def differences(own: Fspa, fspa: Fspa) -> str:
-    """Describe how the spec ``fspa`` differs from the spec ``own``.
+    """Describe how the spec ``fspa`` differs from the spec ``own``, for a message.
 
-    The two specs must judge episodes differently. Differences in what a designer wrote come before
-    differences in the automaton.
+    The two specs must judge episodes differently. Differences in what a designer wrote, such as the
+    limit or an atom, come before differences in the automaton.
     """
     return short_list([*_differences(own, fspa)], _MOST)
 
@@ -122,9 +123,10 @@ def _differing(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:
-    """Yield a text for each state that ``after`` judges differently or with other edges than ``before``.
+    """Yield a text for each automaton state that is judged differently, or has other edges, in ``after``.
 
-    One more text follows if other atoms are declared exclusive.
+    Yield one more text if the two specs declare different atoms as exclusive. Their automata must
+    have the same number of states.
     """
     for old, new in zip(before.states, after.states, strict=True):
         judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)

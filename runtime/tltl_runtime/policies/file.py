@@ -36,7 +36,7 @@ VERSION: Final = 1
 MAX_BYTES: Final = fileio.limits.POLICY.size
 """The maximum size of a file: 64 MiB, or about thirty million weights."""
 _RECORD_BYTES: Final = 1 << 20
-"""The number of bytes that :func:`check_size` assumes for the card without its artefact."""
+"""The number of bytes that :func:`check_size` assumes for the card without the spec's automaton."""
 
 _PREFIX: Final = "actor."
 _DEVIATION: Final = f"{_PREFIX}{NORMALIZER}deviation"
@@ -52,10 +52,10 @@ _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
 def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
-    """Write a policy to a file, so that even a power failure leaves no partial file.
+    """Write a policy to a file; even a power failure leaves no partial file.
 
-    Equal policies give equal bytes. If the system refuses to write, ``advice`` is the help of the
-    error.
+    Equal policies give equal bytes. ``advice`` is the help of the error if the system refuses to
+    write.
 
     Raises:
         TltlError: TLT0005, the system refuses to write; TLT0862, the file would be larger than
@@ -72,14 +72,19 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
     Raises:
         TltlError: TLT0001, the file cannot be read; TLT0840, it is not a policy, or is damaged;
             TLT0841, it has another version; TLT0842, something in it is invalid; TLT0601 to
-            TLT0604, its artefact is invalid.
+            TLT0604, the spec's automaton in it is invalid.
     """
     name = os.fspath(path)
     return from_bytes(fileio.read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(policy: Policy) -> bytes:
-    """Return the bytes that :func:`write_policy` writes."""
+    """Return the bytes that :func:`write_policy` writes.
+
+    Raises:
+        TltlError: TLT0862, there are more than :data:`MAX_BYTES`.
+        ValueError: the record of the training is not JSON data.
+    """
     text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
     weights = {f"{_PREFIX}{name}": weight for name, weight in policy.weights().items()}
     data = save(weights, {_KEY: text})
@@ -91,9 +96,9 @@ def to_bytes(policy: Policy) -> bytes:
 def check_size(network: Network, fspa: Fspa, sensors: Sensors, spaces: SpaceLayouts | None = None) -> None:
     """Raise TltlError, TLT0862, if a policy with this network cannot be used or stored.
 
-    It cannot be used if its convolutions do not fit the map of ``sensors``. It cannot be stored if
-    it is too large for a file. With ``spaces``, these describe the observation, and ``sensors`` are
-    not used.
+    It cannot be used if its convolutions do not fit the map that it observes. It cannot be stored
+    if it is too large for a file. ``spaces`` describe the observation; if they are None,
+    ``sensors`` and the automaton ``fspa`` do.
     """
     # Encoded twice: the card is a JSON string in the JSON header of the file.
     text = json.dumps(json.dumps(compiler.encode_artefact(fspa), ensure_ascii=False), ensure_ascii=False)
@@ -112,7 +117,7 @@ def check_size(network: Network, fspa: Fspa, sensors: Sensors, spaces: SpaceLayo
 
 
 def card_json(card: Card) -> dict[str, Any]:
-    """Return the card as JSON data, with the artefact of the spec in place of ``fspa``."""
+    """Return the card as JSON data; ``artefact``, the spec's automaton as JSON, replaces ``fspa``."""
     document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
     absent = {"fspa"} if card.spaces else {"fspa", "spaces"}
     document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name not in absent}
@@ -130,7 +135,7 @@ def card_weight_shapes(card: Card) -> dict[str, tuple[int, ...]]:
 
 
 def from_bytes(data: bytes, name: str) -> Policy:
-    """Return the policy in the bytes of a file; messages call the file ``name``.
+    """Parse the bytes of a policy file; messages call the file ``name``.
 
     Raises the errors of :func:`read_policy`, except TLT0001.
     """
@@ -154,9 +159,9 @@ def _too_large(size: int) -> TltlError:
 
 
 def _header(data: bytes, name: str) -> dict[str, Any]:
-    """Return the JSON header of a file.
+    """Return the JSON header of a safetensors file; its length is in the first eight bytes of the file.
 
-    The first eight bytes of the file are the length of the header.
+    Raises TltlError, TLT0840, if there is no valid header.
     """
     length = int.from_bytes(data[:8], "little")
     try:
@@ -204,7 +209,7 @@ def _fault(card: Card) -> str | None:
 
 
 def _spaces_fault(card: Card, spaces: SpaceLayouts) -> str | None:
-    """Return what is wrong with a card that has ``spaces``; None if it is valid."""
+    """Return what is wrong with a card whose field ``spaces`` is not None; None if it is valid."""
     if card.shapes != tuple(spaces.shapes.items()):
         return "`card.shapes` are not those of `card.spaces`"
     if card.branches:
@@ -213,19 +218,19 @@ def _spaces_fault(card: Card, spaces: SpaceLayouts) -> str | None:
 
 
 def _are_sizes(shapes: Collection[tuple[int, ...]]) -> bool:
-    """Whether every dimension of the shapes is at least 1, and no part of an observation is too large."""
+    """Whether every dimension of every shape is at least 1, and no shape has too many elements."""
     return min(map(min, shapes)) >= 1 and max(map(prod, shapes)) <= MAX_BYTES
 
 
 def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
-    """Return the shapes of the observation by key, for a spec and sensors."""
+    """Return the shapes of the parts of an observation, by key, for a spec and sensors."""
     return {"automaton": (len(fspa.states),), "progress": (1,), **sensor_shapes(sensors)}
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     """Raise TltlError, TLT0842, unless the header lists exactly the weights of the card's network.
 
-    This check comes before any weights are loaded.
+    The caller makes this check before it loads any weights.
     """
     try:
         shapes = card_weight_shapes(card)

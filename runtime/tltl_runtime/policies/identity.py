@@ -9,7 +9,8 @@ from tltlc.api import Fspa, expressions
 def spec_hash(fspa: Fspa) -> str:
     """Return the SHA-256, in hexadecimal, of everything by which a spec judges an episode.
 
-    The names of the spec and of its atoms, its labels and its documentation do not count.
+    Two specs with equal hashes judge all episodes alike. The names of the spec and of its atoms,
+    its labels and its documentation do not change the hash.
     """
     return json_hash(
         {

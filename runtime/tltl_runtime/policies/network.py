@@ -28,9 +28,9 @@ MAX_STRIDE: Final = 8
 class Network:
     """The layers of a network.
 
-    ``channels`` are the output channels of the convolutions of each map, ``hidden`` the widths of
-    the fully connected layers after them. ``activation`` is a name that rsl-rl knows. ``kernel``
-    and ``stride`` are in cells and hold for all convolutions.
+    Each map of an observation goes through its own convolutions; ``channels`` are their output
+    channels. Fully connected layers follow; ``hidden`` are their widths. ``kernel`` and ``stride``,
+    in cells, hold for all convolutions. ``activation`` is a name that rsl-rl knows.
 
     Raises:
         ValueError: the activation is unknown, or a number is out of range.
@@ -59,7 +59,11 @@ class Network:
 
 
 def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:
-    """Return rsl-rl's configuration of an actor, or of a critic if ``branches`` is None."""
+    """Return rsl-rl's configuration of an actor, or of a critic if ``branches`` is None.
+
+    ``shapes`` are the shapes of the parts of an observation, by key. ``branches`` has the number of
+    choices of each branch of an action.
+    """
     config: dict[str, Any] = {
         "class_name": "MLPModel",
         "hidden_dims": list(network.hidden),

@@ -36,14 +36,18 @@ _OPSET: Final = 18
 def to_onnx(policy: Policy) -> bytes:
     """Return the policy as an ONNX model. Equal policies give equal bytes.
 
-    The inputs are the parts of an observation, named by their keys, float32 [batch, ...]. The
-    outputs are ``logits``, float32 [batch, sum(branches)], the first branch first; and ``action``,
-    int64 [batch, branches], the likeliest choice of each branch, the first one on ties.
+    The inputs are the parts of an observation, float32 [batch, ...], named by their keys. An input
+    whose key is also the name of an output is named ``observation/KEY``. The outputs are:
 
-    With a card that has ``spaces``, these two are outputs only if an action has choices, which count
-    from 0. If an action has numbers, there are also ``means``, float32 [batch, numbers], before they
-    are squashed to the bounds, and ``numbers``, the same after. An input whose key is the name of an
-    output has ``observation/`` before its key. ``docs/policy-file.md`` describes the metadata.
+    - ``logits``, float32 [batch, sum(branches)], of all choices, those of the first branch first;
+    - ``action``, int64 [batch, branches], the likeliest choice of each branch, counted from 0; on
+      ties, the first;
+    - ``means``, float32 [batch, numbers], the means of the continuous numbers of an action, before
+      they are squashed to their bounds;
+    - ``numbers``, float32 [batch, numbers], the means after they are squashed.
+
+    A model lacks the first two outputs if an action has no choices, and the last two if it has no
+    numbers. ``docs/policy-file.md`` describes the metadata.
     """
     card = policy.card
     shapes = [shape for _, shape in card.shapes]
@@ -74,7 +78,11 @@ def _output_names(card: Card) -> list[str]:
 
 
 def _model_inputs(card: Card) -> list[str]:
-    """Return the names of the inputs, in the order of the card's shapes."""
+    """Return the names of the model's inputs, in the order of the card's shapes.
+
+    A name is the key of a part of the observation. If it is also the name of an output, or the name
+    of another input, ``observation/`` is put before it.
+    """
     taken = {*_output_names(card), *(key for key, _ in card.shapes)}
     names = []
     for key, _ in card.shapes:
@@ -86,7 +94,7 @@ def _model_inputs(card: Card) -> list[str]:
 
 
 class _PolicyModule(nn.Module):
-    """The policy as a module: it maps parts of observations to logits and likeliest actions."""
+    """A policy as a torch module: it maps the parts of observations to logits and likeliest actions."""
 
     def __init__(self, policy: Policy) -> None:
         super().__init__()
@@ -99,7 +107,7 @@ class _PolicyModule(nn.Module):
 
 
 class _SpacePolicyModule(nn.Module):
-    """A policy of any spaces as a module: its outputs are those of :func:`_output_names`."""
+    """A policy for spaces of any kind as a torch module; :func:`_output_names` lists its outputs."""
 
     def __init__(self, policy: Policy, layouts: SpaceLayouts) -> None:
         super().__init__()
@@ -120,7 +128,7 @@ class _SpacePolicyModule(nn.Module):
         return (*results, means, self._squashed(means)) if self.number_count else results
 
     def _squashed(self, means: Tensor) -> Tensor:
-        """Return what :func:`~tltl_runtime.policies.spaces.values.squashed` returns for numbers."""
+        """Squash numbers to their bounds, like :func:`~tltl_runtime.policies.spaces.values.squashed`."""
         zero = torch.zeros(())
         low, high = (torch.where(self.is_bounded, bound, zero) for bound in (self.low, self.high))
         numbers = torch.where(self.is_bounded, low + (high - low) * (means.tanh() + 1) / 2, means)
@@ -128,7 +136,7 @@ class _SpacePolicyModule(nn.Module):
 
 
 def _metadata(policy: Policy) -> dict[str, str]:
-    """Return the metadata of the model. All values but ``spec_hash`` are JSON."""
+    """Return the metadata of the model, by name. All values except ``spec_hash`` are JSON texts."""
     card = policy.card
     texts = {
         "inputs": dict(zip(_model_inputs(card), _entry_names(card), strict=True)),
@@ -147,14 +155,17 @@ def _metadata(policy: Policy) -> dict[str, str]:
 
 
 def _choices(card: Card) -> list[dict[str, Any]]:
-    """Return the names of the branches of an action, each with those of its choices."""
+    """Return the name of each branch of an action, with the names of its choices.
+
+    Only the branches of the stealth game have names; for other branches the list is empty.
+    """
     game = game_named(STEALTH)
     names = game.choices.items() if card.branches == game.branches else ()
     return [{"name": name, "choices": choices} for name, choices in names]
 
 
 def _action_entries(layout: ActionLayout) -> Iterator[dict[str, Any]]:
-    """Yield an entry for each number of a flat action: its name, with its choices or its bounds."""
+    """Yield an entry for each component of an action, choices first: its name, with its choices or bounds."""
     for part in sorted(layout.parts, key=lambda part: part.kind == "numbers"):
         names = _element_names(name_of(part.path) or "action", part.shape)
         if part.kind == "numbers":
@@ -171,9 +182,10 @@ def _element_names(name: str, shape: tuple[int, ...]) -> list[str]:
 
 
 def _entry_names(card: Card) -> list[list[str]]:
-    """Return, for each input of the model, the names of its entries along the axis after the batch.
+    """Return a list for each input of the model: the names of its entries along the axis after the batch.
 
-    Images and grids of other games than the stealth game have none.
+    The list is empty for images and grids, except for the map of the stealth game, whose channels
+    have names.
     """
     sensors = card.sensors
     names: dict[str, list[str]] = {
@@ -190,7 +202,7 @@ def _entry_names(card: Card) -> list[list[str]]:
 
 
 def _forget_source(model: ModelProto) -> None:
-    """Remove from an ONNX model the metadata that names the source files of each node."""
+    """Remove the metadata of an ONNX model that says from which source files its nodes come."""
     for part in (*model.graph.node, *model.graph.value_info, *model.graph.input, *model.graph.output):
         part.ClearField("metadata_props")
         part.ClearField("doc_string")
@@ -200,9 +212,9 @@ def _forget_source(model: ModelProto) -> None:
 
 @contextmanager
 def _silence_exporter() -> Iterator[None]:
-    """Silence the messages of torch's exporter within this context.
+    """Silence the messages of torch's exporter inside the ``with`` block.
 
-    Nobody needs them: tests check the exported model.
+    They help no user, and tests check the exported model.
     """
     log = logging.getLogger("torch.onnx")
     before = log.level

@@ -20,12 +20,12 @@ class NotFiniteError(ValueError):
 
 
 class Policy:
-    """The weights of an actor with their card.
+    """The weights of an actor, with the card (metadata) that describes its network and its training.
 
     ``weights``, by name, are copied and rounded to half precision. So a policy plays with exactly
-    the weights in its file, and a training that continues does not change the policy. An action
-    depends only on the observation, and on the generator if the action is sampled. Observations are
-    never batched, because the batch size would change the last bits of the logits.
+    the weights in its file, and further training does not change the policy. An action depends only
+    on the observation, and on the generator if the action is sampled. Observations are never
+    batched, because the batch size would change the last bits of the logits.
 
     Raises:
         NotFiniteError: a weight is not finite in half precision.
@@ -53,30 +53,32 @@ class Policy:
         return Policy, (self.card, self._weights)
 
     def weights(self) -> dict[str, NDArray[Any]]:
-        """Return copies of the weights by name, in half precision, as in the policy's file.
+        """Return copies of the weights, by name, in half precision, as in the policy's file.
 
-        What scales the numbers of an observation is in single precision.
+        Only the means and deviations that scale observations are in single precision.
         """
         return {name: weight.copy() for name, weight in self._weights.items()}
 
     def weight_count(self) -> int:
-        """Return how many numbers the weights have."""
+        """Return how many numbers all weights have together."""
         return sum(weight.size for weight in self._weights.values())
 
     def logits(self, observation: Any) -> NDArray[np.float32]:
-        """Return the logits of all choices for the observation of one environment.
+        """Return the output of the network for the observation of one environment, as a vector.
 
-        The means of the action's numbers follow, before they are squashed to their bounds.
+        The vector has the logits of all choices of an action, and then the means of its continuous
+        numbers, before they are squashed to their bounds.
         """
         if isinstance(self._actor, SpaceActor):
             return self._actor.outputs(self._arrays(observation))
         return self._actor.logits(observation)
 
     def choose(self, observation: Any, generator: np.random.Generator | None = None) -> Any:
-        """Return an action: sampled with ``generator``, or the likeliest without one.
+        """Return an action for the observation of one environment.
 
-        On ties, the first choice is taken. The action is an int64 array [branches], or with a card
-        that has ``spaces``, a value of the action space. ``observation`` is that of one environment.
+        With a ``generator``, the action is sampled. Without one, it is the likeliest action; on
+        ties, the first. It is an int64 array [branches], or if the card has ``spaces``, a value of
+        the action space.
 
         Raises:
             NotFiniteError: the observation or the output of the network is not finite.
@@ -88,9 +90,9 @@ class Policy:
         return action_value(layout, squashed(layout, row))
 
     def choose_row(self, observation: Any, generator: np.random.Generator | None = None) -> NDArray[Any]:
-        """Return an action as :meth:`choose` does, but as a row of numbers [width].
+        """Return an action like :meth:`choose`, but as a row of numbers [width].
 
-        With a card that has ``spaces``, it has the choices, which count from 0, and then the numbers
+        The row has the choices of the action, which count from 0, and then its continuous numbers,
         before they are squashed to their bounds.
 
         Raises:
@@ -119,9 +121,10 @@ class Policy:
 
 
 def weight_dtype(name: str) -> type[np.floating[Any]]:
-    """Return the type in which a policy stores the weight with this name.
+    """Return the type in which a policy stores the weight with this name: float16 or float32.
 
-    What scales the numbers of an observation may be too large or too exact for half precision.
+    The means and deviations that scale observations are float32, because they may be too large or
+    too exact for half precision.
     """
     return np.float32 if name.startswith(NORMALIZER) else np.float16
 

@@ -1,4 +1,4 @@
-"""Summaries of policies: their tasks, inputs and outputs, and how their training went."""
+"""Summaries of policies: their tasks, inputs and outputs, and the results of their training."""
 
 from __future__ import annotations
 
@@ -19,11 +19,14 @@ _ENDS: Final[Mapping[str, str]] = {
 }
 """Why a training ended, in words, by the ``end`` of its record."""
 _KINDS: Final[Mapping[str, str]] = {"numbers": "numbers", "image": "image", "grid": "grid of categories"}
-"""The kinds of the parts of an observation, in words, apart from categories alone."""
+"""The kinds of the parts of an observation, in words, except ``categories``."""
 
 
 def summary(policy: Policy) -> dict[str, Any]:
-    """Return a summary of a policy as JSON data; ``spaces`` is in it only if the card has them."""
+    """Return a summary of a policy as JSON data, from its card.
+
+    The key ``spaces`` is missing if the card has no ``spaces``.
+    """
     card = policy.card
     values = {
         "level": card.level,
@@ -48,9 +51,9 @@ def summary(policy: Policy) -> dict[str, Any]:
 
 
 def summary_text(values: Mapping[str, Any]) -> str:
-    """Return a summary as text.
+    """Return the result of :func:`summary` as text for a terminal.
 
-    Unprintable characters, which an untrusted file may have in its names, are replaced.
+    Replace unprintable characters, which the names in an untrusted file may have, by U+FFFD.
     """
     sensors, network, layouts = values["sensors"], values["network"], values.get("spaces")
     map_ = sensors["map"]
@@ -100,7 +103,10 @@ def _map(sensor: Mapping[str, Any]) -> str:
 
 
 def _training(record: Mapping[str, Any]) -> str:
-    """Describe how a training went, from its record; leave out numbers that the record does not have."""
+    """Describe a training from its record; leave out numbers that the record does not have.
+
+    For example, ``seed 1, 200,000 steps, 85 s, pass rate 0.95 in its last episodes``.
+    """
     window = record.get("window")
     # Without episodes there is no pass rate.
     values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
@@ -114,7 +120,7 @@ def _training(record: Mapping[str, Any]) -> str:
 
 
 def _best_policy(record: Mapping[str, Any]) -> str:
-    """Describe the best policy, which the training kept in the end; empty if the record does not say."""
+    """Describe the best policy, which the training kept; empty if the record does not name it."""
     best = record.get("best")
     if not isinstance(best, dict) or not isinstance(best.get("pass_rate"), (int, float)):
         return ""
@@ -124,7 +130,7 @@ def _best_policy(record: Mapping[str, Any]) -> str:
 
 
 def _initial_policy(record: Mapping[str, Any]) -> str:
-    """Describe the policy that the training began with; empty if the record names none."""
+    """Describe the policy that the training began with; empty if it began with random weights."""
     initial = record.get("initial")
     if not isinstance(initial, dict):
         return ""
@@ -133,7 +139,7 @@ def _initial_policy(record: Mapping[str, Any]) -> str:
 
 
 def _search(record: Mapping[str, Any]) -> str:
-    """Describe the result of the search that preceded the training; empty if the record has none."""
+    """Describe the result of the training's search for demonstrations; empty if there was no search."""
     search = record.get("search")
     lengths = search.get("lengths") if isinstance(search, dict) else None
     if not isinstance(lengths, list) or not all(type(length) is int for length in lengths):
@@ -143,7 +149,7 @@ def _search(record: Mapping[str, Any]) -> str:
 
 
 def _demonstrations(record: Mapping[str, Any]) -> str:
-    """Describe the demonstrations of a training by imitation; empty if the record has none."""
+    """Describe the demonstrations that the agent imitated; empty if it learned without demonstrations."""
     imitated = record.get("imitated")
     if not isinstance(imitated, dict) or not all(type(imitated.get(key)) is int for key in ("episodes", "decisions")):
         return ""

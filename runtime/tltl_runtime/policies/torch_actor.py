@@ -1,4 +1,4 @@
-"""The network of a policy as a module of torch, which exports use, and weights as arrays for policies."""
+"""Convert policies to torch modules, and weights of torch modules to NumPy arrays."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tltl_runtime.policies.spaces.model_config import space_model_config
 
 
 def new_actor(card: Card) -> MLPModel:
-    """Return the actor that the card describes, with random weights.
+    """Return a new torch module for the network that the card describes, with random weights.
 
-    Raises ValueError if the card describes no network.
+    Raises ValueError if the card describes no valid network.
     """
     model, arguments = resolve_class(_config(card))
     blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in card.shapes}, batch_size=[1])
@@ -37,7 +37,7 @@ def _config(card: Card) -> dict[str, Any]:
 
 
 def torch_actor(policy: Policy) -> MLPModel:
-    """Return the actor of a policy, in evaluation mode."""
+    """Return the network of a policy as a torch module, in evaluation mode and without gradients."""
     with torch.device("meta"):
         actor = new_actor(policy.card)
     weights = {name: torch.from_numpy(weight).float() for name, weight in policy.weights().items()}
@@ -46,5 +46,5 @@ def torch_actor(policy: Policy) -> MLPModel:
 
 
 def arrays(weights: Mapping[str, Tensor]) -> dict[str, NDArray[Any]]:
-    """Convert weights, such as the state dict of an actor, to NumPy arrays, by name."""
+    """Convert weights by name, such as the state dict of a module, to NumPy arrays by name."""
     return {name: weight.detach().cpu().numpy() for name, weight in weights.items()}

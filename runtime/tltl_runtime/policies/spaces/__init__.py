@@ -1,4 +1,4 @@
-"""Observations and actions of any game as arrays for a network.
+"""Convert observations and actions of all supported spaces to arrays for a network, and back.
 
 Begin with :mod:`~tltl_runtime.policies.spaces.layouts`.
 """

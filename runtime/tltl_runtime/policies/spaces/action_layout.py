@@ -1,8 +1,8 @@
 """The layout of an action: its parts in order, each with choices or numbers.
 
-A *flat action* is a vector with a number for each choice and each element of a Box: first all
-choices, in the order of the parts, then all numbers. A choice counts from 0; a number has the unit
-of its Box.
+A *flat action* is a vector with an entry for each choice and each element of a Box: first all
+choices, in the order of the parts, then all numbers. Choices count from 0. Numbers are within the
+bounds of their Box.
 """
 
 from __future__ import annotations
@@ -25,20 +25,24 @@ ActionDtype = Literal[
 ]
 
 MAX_CHOICES: Final = 1 << 16
-"""The most choices of all parts together."""
+"""The greatest number of choices that all parts may have together."""
 MAX_ELEMENTS: Final = 1 << 12
-"""The most elements of all Boxes together."""
+"""The greatest number of elements that all Boxes may have together."""
 _GREATEST_BOUND: Final = 2.0**53
-"""Greater bounds, which float64 does not have exactly, are those of a type and count as none."""
+"""A bound beyond this number counts as no bound.
+
+It is usually just the greatest number of a type, and float64 cannot represent it exactly.
+"""
 
 
 @record
 class ActionPart:
-    """A part of an action.
+    """A part of an action: the value of a Discrete, MultiDiscrete, MultiBinary or Box space.
 
-    ``path`` has the keys and indices that lead to it. ``shape`` and ``dtype`` are those of its
-    value: () for a choice. ``sizes`` has the number of choices of each element, ``starts`` the value
-    of each first choice. ``low`` and ``high`` are the bounds of each number, None where there is
+    ``path`` has the keys and indices that lead to the part, such as ``("arm", "0")``; it is empty
+    if the part is the whole action. ``shape`` and ``dtype`` are those of the value; the shape of a
+    single choice is (). ``sizes`` has the number of choices of each element, ``starts`` the value
+    of its first choice. ``low`` and ``high`` are the bounds of each number, None where there is
     none.
 
     Raises:
@@ -71,12 +75,13 @@ class ActionPart:
 class ActionLayout:
     """The parts of an action, in order.
 
-    An action is nested as the paths of its parts say; ``tuples`` are the paths of its tuples, and
-    all other inner nodes are mappings.
+    An action may be nested: the part with the path ``("arm", "0")`` is at ``action["arm"][0]``.
+    ``tuples`` are the paths of the tuples in an action, such as ``("arm",)``; all other inner nodes
+    are mappings.
 
     Raises:
-        ValueError: there are no parts, there are too many choices or numbers, or the paths cannot be
-            those of one action.
+        ValueError: there are no parts, there are too many choices or numbers, or the paths
+            contradict each other.
     """
 
     parts: tuple[ActionPart, ...]
@@ -89,17 +94,17 @@ class ActionLayout:
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """The number of choices of each choice of a flat action."""
+        """For each choice in a flat action, the number of values that it can have."""
         return tuple(size for part in self.parts for size in part.sizes)
 
     @property
     def number_count(self) -> int:
-        """How many numbers a flat action has after its choices."""
+        """How many continuous numbers a flat action has, after its choices."""
         return sum(len(part.low) for part in self.parts)
 
     @property
     def bounds(self) -> tuple[tuple[float | None, float | None], ...]:
-        """The bounds of each number of a flat action."""
+        """The pair (low, high) of bounds of each number in a flat action, None where there is none."""
         return tuple(pair for part in self.parts for pair in zip(part.low, part.high, strict=True))
 
     @property
@@ -114,7 +119,11 @@ class ActionLayout:
 
 
 def check_paths(paths: Sequence[tuple[str, ...]], tuples: Sequence[tuple[str, ...]]) -> None:
-    """Raise ValueError unless parts with these paths can be in one action, in which ``tuples`` are tuples."""
+    """Raise ValueError if the paths of the parts of an action contradict each other.
+
+    Paths must be different, and none may lead through another. ``tuples`` are the paths of the
+    tuples in the action; the indices in each tuple must be 0, 1, and so on.
+    """
     children: dict[tuple[str, ...], set[str]] = {}
     for path in paths:
         for length in range(len(path)):
@@ -129,7 +138,8 @@ def action_layout(space: spaces.Space[Any]) -> ActionLayout:
     """Return the layout of an action space.
 
     Raises:
-        TltlError: TLT0844, no policy can have the space; there is a diagnostic for each refused part.
+        TltlError: TLT0844, policies do not support the space; each unsupported part has a
+            diagnostic.
     """
     refusals: list[SpaceRefusedError] = []
     parts = tuple(_parts(space, (), refusals))
@@ -141,7 +151,7 @@ def action_layout(space: spaces.Space[Any]) -> ActionLayout:
 
 
 def _tuples(space: spaces.Space[Any], path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Yield the paths of all Tuple spaces in a space."""
+    """Yield the paths of all Tuple spaces in ``space``, which is at ``path``."""
     if isinstance(space, spaces.Tuple):
         yield path
     if isinstance(space, (spaces.Dict, spaces.Tuple)):
@@ -150,7 +160,7 @@ def _tuples(space: spaces.Space[Any], path: tuple[str, ...]) -> Iterator[tuple[s
 
 
 def _parts(space: spaces.Space[Any], path: tuple[str, ...], refusals: list[SpaceRefusedError]) -> Iterator[ActionPart]:
-    """Yield the parts of a space; append the refused ones to ``refusals``."""
+    """Yield the parts of ``space``, which is at ``path``; append unsupported parts to ``refusals``."""
     if isinstance(space, (spaces.Dict, spaces.Tuple)):
         items = space.spaces.items() if isinstance(space, spaces.Dict) else enumerate(space.spaces)
         if not space.spaces:

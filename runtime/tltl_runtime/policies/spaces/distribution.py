@@ -17,15 +17,19 @@ _LOG_ROOT_OF_TAU: Final = 0.5 * math.log(2 * math.pi)
 
 
 class IndependentParts(Distribution):
-    """A categorical distribution for each choice of an action and a normal one for each number.
+    """Independent distributions: a categorical one for each choice of an action, a normal one for each number.
 
-    They are independent. An action is a row [..., width]: the choices, and then the numbers before
-    they are squashed to their bounds. Squashing changes the density by a factor that does not depend
-    on the weights, so that PPO's ratios and divergences are the same with and without it; and the
-    entropy is that before squashing. The network outputs the logits of all choices and the means of
-    all numbers. The standard deviations are weights of their own and do not depend on the
-    observation: ``log_deviation`` has their logarithms. Log probabilities, entropies and divergences
-    are sums over all parts, in nats.
+    An action is a row [..., width]: the choices, and then the continuous numbers before they are
+    squashed to their bounds. The network outputs the logits of all choices and the means of all
+    numbers. The standard deviations do not depend on the observation: they are weights of their
+    own, and ``log_deviation`` has their logarithms. Log probabilities, entropies and divergences
+    are sums over all choices and numbers, in nats.
+
+    All densities are those before squashing. Squashing would change them only by a factor that does
+    not depend on the weights, so PPO's ratios and divergences are the same with and without it.
+
+    Raises:
+        ValueError: ``output_dim`` is not the width of the layout.
     """
 
     def __init__(self, output_dim: int, layout: ActionLayout) -> None:
@@ -42,7 +46,7 @@ class IndependentParts(Distribution):
 
     @property
     def input_dim(self) -> int:
-        """The number of outputs of the network for an action."""
+        """The number of outputs of the network: a logit for each choice, a mean for each number."""
         return self.layout.output_width
 
     def update(self, mlp_output: Tensor) -> None:
@@ -59,7 +63,10 @@ class IndependentParts(Distribution):
         return _joined(self._choices and self._choices.sample(), numbers)
 
     def deterministic_output(self, mlp_output: Tensor) -> Tensor:
-        """Return the likeliest choices, the first one on ties, and the means [..., width]."""
+        """Return the likeliest action [..., width]: the likeliest choices, and the means of the numbers.
+
+        On ties, the first choice is taken.
+        """
         logits, means = self._split(mlp_output)
         return _joined(self._choices and self._choices.deterministic_output(logits), means if self._numbers else None)
 
@@ -74,7 +81,10 @@ class IndependentParts(Distribution):
 
     @property
     def std(self) -> Tensor:
-        """The entropies of the choices and the standard deviations of the numbers; rsl-rl only reports them."""
+        """The entropies of the choices, and the standard deviations of the numbers [..., width].
+
+        Choices have no standard deviation. rsl-rl only reports these values.
+        """
         return _joined(self._choices and self._choices.std, self._deviations if self._numbers else None)
 
     @property
@@ -87,7 +97,7 @@ class IndependentParts(Distribution):
 
     @property
     def params(self) -> tuple[Tensor, ...]:
-        """The log probabilities of each choice, and then the means and deviations of the numbers."""
+        """The log probabilities, one tensor [..., choices] per choice, then means and deviations of the numbers."""
         choices = self._choices.params if self._choices else ()
         return (*choices, self._means, self._deviations) if self._numbers else choices
 
@@ -111,15 +121,16 @@ class IndependentParts(Distribution):
         return _total(terms)
 
     def init_mlp_weights(self, mlp: Any) -> None:
-        """Set the weights of the last layer so that all choices begin nearly equally likely, and means near 0."""
+        """Set the weights of the last layer so that choices begin nearly equally likely, and means near 0."""
         last = [layer for layer in mlp if isinstance(layer, nn.Linear)][-1]
         nn.init.orthogonal_(last.weight, gain=0.01)
         nn.init.zeros_(last.bias)
 
     def sharpen(self, last: nn.Linear, factor: float) -> None:
-        """Raise all probabilities to the power of ``factor``, up to a constant; ``last`` is the network's last layer.
+        """Raise all probabilities to the power of ``factor``, and normalize them again.
 
-        The logits of choices are multiplied, and the variances of numbers are divided.
+        To do so, multiply the logits of the choices in ``last``, the network's last layer, by
+        ``factor``, and divide the variances of the numbers by it.
         """
         logits = sum(self._sizes)
         with torch.no_grad():

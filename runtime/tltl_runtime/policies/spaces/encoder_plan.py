@@ -2,9 +2,9 @@
 
 Numbers are scaled, categories become one-hot vectors, and each image or grid goes through
 convolutions. A number is scaled to [-1, 1] by its bounds; without bounds, by a running mean and
-deviation. An image is scaled to [0, 1]. A cell of a grid holds categories, whose numbers have no
-order, so each becomes its eight bits: the network can tell any two categories apart, and needs no
-list of those that the game has.
+deviation. An image is scaled to [0, 1]. A cell of a grid holds categories, which are numbers
+without an order. Each category becomes its eight bits. So the network can tell any two categories
+apart, and nobody need list the categories of the game.
 
 The first convolution of a grid has no stride, because neighbouring cells mean different things. To
 both grids and images, convolutions with the network's stride are added until the result is at most
@@ -23,19 +23,22 @@ from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltlc.api import record
 
 BITS: Final = 8
-"""The planes of a category in a grid."""
+"""A plane of a grid, whose cells are categories, becomes this many planes: one for each bit."""
 NORMALIZER: Final = "normalizer."
 """The prefix of the names of the tensors that scale numbers. They are float32 in a policy."""
 DEVIATIONS: Final = "distribution.log_deviation"
 """The name of the logarithms of the standard deviations of an action's numbers."""
 
 _LONGEST: Final = 10
-"""Convolutions are added until the result is at most this long, in cells."""
+"""Convolutions with a stride are added until both sides of the result are at most this long, in cells."""
 
 
 @record
 class Convolution:
-    """A convolution from ``inputs`` to ``outputs`` planes; it pads a map with ``kernel // 2`` zeros on each side."""
+    """A convolution from ``inputs`` to ``outputs`` planes.
+
+    It pads a map with ``kernel // 2`` zeros on each side.
+    """
 
     inputs: int
     outputs: int
@@ -44,7 +47,7 @@ class Convolution:
 
     @property
     def padding(self) -> int:
-        """The zeros on each side."""
+        """The number of zeros on each side."""
         return self.kernel // 2
 
     def output_sides(self, sides: Sequence[int]) -> tuple[int, ...]:
@@ -53,7 +56,7 @@ class Convolution:
 
 
 def convolutions(part: ObservationPart, network: Network) -> tuple[Convolution, ...]:
-    """Return the convolutions of an image or grid."""
+    """Return the convolutions through which an image or grid goes, in order."""
     planes, sides = part.planes * (BITS if part.kind == "grid" else 1), tuple(part.sides)
     layers: list[Convolution] = []
     while len(layers) < len(network.channels) or (
@@ -72,14 +75,15 @@ def map_parts(layouts: SpaceLayouts) -> list[tuple[int, ObservationPart]]:
 
 
 def number_count(layouts: SpaceLayouts) -> int:
-    """Return how many numbers the vectors of an observation have."""
+    """Return how many numbers the parts of the kind ``numbers`` have together in an observation."""
     return sum(prod(part.shape) for part in layouts.observation if part.kind == "numbers")
 
 
 def initial_scale(layouts: SpaceLayouts) -> tuple[list[float], list[float]]:
-    """Return what is subtracted from each number, and by what the difference is then divided.
+    """Return an offset and a divisor for each number of an observation, as two lists.
 
-    The values scale the bounds of a number to [-1, 1]. Without bounds they are 0 and 1.
+    ``(number - offset) / divisor`` scales the bounds of the number to [-1, 1]. For a number without
+    two bounds, the offset is 0 and the divisor 1.
     """
     bounds = [pair for part in layouts.observation if part.kind == "numbers" for pair in part.bounds]
     pairs = [
@@ -89,13 +93,16 @@ def initial_scale(layouts: SpaceLayouts) -> tuple[list[float], list[float]]:
 
 
 def unbounded(layouts: SpaceLayouts) -> list[bool]:
-    """Return for each number whether a running mean and deviation scale it."""
+    """Return for each number of an observation whether a running mean and deviation scale it.
+
+    This is so for a number without two bounds.
+    """
     bounds = [pair for part in layouts.observation if part.kind == "numbers" for pair in part.bounds]
     return [low is None or high is None for low, high in bounds]
 
 
 def encoded_width(layouts: SpaceLayouts, network: Network) -> int:
-    """Return how many numbers the fully connected layers get."""
+    """Return how many numbers the fully connected layers get: those of the encoded observation."""
     width = number_count(layouts) + sum(sum(part.sizes) for part in layouts.observation)
     for _, part in map_parts(layouts):
         sides: tuple[int, ...] = tuple(part.sides)

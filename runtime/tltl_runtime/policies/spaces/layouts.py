@@ -1,4 +1,4 @@
-"""The layouts of a game's observations and actions."""
+"""The layouts of observations and actions: how their values become arrays for a network."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tltlc.api import record
 
 @record
 class SpaceLayouts:
-    """The layouts of observation and action, which a policy's card stores.
+    """The parts of an observation and of an action; a policy's card stores them.
 
     Raises:
-        ValueError: there are no parts of an observation, or two have the same key.
+        ValueError: ``observation`` is empty, or two of its parts have the same key.
     """
 
     observation: tuple[ObservationPart, ...]
@@ -39,13 +39,14 @@ class SpaceLayouts:
 def space_layouts(
     observation: spaces.Space[Any], action: spaces.Space[Any], sensors: Sensors = NO_SENSORS
 ) -> SpaceLayouts | None:
-    """Return the layouts of two spaces; None if the network takes and gives their values as they are.
+    """Return the layouts of two spaces; None if the network can use their values without conversion.
 
-    That is so if the observation has the keys that :class:`~tltl_runtime.spec.wrapper.TltlEnv` adds,
-    the parts that ``sensors`` give, and no others.
+    No conversion is needed if an observation has only what ``sensors`` give and the keys that
+    :class:`~tltl_runtime.spec.wrapper.TltlEnv` adds, and an action is one row of choices that count
+    from 0.
 
     Raises:
-        TltlError: TLT0844, no policy can have one of the spaces.
+        TltlError: TLT0844, policies do not support one of the spaces.
     """
     if isinstance(observation, spaces.Dict) and _is_plain(observation, sensors) and is_plain_action(action):
         return None
@@ -53,12 +54,15 @@ def space_layouts(
 
 
 def is_plain_action(space: spaces.Space[Any]) -> bool:
-    """Whether an action is one row of choices that count from 0: a flat action is then the action."""
+    """Whether an action is one row of choices that count from 0, and so equal to its flat action."""
     return isinstance(space, spaces.MultiDiscrete) and space.nvec.ndim == 1 and not space.start.any()
 
 
 def _is_plain(space: spaces.Dict, sensors: Sensors) -> bool:
-    """Whether an observation has what sensors give alone: vectors in [-1, 1] and maps of zeros and ones."""
+    """Whether an observation has only what ``sensors`` give and the keys that the wrapper adds.
+
+    Its parts must be vectors in [-1, 1] and maps of zeros and ones.
+    """
     shapes = {key: part.shape for key, part in space.spaces.items() if key not in ADDED_KEYS}
     if shapes != sensor_shapes(sensors):
         return False

@@ -1,4 +1,4 @@
-"""rsl-rl's configuration of the network for any spaces, which needs no torch."""
+"""rsl-rl's configuration of the network for spaces of any kind; importing this module needs no torch."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 
 
 def space_model_config(network: Network, layouts: SpaceLayouts, *, is_actor: bool) -> dict[str, Any]:
-    """Return rsl-rl's configuration of an actor, or of a critic, for these layouts."""
+    """Return rsl-rl's configuration of an actor for these layouts, or of a critic if not ``is_actor``."""
     config: dict[str, Any] = {
         "class_name": "tltl_runtime.policies.spaces.torch_model:SpaceModel",
         "network": network,

@@ -21,27 +21,27 @@ the cells of a rectangle.
 """
 
 MAX_NUMBERS: Final = 1 << 16
-"""The most numbers of a vector, and the most categories of a part."""
+"""The greatest size of a vector, and the greatest number of categories of a part."""
 MAX_CELLS: Final = 1 << 18
-"""The most numbers of an image or grid."""
+"""The greatest number of cells of an image or grid, all planes together."""
 _GRID_SIDE: Final = 32
 """An integer array is a grid of categories if both sides are shorter than this, because no camera is so coarse."""
 _LEADING_PLANES: Final = 4
-"""An array has its planes first if there are at most this many, and more columns than this."""
+"""An array of three axes has its planes first if its first axis is at most this long, and its last is longer."""
 _WIDEST: Final = 1e6
-"""Bounds that are wider apart than this say nothing about the values, and count as none."""
+"""Bounds that are farther apart than this count as no bounds, because they say nothing about the values."""
 
 
 @record
 class ObservationPart:
     """A part of an observation.
 
-    ``key`` is its name among the inputs of the network; ``path`` has the keys and indices that lead
-    to it in the observation. ``shape`` is the shape of its array: (n,) for numbers and categories,
-    (height, width, planes) for images and grids, or (planes, height, width) if ``planes_first``.
-    ``sizes`` has the number of categories of each index, ``starts`` the first category of each.
-    ``low`` and ``high`` are the bounds of numbers, one for each, None where there is none; an image
-    has one pair of bounds for all cells.
+    ``key`` is its name among the inputs of the network, such as ``arm/0``. ``path`` has the keys
+    and indices that lead to it in the observation, such as ``("arm", "0")``. ``shape`` is the shape
+    of its array: (n,) for numbers and categories, (height, width, planes) for images and grids, or
+    (planes, height, width) if ``planes_first``. For each of n categories, ``sizes`` has the number
+    of its possible values, and ``starts`` the least of them. ``low`` and ``high`` are the bounds of
+    each number, None where there is none; an image has one pair of bounds for all cells.
 
     Raises:
         ValueError: the fields contradict each other, or a size is out of range.
@@ -79,7 +79,7 @@ class ObservationPart:
 
     @property
     def bounds(self) -> tuple[tuple[float | None, float | None], ...]:
-        """The pairs of bounds."""
+        """The pair (low, high) of bounds of each number; a single pair for an image."""
         return tuple(zip(self.low, self.high, strict=True))
 
     @property
@@ -97,7 +97,8 @@ def observation_layout(space: spaces.Space[Any]) -> tuple[ObservationPart, ...]:
     """Return the layout of an observation space.
 
     Raises:
-        TltlError: TLT0844, no policy can have the space; there is a diagnostic for each refused part.
+        TltlError: TLT0844, policies do not support the space; each unsupported part has a
+            diagnostic.
     """
     refusals: list[SpaceRefusedError] = []
     parts = tuple(_parts(space, (), refusals))
@@ -111,7 +112,7 @@ def observation_layout(space: spaces.Space[Any]) -> tuple[ObservationPart, ...]:
 def _parts(
     space: spaces.Space[Any], path: tuple[str, ...], refusals: list[SpaceRefusedError]
 ) -> Iterator[ObservationPart]:
-    """Yield the parts of a space; append the refused ones to ``refusals``."""
+    """Yield the parts of ``space``, which is at ``path``; append unsupported parts to ``refusals``."""
     if isinstance(space, (spaces.Dict, spaces.Tuple)):
         items = space.spaces.items() if isinstance(space, spaces.Dict) else enumerate(space.spaces)
         for key, inner in items:
@@ -168,7 +169,10 @@ def _box(space: spaces.Box, key: str, path: tuple[str, ...]) -> ObservationPart:
 
 
 def _useful(low: float, high: float) -> tuple[float | None, float | None]:
-    """Return bounds to scale by; None twice if they are infinite, equal or too wide."""
+    """Return the bounds if a number can be scaled by them, else (None, None).
+
+    Infinite bounds, equal bounds, and bounds that are too far apart are of no use.
+    """
     return (low, high) if 0 < high - low <= _WIDEST else (None, None)
 
 

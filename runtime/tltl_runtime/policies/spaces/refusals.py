@@ -1,4 +1,4 @@
-"""Errors for spaces that no policy can have."""
+"""Errors for observation and action spaces that policies do not support."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _POSSIBLE: Final = "Box, Discrete, MultiDiscrete, MultiBinary, or a Dict or Tupl
 
 
 class SpaceRefusedError(Exception):
-    """Raised for a part of a space that no policy can have.
+    """Raised for a part of a space that policies do not support.
 
     ``path`` has the keys and indices that lead to the part. ``reason`` completes the sentence that
     begins with the name of the part, such as "is a Text space, which no network can read".
@@ -29,20 +29,21 @@ class SpaceRefusedError(Exception):
 
 
 def name_of(path: Sequence[str]) -> str:
-    """Return the path as a name: keys and indices with slashes, in which ``~`` and ``/`` are escaped.
+    """Return a path as a name, with slashes between its parts: ``("arm", "0")`` -> ``arm/0``.
 
-    The escapes are those of JSON Pointer (RFC 6901), so that different paths have different names.
+    In a part, ``~`` becomes ``~0`` and ``/`` becomes ``~1``, as in JSON Pointer (RFC 6901). So
+    different paths have different names.
     """
     return "/".join(key.replace("~", "~0").replace("/", "~1") for key in path)
 
 
 def observation_error(space: spaces.Space[object], refusals: Sequence[SpaceRefusedError]) -> TltlError:
-    """Return the error TLT0844 for an observation space, with a diagnostic for each refused part."""
+    """Return the error TLT0844 for an observation space, with a diagnostic for each unsupported part."""
     return TltlError([_diagnostic("observation", refusal, _observation_help(space, refusals)) for refusal in refusals])
 
 
 def action_error(refusals: Sequence[SpaceRefusedError]) -> TltlError:
-    """Return the error TLT0844 for an action space, with a diagnostic for each refused part."""
+    """Return the error TLT0844 for an action space, with a diagnostic for each unsupported part."""
     help_ = f"wrap the environment, so that its actions are {_POSSIBLE}"
     return TltlError([_diagnostic("action", refusal, help_) for refusal in refusals])
 

@@ -1,6 +1,6 @@
-"""The network of a policy for any observation and action, computed by NumPy.
+"""The network of a policy for spaces of any kind, computed by NumPy.
 
-It computes what :class:`~tltl_runtime.policies.spaces.torch_model.SpaceModel` computes, apart from
+The result is that of :class:`~tltl_runtime.policies.spaces.torch_model.SpaceModel`, apart from
 rounding.
 """
 
@@ -29,9 +29,9 @@ from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 _Array = NDArray[np.float32]
 
 FARTHEST: Final = 10.0
-"""A scaled number is cut to the range from minus this to this, so that no outlier upsets the network."""
+"""A scaled number is clipped to [-FARTHEST, FARTHEST], so that no outlier upsets the network."""
 LEAST_LOG, MOST_LOG = -5.0, 1.0
-"""The bounds of the logarithm of a standard deviation before squashing."""
+"""The bounds of the logarithm of the standard deviation of an action's number, before it is squashed."""
 
 
 class SpaceActor:
@@ -57,7 +57,11 @@ class SpaceActor:
         ]
 
     def outputs(self, arrays: Mapping[str, NDArray[Any]]) -> _Array:
-        """Return the logits of all choices and then the means of all numbers, for the arrays of one observation."""
+        """Return the output of the network for one observation, as a vector.
+
+        ``arrays`` are the parts of the observation, by key. The vector has the logits of all
+        choices of an action, and then the means of its continuous numbers.
+        """
         # Infinite values give NaN in some operations. The caller checks the result, so no warning is needed.
         with np.errstate(all="ignore"):
             values = self._encoded(arrays)
@@ -68,9 +72,10 @@ class SpaceActor:
             return values
 
     def choose(self, outputs: _Array, generator: np.random.Generator | None = None) -> NDArray[np.float64]:
-        """Return an action for outputs of the network: sampled, or the likeliest without a generator.
+        """Return an action for ``outputs`` of the network: sampled, or the likeliest without a generator.
 
-        It is a row [width]: the choices, and then the numbers before they are squashed.
+        The action is a row [width]: the choices, which count from 0, and then the continuous
+        numbers before they are squashed to their bounds.
         """
         action = self._layouts.action
         logits, means = np.split(outputs.astype(np.float64), [sum(action.sizes)])
@@ -104,7 +109,7 @@ class SpaceActor:
         return np.concatenate(parts)
 
     def _convolved(self, planes: _Array, name: str, plan: Convolution) -> _Array:
-        """Return a convolution of planes [inputs, height, width], computed as one matrix product."""
+        """Convolve planes [inputs, height, width] with the weights ``name``, as one matrix product."""
         weight, bias = self._weights[f"{name}.weight"], self._weights[f"{name}.bias"]
         sides, padding = plan.output_sides(planes.shape[1:]), plan.padding
         padded = np.pad(planes, ((0, 0), (padding, padding), (padding, padding)))
@@ -117,14 +122,21 @@ class SpaceActor:
 
 
 def deviations(weights: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
-    """Return the standard deviations of an action's numbers before squashing, from the weights of a policy."""
+    """Return the standard deviation of each number of an action, before it is squashed to its bounds.
+
+    ``weights`` are the weights of a policy, by name.
+    """
     logs = np.clip(weights[DEVIATIONS].astype(np.float64), LEAST_LOG, MOST_LOG)
     result: NDArray[np.float64] = np.exp(logs)
     return result
 
 
 def planes_of(part: ObservationPart, array: NDArray[Any]) -> _Array:
-    """Return the planes [planes, height, width] of an image or grid: scaled to [0, 1], or bits."""
+    """Convert the array of an image or grid to planes [planes, height, width] in [0, 1].
+
+    An image is scaled by its bounds. Each plane of a grid becomes eight planes, one for each bit of
+    the categories.
+    """
     cells = np.asarray(array) if part.planes_first else np.moveaxis(np.asarray(array), -1, 0)
     if part.kind == "grid":
         bits = (cells.astype(np.uint8)[:, None] >> np.arange(BITS, dtype=np.uint8)[:, None, None]) & 1

@@ -1,4 +1,4 @@
-"""The network of a policy for any observation and action, as a model of rsl-rl."""
+"""The network of a policy for spaces of any kind, as a model of rsl-rl."""
 
 from __future__ import annotations
 
@@ -25,14 +25,18 @@ from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltl_runtime.policies.spaces.space_actor import FARTHEST
 
 _NUMBERS: Final = "~numbers"
-"""The key of all numbers together. No part of an observation has it, because keys escape a tilde."""
+"""The key of all numbers together, among the encoded inputs.
+
+No part of an observation has this key, because a tilde in a key is escaped.
+"""
 
 
 class SpaceModel(MLPModel):
-    """An actor or critic whose inputs are the parts of an observation, as in ``layouts``.
+    """An actor or critic whose inputs are the parts of an observation that ``layouts`` describe.
 
-    Its weights have the names of
-    :func:`~tltl_runtime.policies.spaces.encoder_plan.space_weight_shapes`.
+    An actor's weights have the names and shapes of
+    :func:`~tltl_runtime.policies.spaces.encoder_plan.space_weight_shapes`. The other arguments are
+    those of rsl-rl's ``MLPModel``.
     """
 
     def __init__(
@@ -53,18 +57,21 @@ class SpaceModel(MLPModel):
         self.encoders = nn.ModuleDict({str(index): _encoder(part, network) for index, part in map_parts(layouts)})
 
     def get_latent(self, obs: Mapping[str, Tensor], masks: Any = None, hidden_state: Any = None) -> Tensor:
-        """Return what the fully connected layers get [batch, width]."""
+        """Encode observations: return the inputs [batch, width] of the fully connected layers."""
         return self.encoded(self.inputs(obs))
 
     def inputs(self, obs: Mapping[str, Tensor]) -> dict[str, Tensor]:
-        """Return the parts of observations as floats [batch, ...]: scaled numbers, one-hot vectors, and planes."""
+        """Return the inputs of the encoders, by key, as floats [batch, ...].
+
+        They are scaled numbers, one-hot vectors of categories, and planes of images and grids.
+        """
         parts = self._layouts.observation
         inputs = {} if self.normalizer is None else {_NUMBERS: self.normalizer(_numbers(parts, obs))}
         inputs |= {part.key: _one_hot(part, obs[part.key]) for part in parts if part.kind == "categories"}
         return inputs | {part.key: _planes(part, obs[part.key]) for _, part in map_parts(self._layouts)}
 
     def encoded(self, inputs: Mapping[str, Tensor]) -> Tensor:
-        """Return what the fully connected layers get [batch, width] for the result of :meth:`inputs`."""
+        """Encode the result of :meth:`inputs`: return the inputs [batch, width] of the fully connected layers."""
         encoders = {part.key: self.encoders[str(index)] for index, part in map_parts(self._layouts)}
         return torch.cat(
             [encoders[key](values).flatten(1) if key in encoders else values for key, values in inputs.items()], -1
@@ -73,7 +80,7 @@ class SpaceModel(MLPModel):
     def update_normalization(self, obs: Mapping[str, Tensor]) -> None:
         """Update the running mean and deviation of numbers without bounds from a batch of observations.
 
-        With several processes, all must call this method, and the batches of all count.
+        With several processes, all must call this method; the batches of all are used.
         """
         if self.normalizer is not None:
             self.normalizer.update(_numbers(self._layouts.observation, obs))
@@ -85,10 +92,12 @@ class SpaceModel(MLPModel):
 
 
 class Normalizer(nn.Module):
-    """Scales numbers [batch, numbers]: by their bounds, or by a running mean and deviation.
+    """Scales the numbers of observations [batch, numbers].
 
-    The deviation is at least 1e-2, so that a number that has hardly changed is not blown up when it
-    changes. ``count`` is how many observations the running values are of.
+    A number with two bounds is scaled to [-1, 1], any other number by a running mean and deviation.
+    A running deviation is at least 1e-2: otherwise a number that has hardly changed so far would
+    become huge as soon as it changes. ``count`` is the number of observations from which the
+    running values were computed.
     """
 
     mean: Tensor
@@ -105,11 +114,15 @@ class Normalizer(nn.Module):
         self.register_buffer("_running", torch.tensor(unbounded(layouts)), persistent=False)
 
     def forward(self, numbers: Tensor) -> Tensor:
-        """Return scaled numbers."""
+        """Return the scaled numbers [batch, numbers], clipped to [-FARTHEST, FARTHEST]."""
         return ((numbers - self.mean) / self.deviation).clamp(-FARTHEST, FARTHEST)
 
     def update(self, numbers: Tensor) -> None:
-        """Add a batch [batch, numbers] to the running values (Chan, Golub and LeVeque, 1979)."""
+        """Update the running mean and deviation with a batch [batch, numbers].
+
+        With several processes, all must call this method. Source of the formulas: Chan, Golub and
+        LeVeque, 1979.
+        """
         if not self._running.any():
             return
         batch = numbers.double()
@@ -144,7 +157,7 @@ def _numbers(parts: tuple[ObservationPart, ...], obs: Mapping[str, Tensor]) -> T
 
 
 def _one_hot(part: ObservationPart, indices: Tensor) -> Tensor:
-    """Return the one-hot vectors [batch, sum(sizes)] of categories [batch, indices]."""
+    """Convert categories [batch, n] to one-hot vectors, joined to [batch, sum(sizes)]."""
     columns = [column for column, size in enumerate(part.sizes) for _ in range(size)]
     values = [value for size in part.sizes for value in range(size)]
     taken = indices.float()[:, torch.tensor(columns, device=indices.device)]
@@ -152,7 +165,11 @@ def _one_hot(part: ObservationPart, indices: Tensor) -> Tensor:
 
 
 def _planes(part: ObservationPart, array: Tensor) -> Tensor:
-    """Return the planes [batch, planes, height, width] of images or grids: scaled to [0, 1], or bits."""
+    """Convert a batch of images or grids to planes [batch, planes, height, width] in [0, 1].
+
+    Images are scaled by their bounds. Each plane of a grid becomes eight planes, one for each bit
+    of the categories.
+    """
     cells = array.float() if part.planes_first else array.float().permute(0, 3, 1, 2)
     if part.kind == "grid":
         powers = 2.0 ** torch.arange(BITS, device=array.device).reshape(-1, 1, 1)

@@ -1,5 +1,6 @@
 """Convert observations to arrays by key, and flat actions to the values of a space and back.
 
+A flat action is a vector: first all choices, which count from 0, then all continuous numbers.
 ``count`` is the number of environments of a batch; None means one environment without a batch axis.
 A batch of a Dict or Tuple space is a mapping or tuple of batches, as in Gymnasium.
 """
@@ -16,28 +17,36 @@ from tltl_runtime.policies.spaces.action_layout import ActionLayout, ActionPart
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 
 _NEAR_BOUND: Final = 1 - 1e-6
-"""The greatest share of the way to a bound that is turned back: the bound itself would be infinitely far."""
+"""The greatest hyperbolic tangent that :func:`unsquashed` inverts, because that of 1 would be infinite."""
 
 
 def observation_arrays(
     layout: Sequence[ObservationPart], observation: Any, count: int | None = None
 ) -> dict[str, NDArray[Any]]:
-    """Return the parts of an observation as arrays by key, of the shapes [count, *part.shape].
+    """Return the parts of an observation as arrays [count, *part.shape], by key.
 
-    Images and grids of bytes are uint8, everything else is float32. Categories count from 0.
+    ``observation`` is a batch of ``count`` observations. If ``count`` is None, it is a single one,
+    and the arrays have no batch axis. Grids, and images of bytes, are uint8; everything else is
+    float32. Categories count from 0.
     """
     return {part.key: _array(part, _at(observation, part.path), count) for part in layout}
 
 
 def batch_row(batch: Any, row: int) -> Any:
-    """Return the value in one row of a batch of a space."""
+    """Return one element of a batch, the one with the index ``row``.
+
+    A batch of a Dict or Tuple space is a mapping or tuple of batches, and so is the element.
+    """
     if isinstance(batch, Mapping):
         return {key: batch_row(values, row) for key, values in batch.items()}
     return tuple(batch_row(values, row) for values in batch) if isinstance(batch, tuple) else batch[row]
 
 
 def action_value(layout: ActionLayout, flat: NDArray[Any], count: int | None = None) -> Any:
-    """Return the value of the action space for flat actions [count, width]."""
+    """Convert flat actions [count, width] to a batch of values of the action space.
+
+    If ``count`` is None, convert one flat action [width] to one value.
+    """
     choices, numbers = np.split(flat, [len(layout.sizes)], axis=-1)
     nested: dict[str, Any] = {}
     for part in layout.parts:
@@ -57,7 +66,10 @@ def action_value(layout: ActionLayout, flat: NDArray[Any], count: int | None = N
 
 
 def flat_action(layout: ActionLayout, action: Any, count: int | None = None) -> NDArray[np.float64]:
-    """Return the flat actions [count, width] for a value of the space, in float64."""
+    """Convert a batch of ``count`` values of the action space to flat actions [count, width], in float64.
+
+    If ``count`` is None, convert one value to one flat action [width].
+    """
     rows = () if count is None else (count,)
     choices: list[NDArray[np.float64]] = []
     numbers: list[NDArray[np.float64]] = []
@@ -71,10 +83,11 @@ def flat_action(layout: ActionLayout, action: Any, count: int | None = None) -> 
 
 
 def squashed(layout: ActionLayout, outputs: NDArray[Any]) -> NDArray[np.float64]:
-    """Return flat actions [..., width] for a policy's outputs: choices, and numbers before squashing.
+    """Return flat actions [..., width] for actions as a policy's network outputs them.
 
-    A number with two bounds is the hyperbolic tangent, scaled to the bounds. Any other number is
-    cut to the bound that it has.
+    ``outputs`` [..., width] has the choices and then the continuous numbers. A number with two
+    bounds becomes its hyperbolic tangent, scaled to these bounds. A number with one bound is
+    clipped there. All other entries stay the same.
     """
     flat: NDArray[np.float64] = np.array(outputs, np.float64)
     first = len(layout.sizes)
@@ -88,7 +101,8 @@ def squashed(layout: ActionLayout, outputs: NDArray[Any]) -> NDArray[np.float64]
 def unsquashed(layout: ActionLayout, flat: NDArray[Any]) -> NDArray[np.float64]:
     """Return the outputs of a policy that :func:`squashed` maps to flat actions [..., width].
 
-    A number at or near its bound comes from a finite output, about 7 away from 0.
+    A number at its bound would need an infinite output, so outputs of numbers with two bounds are
+    limited to about 7 and -7.
     """
     outputs: NDArray[np.float64] = np.array(flat, np.float64)
     for column, (low, high) in enumerate(layout.bounds, start=len(layout.sizes)):
@@ -113,7 +127,7 @@ def _at(value: Any, path: Sequence[str]) -> Any:
 
 
 def _value(part: ActionPart, flat: NDArray[Any], count: int | None) -> Any:
-    """Return the value of a part for its share of flat actions."""
+    """Return the value of a part of an action; ``flat`` has the entries of this part in flat actions."""
     dtype = np.dtype(part.dtype)
     if part.kind == "numbers":
         array = _in_type(part, flat, dtype)
@@ -125,7 +139,7 @@ def _value(part: ActionPart, flat: NDArray[Any], count: int | None) -> Any:
 
 
 def _in_type(part: ActionPart, numbers: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return numbers in the type of their Box; rounding takes none of them out of the bounds."""
+    """Convert numbers to the type of their Box, ``dtype``; clip them to its bounds after rounding."""
     info = np.finfo(dtype) if dtype.kind == "f" else np.iinfo(dtype)
     if dtype.kind != "f":
         numbers = np.rint(numbers)
@@ -140,7 +154,10 @@ def _in_type(part: ActionPart, numbers: NDArray[Any], dtype: np.dtype[Any]) -> N
 
 
 def _with_tuples(node: Any, path: tuple[str, ...], tuples: Set[tuple[str, ...]]) -> Any:
-    """Return nested mappings with those at the paths ``tuples`` replaced by tuples."""
+    """Return nested mappings, in which each mapping at one of the paths ``tuples`` becomes a tuple.
+
+    Such a mapping has the keys ``"0"``, ``"1"``, and so on. ``path`` is the path of ``node``.
+    """
     if not isinstance(node, dict):
         return node
     inner = {key: _with_tuples(value, (*path, key), tuples) for key, value in node.items()}
