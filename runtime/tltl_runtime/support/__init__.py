@@ -1,1 +1,1 @@
-"""Helpers that are independent of games: formats, processes, hashes."""
+"""Helpers that do not depend on any game: file formats, worker processes, hashes, and texts for messages."""

@@ -1,4 +1,4 @@
-"""Typed reading of the tables of TOML files; invalid values become diagnostics."""
+"""Read typed values from the tables of TOML files; a wrong value becomes a diagnostic."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ FARTHEST: Final = 1000.0
 
 
 class CheckedTable:
-    """A table that is read key by key.
+    """A TOML table whose keys are read one by one, each with a method for its type.
 
-    If a required key is missing or a value is wrong, the method that reads it adds a diagnostic to
-    ``log`` and returns a valid value in its place. ``description`` is the name of the table in
-    messages. After reading the last key, call :meth:`report_unknown_keys`.
+    If a required key is missing or a value is wrong, the method adds a diagnostic (TLT0803) to
+    ``log`` and returns a stand-in, such as the least valid number, so that reading can go on. If an
+    optional key is missing, the method returns ``default``. ``description`` is the name of the
+    table in messages. After reading the last key, call :meth:`report_unknown_keys`.
     """
 
     def __init__(self, entry: Entry, description: str, log: list[Diagnostic]) -> None:
@@ -39,7 +40,7 @@ class CheckedTable:
     def number(
         self, key: str, default: float = REQUIRED, *, low: float = -FARTHEST, high: float = FARTHEST, unit: str = "m"
     ) -> float:
-        """Read a finite number in [low, high]; ``unit`` is for the message."""
+        """Read a finite number in [low, high]; ``unit`` is the name of its unit in messages."""
         expected = f"a number from {low:g} to {high:g} {unit}".rstrip()
         return self._read(key, default, expected, lambda value: _is_number(value) and low <= value <= high, low, float)
 
@@ -78,13 +79,16 @@ class CheckedTable:
         )
 
     def points(self, key: str, least: int) -> tuple[Point, ...]:
-        """Read a list of ``least`` or more points."""
+        """Read a list of at least ``least`` points, each three finite coordinates in metres."""
         is_valid = lambda value: isinstance(value, list) and len(value) >= least and all(map(_is_point, value))  # noqa: E731
         convert = lambda value: tuple(map(_point, value))  # noqa: E731
         return self._read(key, REQUIRED, f"a list of {least} or more points [x, y, z] in metres", is_valid, (), convert)
 
     def table(self, key: str, *, needed: bool = True) -> CheckedTable | None:
-        """Read a table; return None if the key is missing or its value is not a table."""
+        """Read a table; return None if the key is missing or its value is not a table.
+
+        A missing key is an error only if ``needed``.
+        """
         entry = self.entries.get(key)
         value = self._read(key, REQUIRED if needed else {}, "a table", lambda v: isinstance(v, dict), None, lambda v: v)
         return CheckedTable(entry, f"`[{key}]`", self.log) if entry is not None and value is not None else None
@@ -105,10 +109,10 @@ class CheckedTable:
         return self.entries[key].label if key in self.entries else self.label
 
     def report_unknown_keys(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
-        """Report the keys that no method has read (TLT0802).
+        """Add a diagnostic (TLT0802) to ``log`` for each key that no method has read.
 
-        ``elsewhere`` maps keys of other tables to the names of those tables. If the table has one
-        of these keys, the help says where the key belongs.
+        ``elsewhere`` maps keys of other tables to the names of those tables. If this table has such
+        a key, the help says to which table the key belongs.
         """
         known = dict.fromkeys(self._read_keys)
         for key, entry in self.entries.items():
@@ -143,7 +147,7 @@ class CheckedTable:
 def wrong_value(entry: Entry, key: str, expected: str) -> Diagnostic:
     """Return the diagnostic TLT0803 for a value that has a wrong type or is out of range.
 
-    ``expected`` describes the valid values.
+    ``expected`` describes the valid values, such as ``a whole number from 1 to 9``.
     """
     help_ = f"expected {expected}"
     if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
@@ -164,7 +168,7 @@ def _is_point(value: object) -> bool:
 
 
 def _has_decimal_commas(value: object) -> bool:
-    """Whether a list looks like a point written with decimal commas: six whole numbers."""
+    """Whether a list looks like a point written with decimal commas: ``[6,5, 2,0, 0,0]`` has six whole numbers."""
     return isinstance(value, list) and len(value) == 6 and all(type(item) is int for item in value)
 
 

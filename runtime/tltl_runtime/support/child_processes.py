@@ -1,4 +1,4 @@
-"""The context of `multiprocessing` that starts worker processes."""
+"""The :mod:`multiprocessing` context that starts worker processes."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ from multiprocessing.context import ForkServerContext, SpawnContext
 
 
 def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext:
-    """Return the context of :mod:`multiprocessing` that starts workers.
+    """Return the :mod:`multiprocessing` context with which this process starts workers.
 
-    On Linux it is a fork server, which loads the modules ``preloaded`` once for all workers of this
-    process. A call after the first workers have started cannot change the modules any more. In
-    general, a forked process may hang, because it inherits the locks of all threads, but not the
+    On Linux, a fork server starts the workers. It loads the modules ``preloaded`` once for all of
+    them; calls after the first worker has started cannot change these modules any more. Workers
+    have the environment variables with which the fork server started. On other systems, each worker
+    is spawned, and ``preloaded`` is not used.
+
+    In general, a forked process may hang, because it inherits the locks of all threads, but not the
     threads. Here, forking is safe: the fork server computes nothing, and OpenBLAS ends its threads
-    before a fork. Workers have the environment variables with
-    which the fork server started.
+    before a fork.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")

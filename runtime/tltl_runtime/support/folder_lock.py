@@ -14,7 +14,7 @@ _LOCK: Final = ".lock"
 
 @contextmanager
 def lock_folder(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
-    """Lock a folder within this context; create the folder if it is missing.
+    """Lock a folder inside the ``with`` block; create the folder if it is missing.
 
     The operating system releases the lock when the process ends, even after a crash.
 

@@ -23,18 +23,25 @@ class LoadErrors:
     again: str
 
     def unreadable_error(self, name: str, why: str) -> TltlError:
-        """Return the error for a file ``name`` that is damaged or of another format.
+        """Return the error for a file that is damaged or of another format.
 
-        ``why`` is the reason.
+        ``name`` is the name of the file in the message, and ``why`` the reason.
         """
         return self._error(self.unreadable_code, f"`{name}` cannot be read as {self.article} {self.noun}: {why}")
 
     def broken_error(self, name: str, why: str) -> TltlError:
-        """Return the error for a file ``name`` with invalid content; ``why`` is the reason."""
+        """Return the error for a file with invalid content.
+
+        ``name`` is the name of the file in the message, and ``why`` the reason.
+        """
         return self._error(self.broken_code, f"`{name}` is a broken {self.noun}: {why}")
 
     def check_version(self, name: str, version: object, supported: int) -> None:
-        """Raise TltlError if ``version``, as read from the file ``name``, is not ``supported``."""
+        """Raise TltlError if the version in a file is not ``supported``.
+
+        ``version`` was read from the file and may have any type. ``name`` is the name of the file
+        in the message.
+        """
         if type(version) is int and version == supported:
             return
         help_ = "use a newer tltlc" if type(version) is int and version > supported else self.again

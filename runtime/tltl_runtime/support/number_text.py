@@ -15,7 +15,10 @@ _FEW: Final = 25
 
 
 def share(value: float, places: int = 2) -> str:
-    """Return a number in [0, 1] with ``places`` decimals; only exactly 0 and 1 are shown as 0 and 1."""
+    """Return a number in [0, 1] with ``places`` decimals; only exactly 0 and 1 are shown as 0 and 1.
+
+    With two decimals, for example, 0.999 becomes ``0.99``, and 0.001 becomes ``0.01``.
+    """
     text, least = f"{value:.{places}f}", 10.0**-places
     if value < 1.0 <= float(text):
         return f"{1.0 - least:.{places}f}"
@@ -23,17 +26,20 @@ def share(value: float, places: int = 2) -> str:
 
 
 def percent(value: float) -> str:
-    """Return a number in [0, 1] in percent; only exactly 0 and 1 are shown as 0% and 100%."""
+    """Return a number in [0, 1] in whole percent; only exactly 0 and 1 are shown as ``0%`` and ``100%``."""
     return f"{100.0 * float(share(value)):.0f}%"
 
 
 def percent_exactly(value: float) -> str:
-    """Return a number in [0, 1] that a user chose, in percent with up to six digits: ``85%``, ``99.9%``."""
+    """Return a number in [0, 1], such as a user's setting, in percent with up to six digits: ``99.9%``."""
     return f"{100.0 * value:g}%"
 
 
 def count_text(count: int, total: int, noun: str = "") -> str:
-    """Return a count out of a total, with the percentage if the total is above 25: ``121 of 300 episodes (40%)``."""
+    """Return a count out of a total, such as ``121 of 300 episodes (40%)`` or ``3 of 4``.
+
+    The percentage is left out if the total is at most 25, or the count is 0 or the total.
+    """
     text = f"{count} of {total}{' ' * bool(noun)}{noun}"
     return f"{text} ({percent(count / total)})" if total > _FEW and 0 < count < total else text
 
@@ -60,15 +66,16 @@ def duration(seconds: float) -> str:
 
 
 def short_list(names: Sequence[str], most: int) -> str:
-    """Return the first ``most`` names, separated by commas, and the number of names left out."""
+    """Return the first ``most`` names, and the number of names left out: ``a, b and 3 more``."""
     left_out = len(names) - most
     return ", ".join(names[:most]) + (f" and {left_out} more" if left_out > 0 else "")
 
 
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
-    """Return ``text`` after ``head``, wrapped at words. All its lines begin in one column.
+    """Return ``head`` and ``text``, with ``text`` wrapped in a column to the right of ``head``.
 
-    A word that is longer than the column stays whole, because users may copy it.
+    ``width`` is the length of a whole line. A word that is longer than the column stays whole,
+    because users may copy it.
     """
     lines = wrap(text, max(20, width - len(head)), break_long_words=False, break_on_hyphens=False) or [""]
     return f"\n{' ' * len(head)}".join((head + lines[0], *lines[1:]))

@@ -10,7 +10,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def silence() -> Iterator[None]:
-    """Suppress standard error within this context; without effect in a process that has no standard error."""
+    """Suppress standard error inside the ``with`` block.
+
+    Do nothing in a process that has no standard error.
+    """
     if sys.stderr is not None:
         sys.stderr.flush()
     try:

@@ -1,15 +1,17 @@
 """Convert records to JSON and back; the annotations of a record's fields determine its JSON.
 
-A record becomes an object with a key per field, a mapping with text keys an object, and a tuple a
-list. A text, number, bool or None stays the same, and so does a field annotated as ``Any``, which
-already contains JSON data.
+A record is an instance of a class with the decorator ``record``, which is like a frozen dataclass.
+A record becomes an object with a key for each field. A mapping with text keys becomes an object,
+and a tuple becomes a list. A text, number, bool or None stays the same. A field annotated as
+``Any`` must contain JSON data already, and stays the same, too.
 
-The class of a record may have an attribute ``json_inlined``. It maps the name of a field whose
-value is another record to names of fields of that inner record. In JSON, these inner fields are
-keys of the outer object, in place of an inner object. The inner fields must not have defaults.
+The class of a record may have an attribute ``json_inlined``, for a field whose value is another
+record. With ``{"size": ("width", "height")}``, the keys ``width`` and ``height`` of the inner
+record are keys of the outer object, which then has no key ``size``. The inner fields must not have
+defaults.
 
 The class may also have an attribute ``json_texts``, for fields that are texts in JSON. It maps the
-name of such a field to two functions: one returns the text of a value, the other parses it.
+name of such a field to two functions: the first converts a value to its text, the second parses it.
 """
 
 from __future__ import annotations
@@ -34,9 +36,11 @@ class RecordJsonError(ValueError):
 
 
 class _Misfit(Exception):
-    """Raised for a value that does not fit; ``problem`` follows the place of the value in the message.
+    """Raised for a value that does not fit its type.
 
-    ``place`` has the parts of the place, such as ``.name`` and ``[3]``, innermost first. Each caller adds its own part.
+    ``problem`` is the end of the message, such as " is 3, but a text was expected"; the place of
+    the value comes before it. ``place`` has the parts of the place, such as ``[3]`` and ``.name``,
+    innermost first. Each function that passes the exception on appends its part.
     """
 
     def __init__(self, problem: str) -> None:
@@ -46,7 +50,7 @@ class _Misfit(Exception):
 
 
 def to_json(value: object) -> Any:
-    """Return the JSON data, for ``json.dumps``, of a record, a tuple of records or a plain value."""
+    """Convert a record, a plain value, or a tuple or mapping of these to data for ``json.dumps``."""
     kind: Any = type(value)
     if kind in _PLAIN:
         return value
@@ -61,11 +65,13 @@ def to_json(value: object) -> Any:
 
 
 def from_json(kind: type[T], data: object, where: str, **known: object) -> T:
-    """Return the value of type ``kind`` that parsed JSON represents; ``where`` names it in messages.
+    """Convert parsed JSON to a value of type ``kind``; this is the inverse of :func:`to_json`.
 
-    ``kind`` is a record whose fields are records, tuples, mappings with text keys, ``Literal``
-    texts, plain types, ``Any`` or unions of these with None. A key may be missing if its field has
-    a default. Numbers must be finite. ``known`` are fields of the record that are not in the JSON.
+    ``kind`` is the class of a record, or another type that a field of a record may have: a tuple, a
+    mapping with text keys, a ``Literal`` of texts, a plain type, ``Any``, or a union of one of
+    these with None. A key may be missing if its field has a default. Numbers must be finite.
+    ``known`` are fields of the record that are not in the JSON. ``where`` is the name of the value
+    in messages.
 
     Raises:
         RecordJsonError: the JSON does not fit.
@@ -79,7 +85,7 @@ def from_json(kind: type[T], data: object, where: str, **known: object) -> T:
 
 @cache
 def _reader(kind: Any) -> _Read:
-    """Return the function that reads values of type ``kind``; it raises _Misfit."""
+    """Return a function that converts JSON data to ``kind``; it raises _Misfit if the data does not fit."""
     origin = get_origin(kind)
     if origin is Literal:
         return _literal_reader(get_args(kind))
@@ -126,12 +132,15 @@ def _read_float(data: object) -> object:
 
 
 def _fits(data: object) -> bool:
-    """Whether a plain value, if it is an integer, has at most 64 bits."""
+    """Whether an integer has at most 64 bits; True for a value of another type."""
     return not isinstance(data, int) or -(2**63) <= data < 2**63
 
 
 def _read_any(data: object) -> object:
-    """Return JSON data of any kind. Raise _Misfit for numbers that are not finite: ``json.loads`` accepts them."""
+    """Return JSON data of any kind as it is.
+
+    Raise _Misfit for numbers that are not finite, because ``json.loads`` accepts them.
+    """
     if isinstance(data, dict):
         return _read_mapping(_read_any, data)
     if isinstance(data, list):
@@ -214,21 +223,22 @@ def _read_record(kind: Any, data: object, known: Mapping[str, object]) -> object
 
 
 def _inlined(kind: type) -> Mapping[str, tuple[str, ...]]:
-    """Return the inlined fields of a record's class, each with the keys that replace it in JSON."""
+    """Return the fields of a record's class that are inlined, each with the keys that replace it in JSON."""
     inlined: Mapping[str, tuple[str, ...]] = getattr(kind, "json_inlined", {})
     return inlined
 
 
 def _texts(kind: type) -> Mapping[str, tuple[Callable[[Any], str], Callable[[str], object]]]:
-    """Return the fields that are texts in JSON, each with the function that writes it and the one that parses it."""
+    """Return the fields that are texts in JSON, each with a function to its text and one that parses the text."""
     texts: Mapping[str, tuple[Callable[[Any], str], Callable[[str], object]]] = getattr(kind, "json_texts", {})
     return texts
 
 
 def _gather_inlined(kind: Any, values: dict[str, object]) -> list[str]:
-    """Replace in ``values`` the keys that stand for an inlined field by the inner record.
+    """For each inlined field, replace its keys in ``values`` by one record under the field's name.
 
-    Return the keys that are missing. An inlined field with missing keys gets the value None.
+    For example, ``width`` and ``height`` become ``size``, a record with these two fields. Return
+    the keys that are missing; a field with missing keys gets the value None.
     """
     missing = []
     for name, keys in _inlined(kind).items():
@@ -253,7 +263,10 @@ def _list(data: object) -> list[object]:
 
 @cache
 def _getters(kind: Any) -> tuple[tuple[str, Callable[[object], object]], ...] | None:
-    """Return the keys of a record in JSON, each with the function that gets its value; None for other types."""
+    """Return the keys of a record in JSON, each with a function that gets its value from a record.
+
+    Return None if ``kind`` is not the class of a record.
+    """
     names = getattr(kind, "__match_args__", None)
     if names is None:
         return None
@@ -277,7 +290,7 @@ def _hints(kind: Any) -> Mapping[str, Any]:
 
 @cache
 def _field_readers(kind: Any) -> Mapping[str, _Read]:
-    """Return the functions that read the values of a record's keys in JSON, in order."""
+    """Return for each key of a record in JSON a function that converts its value, in the order of fields."""
     hints, inlined, texts = _hints(kind), _inlined(kind), _texts(kind)
     readers: dict[str, _Read] = {}
     for name in kind.__match_args__:

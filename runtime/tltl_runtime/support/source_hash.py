@@ -1,4 +1,4 @@
-"""A hash of the source code: it changes with the code, even if the version number stays the same."""
+"""A hash of the source code of tltlc, which changes with the code even between two versions."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _PACKAGES: Final = ("tltlc", "tltl_runtime")
 
 @lru_cache(maxsize=1)
 def sources_hash() -> str:
-    """Return the SHA-256, in hexadecimal, of the modules of tltlc and tltl_runtime.
+    """Return the SHA-256, in hexadecimal, of all modules of tltlc and tltl_runtime.
 
-    It covers the names and contents of all modules. Line endings do not matter. The hash is
-    computed once per process, so that it describes the code that the process has loaded.
+    The hash covers the names and the contents of the modules; line endings do not matter. It is
+    computed once per process, because the files may change after the process has loaded them.
     """
     digest = hashlib.sha256()
     for package in _PACKAGES:

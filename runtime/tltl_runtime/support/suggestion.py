@@ -13,13 +13,14 @@ With thousands of diagnostics, the search for similar names takes too long.
 """
 
 _LONGEST: Final = 100
-"""Names longer than this, in characters, get no similar name, because the search takes too long."""
+"""For a name longer than this, in characters, no similar name is searched, because that takes too long."""
 
 
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
-    """Return a hint for an unknown name: a similar name, or else all ``known`` names.
+    """Return a hint for an unknown name, with a similar name of ``known``, or else with all of them.
 
-    If ``listed`` is given, the hint has this text in place of the list of all names.
+    Examples are "did you mean `door`?" and "there are: `door`, `key`". ``listed``, if given,
+    replaces the list of all names.
     """
     names = list(known)
     close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []

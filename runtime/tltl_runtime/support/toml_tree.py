@@ -1,7 +1,7 @@
 """Read TOML so that every value has a label: its file and the place of its key in this file.
 
-An overlay is a file that changes values of a level. A diagnostic about a changed value can point
-into the overlay's file.
+Values may come from several files: an overlay is a file that changes values of a level. Thanks to
+the labels, a diagnostic about a changed value points into the overlay.
 """
 
 from __future__ import annotations
@@ -37,12 +37,13 @@ Tree = dict[str, Entry]
 
 
 def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> Tree:
-    """Return the tree of a TOML text.
+    """Parse a TOML text; return its top-level table, with a label for every value.
 
-    Values inside an inline table have the span of the key before the table.
+    The label of a value inside an inline table is that of the key before the table.
 
     Raises:
-        TltlError: ``code``, with the help ``help_``: the text is not TOML.
+        TltlError: the error ``code``, with the help ``help_``, if the text is not TOML; TLT0006 if
+            it nests too deep or has too many values.
     """
     data = fileio.parse_toml(source, code, help_)
     return _tree(data, (), _key_spans(source.text), Label(source, Span(0, 0)))
@@ -67,7 +68,10 @@ def _tree(data: dict[str, Any], path: tuple[str | int, ...], spans: dict[Any, Sp
 
 
 def _key_spans(text: str) -> dict[tuple[str | int, ...], Span]:
-    """Find the spans of the keys and table headers in a text that is valid TOML."""
+    """Return the spans of the keys and table headers in a valid TOML text, by path.
+
+    A path has keys and, in lists of tables, indices: ``("room", 0, "size")``.
+    """
     spans: dict[tuple[str | int, ...], Span] = {}
     counts: dict[tuple[str | int, ...], int] = {}
     table: tuple[str | int, ...] = ()
@@ -95,10 +99,10 @@ def _key_spans(text: str) -> dict[tuple[str | int, ...], Span]:
 def _dotted_path(
     dotted: str, around: tuple[str | int, ...], counts: dict[tuple[str | int, ...], int]
 ) -> tuple[str | int, ...]:
-    """Return the path of a dotted key, such as ``a.b``, that stands in the table at path ``around``.
+    """Return the path of a dotted key in the table at path ``around``: ``a.b`` -> ``("a", "b")``.
 
-    If a key in the path names a list of tables, the path continues in the last table of this list;
-    ``counts`` has the index of that table.
+    If a key names a list of tables, the path continues in the last table of this list so far:
+    ``a.b`` -> ``("a", 2, "b")``. ``counts`` has the index of this table, by the path of the list.
     """
     path = around
     keys = re.findall(_KEY, dotted)
@@ -115,7 +119,7 @@ def _end(pattern: re.Pattern[str], text: str, position: int) -> int:
 
 
 def _value_end(text: str, position: int) -> int:
-    """Return the end of the line on which the value at ``position`` ends."""
+    """Return the position after the line on which the value at ``position`` ends."""
     depth = 0
     while position < len(text):
         part = _VALUE_PART.match(text, position)

@@ -1,4 +1,4 @@
-"""Make sure, before something long begins, that its files can be written."""
+"""Check that files can be written into a folder, before something long begins."""
 
 from __future__ import annotations
 
