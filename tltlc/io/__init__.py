@@ -1,1 +1,1 @@
-"""Files, limits and the project file: all access to the operating system."""
+"""All access to the operating system: files, their limits, the project file, and limits of time and memory."""

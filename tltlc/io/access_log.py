@@ -1,4 +1,4 @@
-"""Record which files are looked up and read, to see later whether a result is still valid."""
+"""Record which files a computation looks up and reads, to see later whether its result is still valid."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from contextlib import contextmanager, suppress
 from typing import BinaryIO, Final, Union
 
 Stamp = Union[tuple[int, ...], None]
-"""The state of a path, to see later whether it has changed: the file's time of change, size and inode number.
+"""The state of a file, to see later whether it has changed: its time of change, size and inode number.
 
-For a folder, a device or a pipe, it is only the kind. It is None if nothing is at the path.
+For a folder, a device or a pipe, the stamp has only the kind. It is None if nothing is at the path.
 """
 
 
 class AccessLog(dict[str, Stamp]):
-    """Maps each path that was looked up or read to its stamp (such as time and size) just before.
+    """Maps each path that was looked up or read to its stamp just before the first access.
 
+    The stamp is the state of the file (:func:`stamp`): time of change, size and inode number.
     ``read`` has the device and inode numbers of the regular files that were read.
     """
 
@@ -34,8 +35,9 @@ _active_logs: Final[list[AccessLog]] = []
 def access_log() -> Iterator[AccessLog]:
     """Yield a log of the paths that are looked up or read inside the ``with`` block.
 
-    The log maps each path to its stamp just before the first access. Results that were computed
-    inside the block stay valid as long as :func:`stamp` returns the same for each of these paths.
+    The log maps each path to its stamp (time of change, size and inode number) just before the
+    first access. A result that was computed inside the block stays valid as long as :func:`stamp`
+    returns the same for each of these paths.
     """
     log = AccessLog()
     _active_logs.append(log)
@@ -60,7 +62,10 @@ def log_read(path: str | os.PathLike[str]) -> None:
 
 
 def log_stream_read(stream: BinaryIO) -> None:
-    """Record in all active access logs that a stream is about to be read, if it comes from a file."""
+    """Record in all active access logs that a stream is about to be read.
+
+    Do nothing if the stream is not from a regular file.
+    """
     with suppress(OSError, ValueError):
         _log_identity(stream.fileno())
 
@@ -68,9 +73,10 @@ def log_stream_read(stream: BinaryIO) -> None:
 def was_read(path: str | os.PathLike[str]) -> bool:
     """Whether the file at a path was read, under any name, since the innermost :func:`access_log` began.
 
-    Files are compared by their inode numbers. A command that watches files begins a new log in each
-    round, because the system reuses inode numbers: after an editor has replaced a source file, an
-    output may get the number of the old file.
+    The result is False outside an :func:`access_log`. Files are compared by their inode numbers. A
+    command that watches files begins a new log in each round, because the system reuses inode
+    numbers: after an editor has replaced a source file, an output may get the number of the old
+    file.
     """
     # Devices and pipes do not count, because writing to them replaces nothing.
     return bool(_active_logs) and _identity(path) in _active_logs[-1].read
@@ -90,8 +96,8 @@ def descriptor_of(path: str | os.PathLike[str]) -> int | None:
 def stamp(path: str) -> Stamp:
     """Return the current stamp of a path: the file's time of change, size and inode number.
 
-    Another stamp later means that the file has changed. For a folder, a device or a pipe, the stamp
-    is only the kind; if nothing is at the path, it is None.
+    If a later stamp differs, the file has changed. For a folder, a device or a pipe, the stamp has
+    only the kind. It is None if nothing is at the path.
     """
     try:
         status = os.stat(path)  # noqa: PTH116

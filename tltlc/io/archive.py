@@ -26,11 +26,11 @@ With an extension such as `.txt`, they are still the device.
 
 @record
 class Archive:
-    """The texts for messages about an archive.
+    """Texts for error messages about an archive.
 
-    ``name`` is the name of the archive. ``damaged_help`` is the advice for an archive that was
-    damaged or made by hand, ``elsewhere_help`` the advice for a valid archive whose files this
-    system cannot store.
+    ``name`` is the name of the archive. ``damaged_help`` is the help if the archive is damaged or
+    was made by hand, ``elsewhere_help`` the help if the archive is valid but this system cannot
+    store its files.
     """
 
     name: str
@@ -39,10 +39,10 @@ class Archive:
 
 
 def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -> None:
-    """Write files into a folder that exists.
+    """Write the files of an archive into a folder that exists.
 
-    ``files`` contains pairs of a path, relative to the folder and with ``/`` between its parts, and
-    the content of the file.
+    ``files`` are pairs of a path, relative to the folder and with ``/`` between its parts, and the
+    content of the file.
 
     Raises:
         TltlError: TLT0009 if a path leads out of the folder, is too long, or is not valid on this
@@ -132,7 +132,7 @@ def _clash(first: str, second: str) -> bool:
 
 
 def _fold_case(name: str) -> str:
-    """Return a key that is the same for all names which some file system treats as equal."""
+    """Return a key that is equal for two names if any file system treats them as one, such as ``A`` and ``a``."""
     return normalize("NFC", normalize("NFD", name).casefold())
 
 

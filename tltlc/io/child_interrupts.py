@@ -1,8 +1,8 @@
 """Handle Ctrl-C, which a terminal sends to this process and to its child processes.
 
-Some children should not receive it, so that only this process handles it
+Some children should not receive Ctrl-C, so that only this process handles it
 (:func:`block_interrupts`). Other children receive it, and may end before this process handles it.
-The exit status of such a child must not count as a failure, but as an interrupt of this process
+The exit status of such a child must count as an interrupt of this process, not as a failure
 (:func:`raise_if_interrupted`).
 """
 
@@ -30,8 +30,8 @@ one is that of Windows. 129, a shell's status for SIGHUP, is left out, because g
 def raise_if_interrupted(returncode: int) -> None:
     """Raise KeyboardInterrupt if SIGINT, SIGTERM or SIGHUP has ended a child process.
 
-    If this process has a handler for the signal, the handler runs first. It can then end this
-    process with the exit status for the signal.
+    ``returncode`` is the exit status of the child. If this process has a handler for the signal,
+    the handler runs first, and may end this process with the exit status for the signal.
     """
     number = _BY_STATUS.get(returncode)
     if number is None:
@@ -43,11 +43,11 @@ def raise_if_interrupted(returncode: int) -> None:
 
 @contextmanager
 def block_interrupts() -> Iterator[None]:
-    """Block SIGINT within this context, and in all processes that are started there.
+    """Block SIGINT inside the ``with`` block, and in all processes that are started there.
 
-    A child process keeps SIGINT blocked, even while it imports its modules. This process receives a
-    pending SIGINT at the end of the context. Windows has no signal masks: there, a child receives
-    Ctrl-C until it ignores SIGINT itself.
+    A process started there keeps SIGINT blocked after the block, too. If SIGINT is sent to this
+    process during the block, it arrives at the end of the block. Windows has no signal masks:
+    there, a child receives Ctrl-C until it ignores SIGINT itself.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

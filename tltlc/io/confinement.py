@@ -1,4 +1,4 @@
-"""Allow reading only in some folders."""
+"""Allow a computation to read files only in certain folders."""
 
 from __future__ import annotations
 
@@ -47,7 +47,10 @@ def may_read(path: str | os.PathLike[str]) -> bool:
 
 
 def outside_diagnostic(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
-    """Return the error TLT0777 for a file or folder that :func:`confine_reads` forbids to read."""
+    """Return the error TLT0777 for a file or folder that :func:`confine_reads` forbids to read.
+
+    ``name`` is its name in the message, and ``labels`` are the places in a source that name it.
+    """
     title = f"`{name}` is outside the folder of the playground, so it is not read"
     return Diagnostic(
         "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"

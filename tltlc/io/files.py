@@ -49,8 +49,8 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 def exists(path: str | os.PathLike[str]) -> bool:
     """Whether something exists at a path.
 
-    Returns False if the system rejects the name or denies access, or if :func:`~tltlc.io.confinement.confine_reads`
-    forbids access.
+    The result is False if the system rejects the name or denies access, or if
+    :func:`~tltlc.io.confinement.confine_reads` forbids access.
     """
     if not may_read(path):
         return False
@@ -60,7 +60,11 @@ def exists(path: str | os.PathLike[str]) -> bool:
 
 
 def is_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a regular file exists at a path, or an unsaved text; devices and pipes do not count."""
+    """Whether there is a regular file at a path, or an unsaved text of an editor for it.
+
+    Devices and pipes do not count. The result is False if
+    :func:`~tltlc.io.confinement.confine_reads` forbids access.
+    """
     if not may_read(path):
         return False
     log_lookup(path)
@@ -68,10 +72,10 @@ def is_file(path: str | os.PathLike[str]) -> bool:
 
 
 def may_be_file(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is not a pipe, device, socket or folder, so that a command may try to read it.
+    """Whether a command may try to read a path: it is a regular file, or nothing is there.
 
-    Links are followed. The result is True if nothing is there, as for a broken link, so that
-    reading it reports the problem.
+    The result is False for a pipe, a device, a socket or a folder. Links are followed. If nothing
+    is there, as for a broken link, reading the path reports the problem.
     """
     try:
         return stat.S_ISREG(os.stat(path).st_mode)  # noqa: PTH116
@@ -80,7 +84,10 @@ def may_be_file(path: str | os.PathLike[str]) -> bool:
 
 
 def is_dir(path: str | os.PathLike[str]) -> bool:
-    """Whether a folder exists at a path."""
+    """Whether a folder exists at a path.
+
+    The result is False if :func:`~tltlc.io.confinement.confine_reads` forbids access.
+    """
     if not may_read(path):
         return False
     log_lookup(path)
@@ -90,7 +97,7 @@ def is_dir(path: str | os.PathLike[str]) -> bool:
 def walk(
     folder: str | os.PathLike[str], onerror: Callable[[OSError], object] | None = None
 ) -> Iterator[tuple[str, list[str], list[str]]]:
-    """Yield what :func:`os.walk` yields from the top down, for folders of any depth.
+    """Yield what :func:`os.walk` yields from the top down, for folders that are nested to any depth.
 
     Before Python 3.12, :func:`os.walk` recurses once per level and may end in a RecursionError.
     """
@@ -113,10 +120,11 @@ def walk(
 
 
 def files_below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
-    """Return the files with these endings in and below a folder, relative to it and sorted.
+    """Return the files with one of these endings in a folder and its subfolders.
 
-    Hidden files are skipped. Pipes and devices are skipped too, because reading one could block
-    forever. Raises TltlError with TLT0001 for a folder that cannot be read.
+    The paths are relative to ``folder``, and sorted. Hidden files and folders are skipped. Pipes
+    and devices are skipped, too, because reading one could block forever. Raises TltlError with
+    TLT0001 for a folder that cannot be read.
     """
     from pathlib import Path
 
@@ -149,10 +157,11 @@ def read_source(
     max_bytes: int = MAX_SOURCE_BYTES,
     kind: SourceKind = "file",
 ) -> SourceFile:
-    """Return the text of a file.
+    """Return the text of a file, with its name.
 
-    ``name`` is the name of the file in messages, by default its path. A file of the standard library
-    has its own ``kind``, and its path as its location.
+    ``name`` is the name of the file in messages, by default its path. ``kind`` is the kind of the
+    result. If it is ``standard library``, the result also has the path of the file, as its
+    location.
 
     Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002 if it is not
     UTF-8, TLT0003 if it is binary, TLT0004 if it is larger than ``max_bytes``, TLT0777 if
@@ -196,11 +205,11 @@ def decode(
 ) -> SourceFile:
     """Decode the bytes of a file, which must be UTF-8, with or without a byte order mark.
 
-    ``name`` is the name of the file in messages; ``kind`` and ``location`` are those of the source
-    that is returned.
+    ``name`` is the name of the file in messages. ``kind`` and ``location`` are stored in the
+    result.
 
-    Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than
-    ``max_bytes``.
+    Errors (:class:`TltlError`): TLT0002 if the data is not UTF-8, TLT0003 if it is binary, TLT0004
+    if it is larger than ``max_bytes``.
     """
     if len(data) > max_bytes:
         title = f"`{name}` is larger than {max_bytes >> 20} MiB"
@@ -229,7 +238,7 @@ def reading_error(name: str, error: OSError | ValueError) -> TltlError:
 
 
 def reason(error: OSError | ValueError) -> str:
-    """Return the reason, in words, for which the system refused to open, create or write a file."""
+    """Say in words why the system refused to open, create or write a file: ``permission denied``."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
@@ -246,7 +255,7 @@ def reason(error: OSError | ValueError) -> str:
 
 
 def _missing_file_help(name: str) -> str | None:
-    """Return advice for a missing file, such as a similar name in its folder; None if there is no advice."""
+    """Return advice for a missing file, such as a similar name in its folder; None if nothing is similar."""
     from difflib import get_close_matches
 
     folder, file = os.path.split(name)
@@ -260,10 +269,10 @@ def _missing_file_help(name: str) -> str | None:
 
 
 def _not_utf8(data: bytes, source: SourceFile, start: int) -> TltlError:
-    """Return the error for text that is not UTF-8, with a label at the first invalid byte.
+    """Return the error TLT0002 for text that is not UTF-8, with a label at the first invalid byte.
 
-    The text of ``source`` has U+FFFD in place of the invalid bytes. ``start`` is the offset of the
-    first one in ``data``.
+    ``start`` is the offset of this byte in ``data``. ``source`` has the text of ``data``, with
+    U+FFFD in place of invalid bytes.
     """
     offset = len(data[:start].decode())
     label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is not valid UTF-8")

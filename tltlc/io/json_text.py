@@ -22,8 +22,9 @@ class JsonLimitError(ValueError):
 def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
     """Return the value of a JSON text; ``parse_constant`` is as in :func:`json.loads`.
 
-    An integer of more than 64 bits becomes a float, as in most readers of JSON. A larger Python
-    integer could cause an error later, and Python refuses to read one of thousands of digits.
+    An integer of more than 64 bits becomes a float, as in most readers of JSON. As a Python
+    integer, it could cause an error later, and Python refuses to read integers of thousands of
+    digits.
 
     Raises:
         JsonLimitError: the text nests deeper, or has more values, than ``limit`` allows.
@@ -57,9 +58,9 @@ def load(path: Path, limit: Limit) -> Any:
 
 
 def first_non_finite(value: Any) -> str | None:
-    """Return the first number in a value that is not finite, as ``NaN`` or ``-Infinity``; None if all are finite.
+    """Return the first NaN or infinity in parsed JSON, as text such as ``-Infinity``; None if there is none.
 
-    Does not recurse.
+    The function does not recurse, so the value may be nested to any depth.
     """
     pending = [value]
     while pending:
@@ -75,7 +76,10 @@ def first_non_finite(value: Any) -> str | None:
 
 
 def _nests_deeper(value: Any, depth: int) -> bool:
-    """Whether lists and objects nest more than ``depth`` levels deep; does not recurse."""
+    """Whether lists and objects nest more than ``depth`` levels deep.
+
+    The function does not recurse, so the value may be nested to any depth.
+    """
     level = [value] if isinstance(value, (dict, list)) else []
     for _ in range(depth):
         if not level:
@@ -86,7 +90,7 @@ def _nests_deeper(value: Any, depth: int) -> bool:
 
 
 def _whole_number(digits: str) -> int | float:
-    """Return an int, or a float if the number needs more than 64 bits (infinite if it is too large for a float)."""
+    """Return the integer, or a float if it needs more than 64 bits; the float may be infinite."""
     if len(digits) <= _MOST_DIGITS and (number := int(digits)) in _WHOLE_NUMBERS:
         return number
     return float(digits)

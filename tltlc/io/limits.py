@@ -18,12 +18,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 
 @record
 class Limit:
-    """The limits of one kind of input.
+    """The limits of one kind of input, such as a level or a trace.
 
-    ``size`` is in bytes, as stored on disk. ``depth`` is the number of levels of nesting.
-    ``values`` is the number of values, keys and separators, unless the description of the limit
-    names other things. ``unpacked`` is in bytes, after decompression. None means that there is no
-    limit of this kind.
+    ``size`` is the greatest number of bytes, as stored on disk, and ``unpacked`` after
+    decompression. ``depth`` is the greatest number of nested levels. ``values`` is the greatest
+    number of values, keys and separators, or of other things that the description of the limit
+    names. None means that there is no such limit.
     """
 
     size: int
@@ -51,7 +51,7 @@ class Connections:
 
 @record
 class ProcessLimit:
-    """The most memory (bytes) and processor time (seconds, ``work_s``) that a process may use."""
+    """The most memory, in bytes, and processor time ``work_s``, in seconds, that a process may use."""
 
     memory: int
     work_s: int
@@ -62,8 +62,8 @@ class ArithmeticLimit:
     """The limits of an arithmetic expression.
 
     ``depth`` is the greatest depth of nested operators, functions, conditions and ``when``.
-    ``compared`` is the greatest depth of an atom that compares two expressions. ``parts`` is the
-    most cases of a ``when``, and the most arguments of a function.
+    ``compared`` is the greatest depth of an atom that compares two expressions, such as ``a < b``.
+    ``parts`` is the greatest number of cases of a ``when``, and of arguments of a function.
     """
 
     depth: int
@@ -72,7 +72,7 @@ class ArithmeticLimit:
 
 
 ARITHMETIC: Final = ArithmeticLimit(depth=100, compared=110, parts=500)
-"""The expression of an atom.
+"""The limits of the expression of an atom.
 
 Python's compiler can handle this depth, and so can recursive functions over expressions.
 """
@@ -81,7 +81,7 @@ SOURCE: Final = Limit(size=1 << 20)
 """A source text. The grammar limits the number of tokens and the nesting, too."""
 
 IMPORTED: Final = Limit(size=1 << 24, values=100_000)
-"""All imports of a source text together. ``values`` counts the names that they define.
+"""All imports of a source text together. ``values`` counts the names that the imports define.
 
 ``size`` counts the characters of the names that imports with `as` define. A file that is imported
 twice counts twice.
@@ -232,7 +232,7 @@ WORK: Final[Mapping[str, int]] = {
     "mined sequences": 800_000,
     "mined candidates": 50_000,
 }
-"""Maps each computation that could take very long to the most that it may count: steps, states, edges and so on."""
+"""Maps each computation that could take very long to its limit: how many steps, states or edges it may count."""
 
 
 def too_deep_error(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:

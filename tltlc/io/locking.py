@@ -6,7 +6,9 @@ from typing import IO
 
 
 def try_lock(file: IO[bytes]) -> bool:
-    """Lock an open file until it is closed; return False if another process has locked it.
+    """Lock an open file until it is closed; return whether this succeeded.
+
+    Return False at once if another process has locked the file.
 
     Raises:
         OSError: the file system does not support locks.

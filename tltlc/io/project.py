@@ -47,10 +47,11 @@ _STYLE_KEYS: Final = ("notation", "formatting")
 class Project:
     """The settings of a project file.
 
-    ``libraries`` are the folders in which imports are searched. ``targets`` is empty if the file
-    does not set them. ``lint`` maps each code of a diagnostic to one of the :data:`LINT_LEVELS`.
-    ``notation`` is the notation of formulas in pictures, and ``formatting`` the style of
-    ``tltlc fmt``. ``game`` is the path of the game file; None if the project names none.
+    ``libraries`` are the folders in which imports are searched. ``targets`` are the formats that
+    ``tltlc compile`` writes by default, empty if the file does not set them. ``lint`` maps codes of
+    diagnostics, such as ``TLT0419``, to one of the :data:`LINT_LEVELS`. ``notation`` is the
+    notation of formulas in pictures, and ``formatting`` the style of ``tltlc fmt``. ``game`` is the
+    path of the game file; None if the project names none.
     """
 
     libraries: tuple[Path, ...] = ()
@@ -61,9 +62,9 @@ class Project:
     game: Path | None = None
 
     def with_lint_levels(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return the diagnostics with the severities that ``lint`` sets.
+        """Return the diagnostics with the severities that ``lint`` sets for their codes.
 
-        Diagnostics with the level ``allow`` are left out.
+        Diagnostics whose code has the level ``allow`` are left out.
         """
         kept = [diagnostic for diagnostic in diagnostics if self.lint.get(diagnostic.code) != "allow"]
         return tuple(
@@ -72,7 +73,7 @@ class Project:
 
     @contextmanager
     def apply_lint_levels(self) -> Iterator[None]:
-        """Apply :meth:`with_lint_levels` to the diagnostics of a :class:`TltlError` from the ``with`` block."""
+        """If the ``with`` block raises a :class:`TltlError`, apply :meth:`with_lint_levels` to its diagnostics."""
         try:
             yield
         except TltlError as error:
@@ -82,9 +83,10 @@ class Project:
 def project_for(path: str) -> Project:
     """Return the settings for a source file, from the nearest project file in its folder or above it.
 
-    For standard input (``-``), the search starts in the current folder. If ``path`` is relative,
-    the paths of libraries and of the game in the current folder are relative, too, so that messages show both in
-    the same form. Errors are those of :func:`read_project`.
+    For standard input (``-``), the search starts in the current folder. Without a project file, all
+    settings have their defaults. If ``path`` is relative, libraries and the game inside the current
+    folder get relative paths, too, so that messages show all paths in the same form. Errors are
+    those of :func:`read_project`.
     """
     try:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
@@ -103,7 +105,7 @@ def project_for(path: str) -> Project:
 def project_file(folder: Path) -> Path | None:
     """Return the path of the project file in a folder, or else in the nearest folder above it.
 
-    ``folder`` must be an absolute path. Return None if no folder has a project file.
+    ``folder`` must be an absolute path. Return None if none of these folders has a project file.
     """
     files = (parent / FILE_NAME for parent in (folder, *folder.parents))
     # A broken link counts, so that reading it reports the problem.
@@ -115,8 +117,9 @@ def read_project(path: Path) -> Project:
 
     Errors (:class:`TltlError`): those of :func:`tltlc.io.files.read_source`; TLT0001 if ``path`` is
     not a file; TLT0701 if the file is not TOML. If it is TOML, all its errors are raised together:
-    TLT0702 for each unknown key, TLT0703 for each wrong value, and TLT0777 for each library, and a
-    game, that :func:`tltlc.io.confinement.confine_reads` forbids to read.
+    TLT0702 for each unknown key; TLT0703 for each wrong value, such as a folder that does not
+    exist; TLT0777 for each library or game that :func:`tltlc.io.confinement.confine_reads` forbids
+    to read.
     """
     from tltlc.io.toml_text import parse
 
@@ -169,7 +172,11 @@ def _unknown_keys(table: dict[str, Any], keys: tuple[str, ...], source: SourceFi
 
 
 def _game(name: object, folder: Path, source: SourceFile, errors: list[Diagnostic]) -> Path | None:
-    """Return the path of the game file; append an error to ``errors`` if it cannot be one."""
+    """Return the path of the game file ``name``; None if ``name`` is None or not the name of a game file.
+
+    ``name`` is the value of the key ``game``. If it is wrong, or the file does not exist or may not
+    be read, append an error to ``errors``.
+    """
     if name is None:
         return None
     if not isinstance(name, str) or not name.endswith(GAME_SUFFIX):
@@ -188,7 +195,10 @@ def _game(name: object, folder: Path, source: SourceFile, errors: list[Diagnosti
 
 
 def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) -> dict[str, str]:
-    """Return the level of each code in the table ``lint``; append the errors in the table to ``errors``."""
+    """Return the level of each code in the table ``lint``: ``{"TLT0419": "allow"}``.
+
+    Append an error to ``errors`` for each key or value that is wrong.
+    """
     if not isinstance(table, dict):
         errors.append(_wrong_value(source, "lint", "a table, e.g. `[lint]`", table))
         return {}
@@ -209,7 +219,7 @@ def _lint_levels(table: object, source: SourceFile, errors: list[Diagnostic]) ->
 
 
 def _is_lint_code(text: str) -> bool:
-    """Whether the text is the code of a lint diagnostic."""
+    """Whether a text is the code of a diagnostic of ``tltlc lint``, such as ``TLT0419``."""
     from tltlc.diagnostics.code_pages import codes
 
     return text.startswith("TLT04") and text in codes()
@@ -249,7 +259,7 @@ def _key_labels(source: SourceFile, key: str) -> tuple[Label, ...]:
 
 @lru_cache(maxsize=1)
 def _first_words(text: str) -> Mapping[str, Span]:
-    """Return the words and quoted texts that begin a line, each with the span of its first occurrence.
+    """Return the words and quoted texts that begin a line, each with its first span at such a place.
 
     A bracket may stand before the word, as in ``[lint]``.
     """
@@ -266,7 +276,7 @@ def _relative_path(path: Path) -> Path:
 
 
 def _display_path(path: Path) -> str:
-    """Return a path as text, relative to the current folder if it is inside this folder."""
+    """Return a path as text, relative to the current folder if the path is inside that folder."""
     try:
         return str(path.relative_to(Path.cwd()))
     except ValueError:

@@ -1,10 +1,10 @@
 """Limit the processor time and the memory of a command.
 
-This stops a command that takes too much time or memory although its input exceeds none of the
-limits in :mod:`tltlc.io.limits`. The limits there count bytes and steps, so they give the same
-result on every machine. The limits of this module depend on the machine, so they are far above what
-any ordinary file needs. They apply only to the commands of tltlc: a program that imports tltlc keeps
-its own signal handlers and limits.
+The limits in :mod:`tltlc.io.limits` count bytes and steps, so they give the same result on every
+machine. This module stops a command that takes too much time or memory although its input exceeds
+none of those limits. Its own limits depend on the machine, so they are far above what any ordinary
+file needs. They apply only to the commands of tltlc: a program that imports tltlc keeps its own
+signal handlers and limits.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ The list is empty if the process runs no command.
 """
 
 _active: list[bool] = []
-"""Not empty inside a ``with`` block of :func:`resource_limits`."""
+"""Has an entry inside a ``with`` block of :func:`resource_limits`, and is empty elsewhere."""
 
 
 class OutOfTimeError(BaseException):
@@ -45,9 +45,9 @@ class OutOfTimeError(BaseException):
 
 
 def permit(process: ProcessLimit) -> None:
-    """Set the memory and the processor time to which :func:`resource_limits` limits this process.
+    """Set how much memory and processor time :func:`resource_limits` allows this process.
 
-    A limit of 0 means that there is no limit.
+    A value of 0 means that there is no limit.
     """
     _command_limits[:] = [process]
 
@@ -56,9 +56,9 @@ def permit(process: ProcessLimit) -> None:
 def resource_limits() -> Iterator[None]:
     """Limit the processor time and the memory of the ``with`` block to what :func:`permit` has set.
 
-    If the block uses more, OutOfTimeError or MemoryError is raised in it. Does nothing inside
-    another ``with`` block of this function, outside the main thread, or without a call of
-    :func:`permit`.
+    If the block uses more, OutOfTimeError or MemoryError is raised in it. The function does nothing
+    if :func:`permit` was not called, outside the main thread, and inside another of its ``with``
+    blocks.
     """
     if not _command_limits or _active or current_thread() is not main_thread():
         # Only the main thread receives signals, and an outer block has set the limits already.
@@ -73,10 +73,10 @@ def resource_limits() -> Iterator[None]:
 
 
 def limit(name: str, most: int) -> None:
-    """Set a resource limit of this process. The process cannot raise the limit again.
+    """Set a resource limit of this process to ``most``, or to the hard limit if that is lower.
 
-    ``name`` is a name in the module :mod:`resource`, such as ``RLIMIT_AS``. Does nothing if the
-    system does not support the limit.
+    The process cannot raise the limit again. ``name`` is a name in the module :mod:`resource`, such
+    as ``RLIMIT_AS``. Do nothing if the system does not support the limit.
     """
     # Windows has no `resource` module, and other systems refuse some limits.
     with suppress(ImportError, AttributeError, OSError, ValueError):
@@ -93,8 +93,8 @@ def _quiet_destructors() -> Iterator[None]:
     """Suppress Python's messages about destructors that ran out of memory or time.
 
     The command itself runs out of memory or time soon after, and reports this. This function
-    replaces ``sys.unraisablehook``. If there is no memory left to call it, Python still prints a
-    message.
+    replaces ``sys.unraisablehook``. If there is not enough memory left to call the hook, Python
+    still prints a message.
     """
     previous = sys.unraisablehook
 
@@ -154,7 +154,10 @@ def _memory_limit(size: int) -> Iterator[None]:
 
 
 def exhaustion_error(error: BaseException) -> TltlError | None:
-    """Return the error TLT0007 for OutOfTimeError, MemoryError and RecursionError, None for other exceptions."""
+    """Return the error TLT0007 for an OutOfTimeError, MemoryError or RecursionError.
+
+    Return None for any other exception.
+    """
     permitted = _command_limits[0] if _command_limits else ProcessLimit(memory=0, work_s=0)
     if isinstance(error, OutOfTimeError):
         seconds = "1 second" if permitted.work_s == 1 else f"{permitted.work_s} seconds"

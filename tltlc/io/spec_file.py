@@ -1,4 +1,7 @@
-"""Read the files that a command's arguments name: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-``."""
+"""Read the files that a command's arguments name: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-``.
+
+An artefact is a compiled spec, as JSON. ``-`` is standard input.
+"""
 
 from __future__ import annotations
 
@@ -28,11 +31,11 @@ _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
 def split(argument: str) -> tuple[str, str | None]:
-    """Split an argument ``PATH:NAME`` into path and name.
+    """Split an argument into path and name: ``"a.tltl:win"`` -> ``("a.tltl", "win")``.
 
-    The name is None if the argument is only a path. This is also the case if the whole argument is
-    the path of an existing file. On Windows, a single letter before the colon is a drive, not a
-    path.
+    The name is None if the argument is only a path, or if the whole argument is the path of an
+    existing file. On Windows, a single letter before the colon is a drive, not a path. The path
+    ``<stdin>`` becomes ``-``.
     """
     path, colon, name = argument.rpartition(":")
     if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110
@@ -50,9 +53,10 @@ def is_plain_name(text: str) -> bool:
 def read(path: str) -> tuple[SourceFile, bool]:
     """Return the text of a file or of standard input, and whether it is an artefact.
 
-    A text is an artefact if it begins with a brace, which no source text does, or if its path ends
-    with ``.json``. Errors (:class:`TltlError`): TLT0001 if the system cannot read the file, TLT0002
-    if it is not UTF-8, TLT0003 if it is binary, TLT0004 if it is too large.
+    An artefact is a compiled spec, as JSON. A text counts as an artefact if it begins with a brace,
+    which no source text does, or if its path ends with ``.json``. Errors (:class:`TltlError`):
+    TLT0001 if the system cannot read the file, TLT0002 if it is not UTF-8, TLT0003 if it is binary,
+    TLT0004 if it is too large.
     """
     name = STDIN_NAME if path == STDIN else path
     try:
@@ -68,7 +72,7 @@ def read(path: str) -> tuple[SourceFile, bool]:
 
 
 def read_text(path: str, max_bytes: int) -> SourceFile:
-    """Return the text of a file or of standard input.
+    """Return the text of a file, or of standard input for the path ``-``.
 
     Errors are those of :func:`tltlc.io.files.read_source`.
     """
@@ -77,14 +81,15 @@ def read_text(path: str, max_bytes: int) -> SourceFile:
 
 
 def input_kind(path: str) -> SourceKind:
-    """Return the kind of source that a path of the command line names: standard input is a text."""
+    """Return the kind of source that a path names: ``text`` for standard input (``-``), else ``file``."""
     return "text" if path == STDIN else "file"
 
 
 def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
-    """Return the bytes of a file or of standard input, and its name in messages.
+    """Return at most ``max_bytes`` + 1 bytes of a file or of standard input, and its name in messages.
 
-    Errors are those of :func:`tltlc.io.files.read_bytes`.
+    If the result has the extra byte, the input is too large. Errors are those of
+    :func:`tltlc.io.files.read_bytes`.
     """
     if path == STDIN:
         try:

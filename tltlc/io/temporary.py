@@ -1,4 +1,4 @@
-"""Temporary files beside their final paths, and the removal of files that killed processes left.
+"""Make temporary files beside their final paths, and remove those that killed processes left.
 
 A process that writes into a folder creates a lock file ``.tltlc-PID-TOKEN.lock`` there, and keeps
 it locked as long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system
@@ -36,7 +36,8 @@ An attempt fails only if another process removes the new file.
 class Temporaries:
     """The temporary files of a task, in one or several folders.
 
-    :meth:`close` removes the temporary files that were not renamed.
+    The task writes files at the paths that :meth:`path` returns, and renames them to their final
+    paths. :meth:`close` removes the temporary files that were not renamed.
     """
 
     def __init__(self) -> None:
@@ -66,10 +67,10 @@ class Temporaries:
     def back_up(self, target: Path) -> None:
         """Back up the file at ``target``, so that :meth:`restore` can put it back later.
 
-        If there is no file, :meth:`restore` will remove a file that is there by then.
+        If there is no file at ``target`` now, :meth:`restore` removes the file that is there later.
 
         Raises:
-            OSError: the system refuses.
+            OSError: the system refuses to read the file or to write the backup.
         """
         backup = self.path(target)
         try:
@@ -85,7 +86,7 @@ class Temporaries:
         self._backups.append((target, backup))
 
     def restore(self) -> list[Path]:
-        """Put back all files that were backed up; return the paths where the system refuses this."""
+        """Put back all files that were backed up; return the paths at which the system refuses this."""
         backups, self._backups = self._backups, []
         return [target for target, backup in reversed(backups) if not _restore_file(target, backup)]
 
@@ -190,8 +191,8 @@ def _no_folder_error(error: OSError) -> TltlError:
 def remove_abandoned(folder: Path) -> None:
     """Remove the temporary files and folders in ``folder`` whose processes have ended.
 
-    Removes only regular files, and folders of this user, whose names have the form that this module
-    gives. Follows no links. Ignores what cannot be removed.
+    Remove only regular files and folders of this user, and only those whose names this module has
+    made. Follow no links. Ignore what cannot be removed.
     """
     with suppress(OSError):
         matches = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
@@ -222,7 +223,7 @@ def _remove_if_abandoned(folder: Path, prefix: str, names: list[str]) -> None:
 
 
 def _remove(path: Path) -> None:
-    """Remove a temporary file, or a temporary folder of this user; ignore it if it cannot be removed."""
+    """Remove a temporary file, or a temporary folder of this user; do nothing if the system refuses."""
     with suppress(OSError):
         if _is_file(path):
             path.unlink(missing_ok=True)
@@ -272,8 +273,8 @@ def _is_file(path: Path) -> bool:
 def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
     """Create and lock a lock file in a folder.
 
-    Return the prefix for the names of temporary files there, and the open lock file; None in place
-    of the file if locks do not work.
+    Return the prefix for the names of temporary files in the folder, and the open lock file. If
+    locks do not work there, return None instead of the file.
     """
     for _ in range(_ATTEMPTS):
         prefix = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"

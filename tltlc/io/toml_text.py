@@ -1,4 +1,4 @@
-"""Read TOML within the limits of :mod:`tltlc.io.limits`, with diagnostics for errors of the TOML library."""
+"""Read TOML within the limits of :mod:`tltlc.io.limits`; errors become diagnostics."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ def _is_whole_number(digits: str) -> bool:
 def _check_limits(source: SourceFile) -> None:
     """Raise TltlError, TLT0006, for a text that nests too deep or has too many values.
 
-    This comes before the text is parsed, because the TOML library takes time and memory that grow
-    with the square of the nesting. Each part of a dotted key and each open bracket is a level.
+    Call this before the text is parsed, because the time and the memory that the TOML library takes
+    grow with the square of the nesting. Each part of a dotted key and each open bracket is a level.
     """
     assert TOML.depth is not None
     assert TOML.values is not None

@@ -28,30 +28,30 @@ def write_files(
     durable: bool = False,
     over_inputs: bool = False,
 ) -> tuple[Path, ...]:
-    """Write all files into a folder, or none of them; create missing folders.
+    """Write all files into a folder, or none of them; return the paths of the files that were written.
 
-    Without ``durable``, a file that already has the same content is not written, so that build
-    tools do not rebuild what depends on it. Returns the paths of the files that were written, in
-    order.
+    ``files`` maps paths relative to ``folder`` to contents. Missing folders are created. Without
+    ``durable``, a file that already has the same content is not written, so that build tools do not
+    rebuild what depends on it.
 
     Each file is first written under a temporary name beside its final path. The temporary files are
     renamed only when all of them are complete. If the system refuses a rename, the files that were
     already renamed get their old content back, and new folders are removed. Text is written as
     UTF-8 with line feeds.
 
-    A device or a pipe, and the file to which standard output or standard error is redirected, are
-    not replaced: the content is written into them at once, and cannot be taken back.
+    A device, a pipe, and the file to which standard output or standard error is redirected are not
+    replaced: the content is written into them at once, and cannot be taken back.
 
-    With ``durable``, a file that replaces another is on the disk when this function returns, and is
-    complete even after a loss of power. The entry of a new folder may still be lost.
+    With ``durable``, the files are on the disk when this function returns, and complete even after
+    a loss of power. The entry of a new folder may still be lost.
 
-    If the process is killed, temporary files may remain, until the next process that writes into
-    the same folder removes them. Some files may then be new and some old, but none is half written.
+    If the process is killed, some files may be new and some old, but none is half written.
+    Temporary files may remain; the next process that writes into the same folder removes them.
 
     Raises:
         TltlError: TLT0005 if the system refuses; TLT0700 if a file that the command has read would
-            change, unless ``over_inputs`` is true. The help of both is ``advice``: where else to
-            write. If too many files are open, the help is to allow more.
+            change, unless ``over_inputs`` is true. The help of both errors is ``advice``, which
+            says where else to write. If too many files are open, the help is to allow more.
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
@@ -110,8 +110,9 @@ def remove_file(path: Path, advice: str) -> None:
 def replace_file(path: Path, advice: str = _OPTION) -> Iterator[Path]:
     """Yield a temporary path beside ``path``, at which the ``with`` block must write a file.
 
-    The temporary path has the same extension. At the end of the block, the temporary file is renamed
-    to ``path``. If the block raises an exception, also by Ctrl-C, the file is removed instead.
+    The temporary path has the same extension as ``path``. At the end of the block, the temporary
+    file is renamed to ``path``. If the block raises an exception, even by Ctrl-C, the temporary
+    file is removed, and ``path`` stays as it was.
 
     Raises:
         TltlError: TLT0005 the system refuses to write, with ``advice`` as its help.
@@ -171,7 +172,11 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
 
 
 def _write_temporary(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
-    """Write a temporary file with the permissions ``mode``, those of the file that it will replace."""
+    """Write a temporary file with the permissions of the file that it will replace.
+
+    ``mode`` is the mode of that file; None if there is no such file. With ``durable``, the content
+    is on the disk when the function returns.
+    """
     with temporary.open("wb") as file:
         file.write(data)
         if durable:
@@ -182,7 +187,7 @@ def _write_temporary(temporary: Path, data: bytes, mode: int | None, durable: bo
 
 
 def _has_content(path: Path, mode: int, data: bytes) -> bool:
-    """Whether a path is a regular file with the content ``data``; ``mode`` is the mode of the path."""
+    """Whether a path, whose mode is ``mode``, is a regular file with the content ``data``."""
     try:
         return stat.S_ISREG(mode) and path.stat().st_size == len(data) and path.read_bytes() == data
     except OSError:
@@ -190,7 +195,7 @@ def _has_content(path: Path, mode: int, data: bytes) -> bool:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Flush a folder, so that the renamed files in it reach the disk; do nothing on Windows."""
+    """Make sure that the renamed files in a folder are on the disk; do nothing on Windows."""
     if os.name == "nt":
         return
     descriptor = os.open(folder, os.O_RDONLY)

@@ -1,4 +1,4 @@
-"""A hash of the source code of tltlc, which changes with the code even between two versions."""
+"""A hash of tltlc's source code, which changes with the code even if the version number stays the same."""
 
 from __future__ import annotations
 
