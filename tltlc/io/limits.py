@@ -1,4 +1,4 @@
-"""The limits of all inputs and of long computations, in one place, so that none is forgotten.
+"""The limits of all inputs and of long computations, in one place, so that none is overlooked.
 
 Input above a limit is reported with TLT0004 (bytes) or TLT0006 (nesting, number of values), or with
 an error of the input's format. Computations that could take very long count their steps, and stop
@@ -36,7 +36,7 @@ class Limit:
 class Connections:
     """The limits of the connections to a server.
 
-    ``most`` is the most connections that are open at the same time. The other limits are in
+    ``most`` is how many connections may be open at the same time. The other limits are in
     seconds: ``idle_s`` is the time between two requests, ``request_s`` the time from the first to
     the last byte of a request, ``write_s`` the time in which the client must receive an answer, and
     ``linger_s`` the time in which the client must close the connection.

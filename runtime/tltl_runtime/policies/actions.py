@@ -1,4 +1,4 @@
-"""The distribution over actions with several discrete branches."""
+"""The probability distribution of a policy's actions if these have several discrete branches."""
 
 from __future__ import annotations
 

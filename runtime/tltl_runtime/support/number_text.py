@@ -1,4 +1,4 @@
-"""Format numbers and lines for people."""
+"""Format numbers, lists and lines of text for people."""
 
 from __future__ import annotations
 

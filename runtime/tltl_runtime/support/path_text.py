@@ -1,4 +1,4 @@
-"""Paths in messages."""
+"""Format paths for messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Suggestions for names that do not exist."""
+"""Suggest similar names for a name that does not exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The distribution over actions that have choices, numbers, or both."""
+"""The probability distribution of a policy's actions if these have choices, continuous numbers, or both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The encoders that a network puts before its fully connected layers, as data.
+"""A description of the encoders that a network has before its fully connected layers.
 
 Numbers are scaled, categories become one-hot vectors, and each image or grid goes through
 convolutions. A number is scaled to [-1, 1] by its bounds; without bounds, by a running mean and

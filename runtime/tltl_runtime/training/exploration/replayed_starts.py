@@ -184,7 +184,7 @@ class EpisodesInProgress:
 
     @contextmanager
     def _starts_in_errors(self) -> Iterator[None]:
-        """Within this context, add the seeds and steps of the episodes to an error about a lost worker."""
+        """If the ``with`` block raises a WorkerError, add the seeds and steps of the episodes to it."""
         try:
             yield
         except WorkerError as error:

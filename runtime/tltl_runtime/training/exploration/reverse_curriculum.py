@@ -278,7 +278,7 @@ def _check_episodes(name: str, arrays: Mapping[str, NDArray[Any]], encoding: Act
 
 
 def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Raise ValueError for success rates outside [0, 1] and lengths that are not above 0 and finite."""
+    """Raise ValueError if a success rate is outside [0, 1], or a mean length is 0, negative or not finite."""
     rates = np.append(arrays["rates"].ravel(), arrays["passed"])
     if not ((rates >= 0) & (rates <= 1)).all():
         raise ValueError("`rates` or `passed` contains a number outside 0 to 1")
@@ -289,9 +289,9 @@ def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the weight with which each segment is drawn; ``rates`` are the success rates from each.
 
-    A segment counts as learned if its success rate is at least ``_LEARNED_RATE``. From the first
-    learned segment on, the weight is greatest at a success rate of one half. Before that segment,
-    weights fall with the distance from it.
+    A segment counts as learned if its success rate is at least ``_LEARNED_RATE``; if there is none,
+    the last segment counts as learned. From the first learned segment on, the weight is greatest at
+    a success rate of one half. Before that segment, weights fall with the distance from it.
     """
     first = int(np.argmax(rates >= _LEARNED_RATE)) if rates.max() >= _LEARNED_RATE else len(rates) - 1
     weights: NDArray[np.float64] = rates * (1 - rates) + _MIN_WEIGHT

@@ -42,7 +42,8 @@ class BestPolicy:
 class Checkpoint:
     """The state of a training after iteration number ``iteration``.
 
-    - ``run`` is the :func:`~tltl_runtime.training.files.run_file.identity` of the training.
+    - ``run`` identifies the training by hashes of its level, its spec and its settings
+      (:func:`~tltl_runtime.training.files.run_file.identity`).
     - ``losses`` are the losses of that iteration.
     - ``steps`` and ``seconds`` are totals over all iterations; ``replayed`` counts replayed
       decisions.
@@ -115,7 +116,9 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
     """Read a checkpoint; return None if there is no such file. Nothing in the file is executed.
 
-    ``run`` is the identity of the expected training; None accepts any.
+    ``run`` identifies the expected training
+    (:func:`~tltl_runtime.training.files.run_file.identity`); if it is None, a checkpoint of any
+    training is accepted.
 
     Raises:
         TltlError: TLT0001, the file cannot be read; TLT0864, it is not a checkpoint, is damaged,
@@ -236,10 +239,11 @@ def _lists(value: object) -> object:
 
 
 def _check_run(path: Path, actual: Mapping[str, str], expected: Mapping[str, str]) -> None:
-    """Check that a checkpoint is of the ``expected`` training; ``actual`` is the identity in it.
+    """Check that a checkpoint is of the ``expected`` training.
 
-    Raises TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864
-    with all differences otherwise.
+    ``actual`` is what the checkpoint says of its training: hashes and the seed, by name. Raises
+    TLT0868 if only the level differs, TLT0922 if only the demonstrations differ, and TLT0864 with
+    all differences otherwise.
     """
     different = [name for name in expected if actual.get(name) != expected[name]]
     if different == ["level"]:

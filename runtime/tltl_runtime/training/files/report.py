@@ -84,17 +84,17 @@ class TrainingReport:
     - ``steps`` counts all decisions so far, of all environments and processes. Decisions of
       searches and ``replayed`` decisions do not count.
     - ``seconds`` is the training time so far, over all resumptions.
-    - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec; a
-      failed confirmation resets it.
+    - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec. It
+      starts at 0 again when the policy fails its test in new episodes.
     - ``confirmation`` is the result of testing the policy in new episodes after this iteration;
       None if no test was due.
     - ``best_pass_rate`` is the pass rate of the best policy, and ``best_steps`` the number of steps
       after which it had its weights; None if there is no best policy yet.
     - ``stop`` says why the training ends here; None if it goes on.
-    - ``checkpointed`` says whether a checkpoint is written for this iteration.
+    - ``checkpointed`` says whether this process writes a checkpoint for this iteration.
     - ``searched`` is the progress of the searches for demonstrations, None if there was no search.
     - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
-    - ``imitated`` describes the demonstrations that the agent imitates; None for other trainings.
+    - ``imitated`` describes the demonstrations that the agent imitates; None if it imitates none.
     """
 
     iteration: Iteration

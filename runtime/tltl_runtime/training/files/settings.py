@@ -31,9 +31,9 @@ class Ppo:
 
     The default learning rate, entropy, clip, lambda and gamma are those of Gutiérrez-Sánchez et
     al., IEEE Trans. Games 2024, section VI. The actor's logits are multiplied by a factor. As the
-    pass rate rises from one half to 1, this factor rises from 1 to ``sharpening``. A training may
-    begin with an earlier policy, but its critic is always new. Then only the critic learns in the
-    first ``warm_up`` updates: otherwise the policy would follow the critic's initial errors.
+    pass rate rises from one half to 1, this factor rises from 1 to ``sharpening``. A training that
+    begins with an earlier policy still has a new critic. So in its first ``warm_up`` updates only
+    the critic learns: otherwise the policy would follow the critic's initial errors.
     """
 
     learning_rate: float
@@ -228,7 +228,7 @@ def default_text() -> str:
 
 
 def settings_text(settings: TrainingSettings) -> str:
-    """Return settings as TOML: the text of the default settings, in which other values are put in."""
+    """Return settings as TOML: the default text with its comments, and the values of ``settings``."""
     table, lines = "", []
     defaults = read_settings()
     for line in default_text().splitlines():

@@ -62,8 +62,8 @@ class Discriminator(nn.Module):
     def loss(self, demonstrations: Decisions, agent: Decisions, penalty: float) -> DiscriminatorLoss:
         """Return the loss: the cross entropy, plus ``penalty`` times the gradient penalty.
 
-        ``demonstrations`` are decisions of demonstrations, and ``agent`` are as many decisions of
-        the agent.
+        ``demonstrations`` are decisions of demonstrations, and ``agent`` is an equal number of
+        decisions of the agent.
         """
         demonstration_logits, agent_logits = self(demonstrations), self(agent)
         loss = softplus(-demonstration_logits).mean() + softplus(agent_logits).mean()

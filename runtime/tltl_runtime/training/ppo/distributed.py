@@ -53,7 +53,7 @@ class ProcessGroup:
 def process_group() -> ProcessGroup:
     """Return the rank of this process and the number of processes, from torchrun's variables.
 
-    Without these environment variables, it is the only process.
+    Without these environment variables, this process is the only one.
     """
     count, local_count = (torchrun_variable(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
     rank, local_rank = (torchrun_variable(name, 0) for name in ("RANK", "LOCAL_RANK"))
@@ -61,7 +61,7 @@ def process_group() -> ProcessGroup:
 
 
 def cores() -> int:
-    """Return how many cores of this machine each process of the training has, at least one."""
+    """Return how many cores of this machine each process of the training may use, at least one."""
     return max(1, usable_cores() // process_group().local_count)
 
 

@@ -26,10 +26,10 @@ little is left to find.
 class RecentEpisodes:
     """The last ``windows * episodes`` episodes of a training.
 
-    ``limit_steps`` is the spec's limit in steps; None if it has no limit. ``unbroken`` is the
-    number of successive episodes, up to the last one, that met the spec, at most ``windows *
-    episodes``. When it has reached this maximum, the training tests the policy in new episodes. If
-    the policy fails there, ``unbroken`` starts at 0 again.
+    ``limit_steps`` is the spec's limit in steps; None if it has no limit. ``unbroken`` counts the
+    successive episodes, up to the last one, that met the spec, at most ``windows * episodes``. When
+    it has reached this maximum, the training tests the policy in new episodes. If the policy fails
+    there, ``unbroken`` starts at 0 again.
     """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
@@ -46,14 +46,14 @@ class RecentEpisodes:
             self.unbroken = min(self.unbroken + 1, self._count) if episode.success else 0
 
     def reset_unbroken(self) -> None:
-        """Count successes from 0 again, because the policy failed its confirmation."""
+        """Set ``unbroken`` to 0, because the policy failed when it was tested in new episodes."""
         self.unbroken = 0
 
     @property
     def all_met(self) -> bool:
         """Whether the last ``windows * episodes`` episodes all met the spec.
 
-        Only episodes since the last failed confirmation count.
+        Only episodes since the last call of :meth:`reset_unbroken` count.
         """
         return self.unbroken == self._count
 

@@ -1,4 +1,4 @@
-"""The confirmation of a policy in fresh episodes, before a training ends.
+"""Confirm that a policy meets the spec, by testing it in new episodes before a training ends.
 
 Success in the last episodes of the training is not enough: the policies of several iterations play
 them, and many successes in a row also occur by chance. A policy with a pass rate of 0.99 meets the

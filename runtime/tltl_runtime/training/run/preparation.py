@@ -96,7 +96,7 @@ def load_imitation_data(
     """Return the demonstrations to imitate; None if the agent does not learn from demonstrations.
 
     If the run names no folder of demonstrations, the first process records demonstrations of the
-    expert before. ``on_attempt`` is called with each attempt.
+    expert first. ``on_attempt`` is called with each attempt.
 
     Raises:
         TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; TLT0005, a

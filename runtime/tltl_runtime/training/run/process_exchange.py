@@ -35,7 +35,7 @@ class GatheredIteration:
 
 
 def gather_iteration(group: ProcessGroup, iteration: Iteration, runner: Runner) -> GatheredIteration:
-    """Collect the results of an iteration from all processes, which must all call this function.
+    """Collect the results of an iteration from all processes; all of them must call this function.
 
     Raises TltlError, TLT0866, if a loss of any process is not a finite number.
     """

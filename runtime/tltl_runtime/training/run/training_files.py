@@ -35,9 +35,9 @@ class TrainingFiles:
     def restore(self, state: Checkpoint) -> None:
         """Update the files in the folder to ``state``, with which the training begins or resumes.
 
-        Remove ``record.json`` and ``curve.png``, which are written at the end. Remove metrics of
-        later iterations. Write a checkpoint at once, so that the search need not be repeated if the
-        process is killed soon.
+        Remove ``record.json`` and ``curve.png``, which are written at the end, and the metrics of
+        later iterations. Write the policy file of a resumed training again. Write a new checkpoint
+        at once, so that the search need not be repeated if the process is killed soon.
         """
         for name in (RECORD, CURVE):
             (self._run.folder / name).unlink(missing_ok=True)
