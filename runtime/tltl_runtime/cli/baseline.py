@@ -94,8 +94,8 @@ def _older_references(path: Path) -> tuple[Reference, ...]:
 def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     """Describe what a stopped recording of a baseline has written, and how to continue it.
 
-    ``path`` is the output file, and ``existed`` says whether it existed before. ``partial`` is the
-    file from which the same command continues, with the finished references; None if there is none.
+    ``path`` is the output file, and ``existed`` says whether it existed before. ``partial`` is the file
+    with the finished recordings, from which the same command continues; None if there is none.
     """
     from tltl_runtime.support.path_text import path_text
 
@@ -108,7 +108,7 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
 
 
 def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
-    """Print how often a recorded policy met its spec, and which cases do not pass even without a change.
+    """Print how often a recorded policy met its spec, and which cases would not pass even if nothing changed.
 
     A reference is the recorded episodes with which one or several cases are compared. ``older`` are
     the references that the output file had before.
@@ -154,8 +154,8 @@ def _older_reference(reference: Reference, older: tuple[Reference, ...]) -> Refe
 def _advice(pass_rate: float, case: Case, error: float) -> str:
     """Say what the user can change so that ``case`` passes.
 
-    ``pass_rate`` is that of the case's baseline. ``error`` is the allowed probability of a wrong
-    verdict on the case.
+    ``pass_rate`` is the pass rate of the case's baseline, from 0 to 1. ``error`` is the allowed
+    probability of a wrong verdict on the case.
     """
     if pass_rate == 1.0:
         from tltl_runtime.regression.verdict.baseline_run import episodes_for_certainty

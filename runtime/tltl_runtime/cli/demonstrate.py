@@ -92,9 +92,10 @@ def command(
 
 
 def _write(folder: Path, episode: RecordedEpisode, film: str | None, notation: Notation) -> Path:
-    """Write the recording of an episode, and a plan (.png) if its game draws one; return the recording's path.
+    """Write the recording of an episode, and a picture of its path if the game can draw one.
 
-    Also write a film unless ``film``, the extension of its file, is None.
+    If ``film`` is not None, also write a film: ``film`` is the extension of its file, ``gif`` or
+    ``mp4``. All files have the same name, apart from their extensions. Return the recording's path.
     """
     from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
     from tltlc.api import fileio

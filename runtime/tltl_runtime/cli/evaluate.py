@@ -150,10 +150,7 @@ def command(
 
 
 def _replay_command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
-    """Return the shell command that repeats this evaluation.
-
-    The caller adds options that select episodes.
-    """
+    """Return the shell command that repeats this evaluation, without ``--first`` and ``--episodes``."""
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
     words += [] if level is None else [level_option(level), level]
     words += [] if spec is None else ["--spec", spec]
@@ -200,8 +197,9 @@ def _bar(count: int) -> Any:
 def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path | None, requested: int) -> None:
     """Print the report on the played episodes; write the JSON report and pictures, if requested.
 
-    ``requested`` is the number of episodes to play with sampled actions, and again with the most
-    probable ones. Fewer were played if the evaluation was stopped.
+    ``requested`` episodes were to be played with sampled actions, and as many with the most probable
+    actions. If the evaluation was stopped before, first print how many were played. If no episode was
+    played, do nothing.
     """
     played = files.episode_counts
     if not any(played.values()):

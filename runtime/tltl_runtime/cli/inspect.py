@@ -67,7 +67,7 @@ def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
     policy = read_policy(policy_file(path))
     if policy.card.training or not (path / RUN).exists():
         return policy, {}, ""
-    # Checkpoints, unlike policies, are read by torch.
+    # Import this only here: reading a checkpoint needs torch; reading a policy does not.
     from tltl_runtime.training.files.record import record_so_far
 
     return policy, {"training": record_so_far(path)}, f"  ended    not yet: {progress(path)}\n"

@@ -1,4 +1,4 @@
-"""``tltlc play``: play a level with the keyboard in a window; a spec judges and each episode is recorded."""
+"""``tltlc play``: play a level in a window with the keyboard; each episode is judged by a spec and recorded."""
 
 from __future__ import annotations
 

@@ -179,7 +179,9 @@ def _record_person(
 
 
 class _DemonstrationRecorder:
-    """Writes those episodes that meet the spec, while a person plays.
+    """Writes the episodes that meet the spec, while a person plays.
+
+    ``requested`` is the number of demonstrations wanted in the folder; messages show it.
 
     If the folder of demonstrations cannot be written, an episode goes to the folder for temporary
     files instead, and does not count as a demonstration.
@@ -195,7 +197,10 @@ class _DemonstrationRecorder:
         """Do nothing: an unfinished episode has not met the spec yet."""
 
     def save(self, episode: RecordedEpisode) -> str:
-        """Write the episode if it is a demonstration; return the text that the player sees."""
+        """Write the episode if it meets the spec; return the text that the player sees.
+
+        Examples of the text: ``NAME.episode.npz, 3 of 20`` and ``not kept, 2 of 20``.
+        """
         try:
             attempt = self._demonstrations.add(episode)
         except TltlError as error:

@@ -173,11 +173,11 @@ def _is_suite(word: str) -> bool:
 
 
 def _default_folder(suite: Path | None, spec: str | None) -> Path:
-    """Return the default folder of a run: `regression/levels/game` for `levels/game.toml`.
+    """Return the default folder of a run, for example ``regression/levels/game`` for the suite ``levels/game.toml``.
 
     It is ``regression``, followed by the path of the suite relative to the working directory,
-    without ``..`` and without the extension. For a spec without a suite, it is ``regression`` and the
-    name of the spec.
+    without ``..`` and without the extension. With ``--spec``, it is ``regression`` and the name of the
+    spec. Without a suite and a spec, it is ``regression/shipped``.
     """
     if spec is not None:
         return Path("regression", spec_label(spec))

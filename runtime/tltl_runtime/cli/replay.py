@@ -142,7 +142,11 @@ def command(
 
 
 def _read(game: str | None, path: str) -> RecordedEpisode:
-    """Read a recording; ``game`` says where its scene can be played again."""
+    """Read the recording ``path``.
+
+    ``game``, the value of ``--game``, is None or the scene that was recorded, such as
+    ``FILE.game.toml:SCENE``. With it, the episode can be played again.
+    """
     from tltl_runtime.game.registry import game_of_recording
 
     recorded = game_of_recording(path)
@@ -151,9 +155,11 @@ def _read(game: str | None, path: str) -> RecordedEpisode:
 
 
 def _check(episode: RecordedEpisode, report: cli.Report) -> dict[str, bool | None]:
-    """Report where a recording contradicts its spec or its game; return the results, by their names.
+    """Report where a recording contradicts its spec or its game; return the results of both checks.
 
-    ``plays_again`` is None if the game cannot play a recording again.
+    ``follows_from_spec`` says whether the spec gives the recorded states and rewards for the recorded
+    signals. ``plays_again`` says whether the same episode results if the game plays the actions again;
+    None if the game cannot do this.
     """
     from tltl_runtime.game.recording_check import check
 
@@ -186,7 +192,11 @@ def _alternatives(names: Sequence[str]) -> str:
 
 
 def _check_text(fields: dict[str, Any], is_elsewhere: bool) -> str:
-    """Return the line about the check, if there was one; ``is_elsewhere``: a recording does not contain its level."""
+    """Return the line that describes the result of ``--check``; an empty text without ``--check``.
+
+    ``fields`` contains the result of :func:`_check`. ``is_elsewhere`` says that recordings of the game
+    do not contain their level, so that ``--game`` must name it.
+    """
     if "plays_again" not in fields:
         return ""
     follows = "follows" if fields["follows_from_spec"] else "does NOT follow"
@@ -201,6 +211,9 @@ def _span(episode: RecordedEpisode, start: float | None, stop: float | None) -> 
     """Return the start and the end of the part of an episode to draw or write, in seconds.
 
     By default, these are the start and the end of the episode.
+
+    Raises:
+        UsageError: the part would be empty.
     """
     end = float(episode.times[-1])
     begin, last = start or 0.0, end if stop is None else stop
@@ -218,7 +231,10 @@ def _write(
 
     ``span``, the start and the end in seconds, applies to films and signals, and ``film`` to films.
     ``size``, in pixels, applies to plans. If it is None, the plan has a size that fits its
-    contents. Raises TltlError, TLT0731, if the game draws no pictures or has no films.
+    contents.
+
+    Raises:
+        TltlError: TLT0731, the game draws no pictures; the errors of :func:`write_film`.
     """
     from tltlc.api import fileio
 

@@ -91,9 +91,9 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
 
 def _table(options: _Table1Options) -> str:
-    """Return two tables as text: one over the first 25 episodes, as in the paper, one over all 100.
+    """Return the text of two tables: one for the first 25 episodes of each cell, as in the paper, one for all 100.
 
-    The function first runs the trainings and plays the episodes that are not in the folder yet.
+    First, run the trainings and play the episodes that are not in the folder yet.
     """
     from tltl_runtime.regression.table1.paper_table import LEVELS, MODELS, RUNS, VARIANTS, TableRow, markdown
     from tltl_runtime.regression.table1.table_cells import EPISODES, SEED, cell_episodes, figures
@@ -126,9 +126,13 @@ def _table(options: _Table1Options) -> str:
 
 
 def _training_result(options: _Table1Options, level: str, model: Model) -> TrainedModel | None:
-    """Return the result of a model's training; None for the expert.
+    """Return the trained policy of a model, with figures of its training; None for the expert.
 
-    If the training is missing or unfinished, the function starts or continues it.
+    If the training is missing or unfinished, start or continue it. With ``--shipped``, the policy of
+    the model ``ours`` is the one that comes with the level.
+
+    Raises:
+        TltlError: TLT0930, the training did not finish.
     """
     from tltl_runtime.policies.file import read_policy
     from tltl_runtime.policies.shipped import shipped_policies
@@ -161,7 +165,11 @@ def _training_result(options: _Table1Options, level: str, model: Model) -> Train
 
 
 def _train(arguments: list[str]) -> None:
-    """Run ``tltlc train`` as a process, which shows its progress. Ctrl-C reaches that process, too."""
+    """Run ``tltlc train`` with ``arguments`` in another process, which shows its progress on standard error.
+
+    If Ctrl-C interrupts it, wait up to 20 seconds until it has saved its state, and raise
+    KeyboardInterrupt. No exception is raised if it fails in another way.
+    """
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:
             training.wait()

@@ -204,7 +204,11 @@ def command(
 
 
 def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
-    """Describe the training; if it is resumed without a checkpoint, say what happens to its files."""
+    """Yield lines that describe the training.
+
+    If the training is resumed without a checkpoint, it starts again. Then the last line says what
+    happens to its files.
+    """
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
@@ -249,9 +253,10 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
 
 
 def _finished_text(run: TrainingRun, record: Mapping[str, Any], again: str) -> str:
-    """Say that a training is finished, so that it is not resumed.
+    """Say that a training is finished and therefore not resumed.
 
-    ``again`` is the command that resumes the training. The user can add a higher limit to it.
+    ``record`` is the content of its ``record.json``. ``again`` is the command that resumes the
+    training. The text suggests this command with a higher limit if a limit ended the training.
     """
     from tltl_runtime.cli.support.training_text import minutes
 

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def ignore_closed_pipe() -> Iterator[None]:
-    """Within this context, discard what is printed into a closed pipe, as after ``head``, and go on."""
+    """Within this context, discard output into a closed pipe instead of raising BrokenPipeError.
+
+    A pipe is closed, for example, when ``head`` has read its ten lines.
+    """
     before = sys.stdout, sys.stderr
     streams = []
     for name, stream in (("stdout", sys.stdout), ("stderr", sys.stderr)):

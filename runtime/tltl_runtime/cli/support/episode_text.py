@@ -7,9 +7,10 @@ from tltl_runtime.support.number_text import number, share
 
 
 def episode_line(episode: RecordedEpisode, result: str) -> str:
-    """Describe an episode in a line; ``result`` says where its recording is, or that there is none.
+    """Describe an episode in a line that ends with ``result``.
 
-    If the episode failed, a second line gives the cause.
+    ``result`` says where the recording is, or that there is none. If the episode failed, a second line
+    gives the cause.
     """
     steps, seconds = len(episode.actions), episode.times[-1]
     end = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"

@@ -47,12 +47,13 @@ class EvaluationFiles:
     """Collects the results of an evaluation and writes its files.
 
     ``path`` is the policy's file, ``sha256`` the hash of its bytes, in hexadecimal, and ``first``
-    the index of the first episode. ``command`` is the shell command that plays these episodes
-    again, without ``--first`` and ``--episodes``. ``folder``, which is created if it is missing,
-    gets recordings, pictures and the JSON report. ``json_file`` gets the JSON report, too. Each of
-    the two is None if it was not requested. When the first result is added, the report and the
-    pictures of an earlier evaluation are removed from the folder, and so are recordings of another
-    policy on this level. ``removed_files`` has the names of the removed files.
+    the index of the first episode. ``command`` is the shell command that repeats the evaluation,
+    without ``--first`` and ``--episodes``.
+
+    Recordings, pictures and the JSON report go into ``folder``, which is created if it is missing.
+    The JSON report is also written to ``json_file``. Each of the two is None if it was not requested.
+    The first call of ``add`` removes from the folder the report and the pictures of an earlier
+    evaluation, and the recordings of other policies on this level.
 
     Raises:
         TltlError: TLT0005, a file cannot be written, also from ``add`` and ``write``; TLT0722, a
@@ -108,7 +109,7 @@ class EvaluationFiles:
             if pictures is None or episode is None or not pictures.draws(episode):
                 pictures = None
             elif not self._has_plans:
-                # What a game shows only when it is played is in the recordings.
+                # Some games show their levels only while they are played: take what the recording shows.
                 self._level, self._has_plans = self._game.played_level(self._level, [episode]), True
             path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
             files = {path.name: result.recording}
@@ -164,7 +165,8 @@ class EvaluationFiles:
     def write(self, text: str) -> str:
         """Write the JSON report ``text`` and, if there is a folder, the pictures of trajectories.
 
-        There are none if the game draws none. Return a description of the folder's contents; empty without a folder.
+        A game that cannot draw has no pictures. Return a description of the folder's contents; an
+        empty text if there is no folder.
         """
         if self._json is not None:
             fileio.write_file(self._json, text, "name another place with --json")
@@ -186,7 +188,10 @@ class EvaluationFiles:
                 yield _PICTURES[sampled], picture
 
     def _note(self) -> str:
-        """Return a note if the policy was trained on another level, or before this level changed; else ``""``."""
+        """Return a note if the policy was trained on another level, or on an earlier version of this one.
+
+        Otherwise, return an empty text.
+        """
         card, level = self._setup.policy.card, self._level
         if self._game.level_hash(level) == card.level_hash:
             return ""
@@ -215,7 +220,7 @@ class EvaluationFiles:
         return tuple(path.name for path in existing)
 
     def _is_by_another_policy(self, path: Path) -> bool:
-        """Whether a file is a recording of another policy in this game."""
+        """Whether a file is a recording of another policy in this game; False if it cannot be read."""
         try:
             episode = self._game.read_episode(path)
         except TltlError:
@@ -234,7 +239,7 @@ class EvaluationFiles:
 
 
 def _check_folder(folder: Path) -> None:
-    """Raise TltlError, TLT0722, if the report or a picture would replace a file of the user."""
+    """Raise TltlError, TLT0722, if the report or a picture would replace a file that no evaluation wrote."""
     existing = [folder / name for name in (_REPORT, *_PICTURES.values()) if fileio.exists(folder / name)]
     if existing and not _is_report(folder / _REPORT):
         title = f"`{existing[0]}` already exists, and no evaluation wrote it"
@@ -264,5 +269,5 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _episode_json(episode: EpisodeSummary) -> dict[str, Any]:
-    """Return the data that the JSON report has about an episode."""
+    """Return the entry of an episode in the JSON report."""
     return {key: getattr(episode, key) for key in _EPISODE_KEYS}

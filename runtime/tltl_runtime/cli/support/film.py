@@ -31,9 +31,10 @@ _MAX_FRAMES_PER_SECOND: Final = 30.0
 class Film:
     """The options of a film.
 
-    ``view`` is one of those of the game; None is its usual one. ``rate`` is in frames per second. If
-    it is None, the film has one frame per decision, but at most 30 frames per second. ``size`` is in
-    pixels.
+    ``view`` is the name of one of the game's views, such as ``top_down``; None means the game's first
+    view. A ``speed`` of 2 is twice as fast as the game. ``rate`` is in frames per second. If it is
+    None, the film has one frame per decision, but at most 30 frames per second. ``size`` is the width
+    and height in pixels. ``notation`` is the notation of formulas in the film.
     """
 
     view: str | None = None
@@ -44,7 +45,7 @@ class Film:
 
 
 def films_of(level: Level) -> Films[Any]:
-    """Return what draws films of a level's game; raises TltlError, TLT0731, if the game has none."""
+    """Return the object that draws films of a level's game; raises TltlError, TLT0731, if the game has no films."""
     films = level.game.films
     if films is None:
         raise capability_error(level, "has no films", "write the signals instead: `tltlc replay RECORDING -o NAME.csv`")
@@ -52,14 +53,14 @@ def films_of(level: Level) -> Films[Any]:
 
 
 def write_film(path: Path, episode: RecordedEpisode, span: tuple[float, float], film: Film) -> None:
-    """Write the film of an episode over a ``span`` of time, in seconds.
+    """Write a film of a part of an episode; the extension of ``path`` selects the format.
 
-    The path's extension selects the format.
+    ``span`` is the start and the end of the part, in seconds since the reset.
 
     Raises:
         TltlError: TLT0005, the file cannot be written; TLT0730, no encoder for .mp4 is installed;
             TLT0731, the game has no films.
-        UsageError: the game's films do not have the view.
+        UsageError: the game has no such view.
     """
     films = films_of(episode.level)
     if film.view is not None and film.view not in films.views:
@@ -86,7 +87,7 @@ def write_film(path: Path, episode: RecordedEpisode, span: tuple[float, float], 
 
 
 def _step_s(episode: RecordedEpisode) -> float:
-    """Return how long a decision takes on average, in seconds, to the nanosecond; 1 if that is nothing."""
+    """Return the mean time between two decisions of an episode, in seconds; 1 if the episode takes no time."""
     return round(float(episode.times[-1]) / max(1, len(episode.actions)), 9) or 1.0
 
 

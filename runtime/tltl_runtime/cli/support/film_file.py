@@ -17,7 +17,7 @@ class NoEncoderError(RuntimeError):
 
 
 def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:
-    """Write a looping GIF that shows each frame for ``seconds`` (rounded to hundredths).
+    """Write a looping GIF that shows each frame for ``seconds``, rounded to hundredths, at least 0.02.
 
     Each frame has its own palette, so that colours that first appear late are kept. An octree
     computes the palette: Pillow's other methods lose the colours of small things, such as a switch.

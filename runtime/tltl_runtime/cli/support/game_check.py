@@ -75,7 +75,10 @@ class _GameCheck:
         self._report.facts["scenes"].append(_facts(self._game, scene_report, fits))
 
     def _specs(self, scene: str, variant: str) -> Iterator[tuple[Fspa, SpecPlaces]]:
-        """Yield the automata of the command's specs, or else of the scene's own spec."""
+        """Yield each automaton to check the scene against, with the places in its source that diagnostics point to.
+
+        These are the automata of the command's specs; without specs in the command, of the scene's own.
+        """
         for opened in self._inputs or self._own_spec(scene, variant):
             specs = {spec.name: spec for spec in opened.program.specs} if opened.program else {}
             for fspa in opened.automata:
@@ -93,7 +96,11 @@ class _GameCheck:
 
 
 def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> Iterator[str]:
-    """Yield the lines that say what a scene offers; the first ones have its name."""
+    """Yield the lines that say what a scene offers.
+
+    ``fits`` maps the name of each spec to the diagnostics of its check. The first lines say whether the
+    scene fits each spec; without specs, the first line is the name of the scene.
+    """
     name, supply = f"{scene_report.scene}:{scene_report.variant}", scene_report.supply
     for spec, diagnostics in fits.items():
         fits_spec = cli.status_of(diagnostics) == cli.CLEAN
@@ -115,7 +122,7 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
 
 
 def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
-    """Return the report on a scene as JSON data."""
+    """Return the report on a scene as JSON data; ``fits`` maps the name of each spec to its diagnostics."""
     supply = scene_report.supply
     return {
         "game": path_text(game.path),

@@ -45,12 +45,15 @@ def _levels(level_files: LevelFiles[Any]) -> Iterator[Row]:
 
 
 def _short_text(spec: LevelSpec | None) -> str:
-    """Return a spec without its folder: the specs of the levels come with the package."""
+    """Return a level's spec as ``FILE.tltl:NAME``, without the folder; an empty text for None."""
     return LevelSpec(Path(spec.file.name), spec.name).text if spec else ""
 
 
 def _game_files(add: Callable[[Sequence[Diagnostic]], object]) -> list[Path]:
-    """Return the game files in the current folder, and the one that the project file names; each once."""
+    """Return the game files in the current folder, and the game file that the project file names; each once.
+
+    ``add`` gets the errors of the project file.
+    """
     paths = sorted(filter(fileio.may_be_file, Path().glob(f"*{SUFFIX}")))
     try:
         game = fileio.project_for("-").game

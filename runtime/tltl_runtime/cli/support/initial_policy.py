@@ -41,17 +41,18 @@ class InitialPolicyOptions:
 def read_policy_option(named: Path) -> InitialPolicyOptions:
     """Read the policy that ``--from`` names.
 
-    ``named`` may be all that ``tltlc evaluate`` accepts: a policy's file, the folder of a training,
-    or the name of a level. Raises TltlError if the policy cannot be read.
+    ``named`` is the file of a policy, the folder of a training, or the name of a level, as for
+    ``tltlc evaluate``. Raises TltlError if the policy cannot be read.
     """
     path = policy_file(named)
     return InitialPolicyOptions(read_policy(path), path)
 
 
 def level_of_policy(named: Path, initial: InitialPolicyOptions) -> tuple[str, str]:
-    """Return the level and the variant that a policy was trained on.
+    """Return the level and the variant that the policy ``named`` was trained on.
 
-    Raises TltlError if they are unknown.
+    ``initial`` is the same policy, already read. Raises TltlError if the file of the level is unknown
+    or missing.
     """
     path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
@@ -83,9 +84,9 @@ def with_policy_network(
 def check_initial_policy(
     initial: InitialPolicyOptions, level: Level, fspa: Fspa, sensor_options: Mapping[str, Any]
 ) -> Sensors:
-    """Check the initial policy; return its sensors, which the agent uses.
+    """Check that the initial policy fits the training; return its sensors, which the agent uses.
 
-    ``sensor_options`` has the sensors for which an option was given, by name.
+    ``sensor_options`` maps the sensors that command-line options set, such as ``map``, to their values.
 
     Raises:
         TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, the options ask for
@@ -109,7 +110,7 @@ def policy_difference(run: TrainingRun, named: Path) -> str | None:
 
 
 def with_policy_path(run: TrainingRun, named: Path) -> TrainingRun:
-    """Return a training with the new place ``named`` of its initial policy, which may have moved."""
+    """Return a training whose initial policy has the path of the policy ``named``: the file may have moved."""
     assert run.initial is not None
     return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 

@@ -20,7 +20,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _CROUCHES: Final = ("hold", "toggle")
 _VIEWS: Final = ("third_person", "top_down", "overview")
-"""The views of the stealth game, which need no import of it here."""
+"""The views of the stealth game. They are repeated here, so that the options do not import the game."""
 
 
 def keyboard_options(function: Function) -> Function:
@@ -43,7 +43,7 @@ def keyboard_options(function: Function) -> Function:
 
 
 def keyboard_of(level: Level) -> Keyboard[Any]:
-    """Return what lets a person play a level's game; raises TltlError, TLT0731, if the game has no such thing."""
+    """Return the object that lets a person play a level's game; raises TltlError, TLT0731, if no person can."""
     keyboard = level.game.keyboard
     if keyboard is None:
         advice = "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`"
@@ -65,8 +65,8 @@ def play_at_keyboard(
 
     Playing also ends if ``enough`` returns true after an episode. ``recordings`` takes the name
     LEVEL-VARIANT, and returns the object that stores the episodes. ``seed`` is the seed of the
-    first episode. If the game has no such ``view``, the window shows the game's usual one. Warnings
-    about unreachable goals are printed to standard error before the window opens.
+    first episode; None means a new one. If the game has no such ``view``, the window shows the game's
+    first view. Warnings about unreachable goals are printed to standard error before the window opens.
 
     Raises:
         TltlError: TLT0830, no window can be opened; TLT0730, a package is not installed; TLT0731, no

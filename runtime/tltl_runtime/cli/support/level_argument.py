@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 def names_level(text: str) -> bool:
-    """Whether a text is ``LEVEL`` or ``LEVEL:VARIANT`` of a level in the package, and not an existing path."""
+    """Whether a text is not an existing path, and names a level of the package: ``LEVEL`` or ``LEVEL:VARIANT``."""
     return not fileio.exists(text) and split_level(text)[0] in shipped_levels()
 
 
 def check_spelling(text: str) -> None:
-    """Raise TltlError, TLT0001, if a text is no existing path, but resembles a level's name.
+    """Raise TltlError, TLT0001, if a text looks like a misspelt name of a level, such as ``navigatoin``.
 
-    Names of levels in the package are compared. A text with a folder or an extension is not
-    checked.
+    The text is compared with the names of the levels in the package. The path of an existing file, and
+    a text with a folder or an extension, are accepted.
     """
     name = split_level(text)[0]
     close = get_close_matches(name, shipped_levels(), n=1)
@@ -38,10 +38,10 @@ def check_spelling(text: str) -> None:
 
 
 def check_named(policy: Path | None, level: str | None) -> None:
-    """Check that the policy and the level exist, before the slow imports of what plays and trains.
+    """Check that the policy and the level exist, before the slow import of the modules that play.
 
     Raises:
-        TltlError: the same error as reading the policy or the level would raise.
+        TltlError: the error that reading the policy or the level would raise.
     """
     if policy is not None and not names_level(str(policy)) and not fileio.exists(policy):
         check_spelling(str(policy))
@@ -54,8 +54,8 @@ def check_named(policy: Path | None, level: str | None) -> None:
 def check_no_toml(spec: str | None, settings: str = "") -> None:
     """Raise UsageError if a ``.toml`` file is given as a spec.
 
-    The message suggests ``--level``. ``settings`` is the command's option for a file of settings,
-    or empty. The message suggests this option, too.
+    The message suggests ``--level``. ``settings`` is the command's option for a settings file, such
+    as ``--config``; the message suggests it, too. It is empty if the command has no such option.
     """
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
@@ -65,9 +65,10 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 
 
 def check_level_exists(level: str, variant: str, command: str) -> None:
-    """Raise TltlError, TLT0001, if a level's file is missing.
+    """Raise TltlError, TLT0001, if a level's file is missing; a level of the package has none.
 
-    The help of the error suggests ``command`` with ``--level``.
+    The help of the error suggests ``command`` with ``--level``, or with ``--game`` for a scene of a game
+    file.
     """
     file = level_file(level)
     if file is not None and not fileio.exists(file):
@@ -81,14 +82,15 @@ def check_level_exists(level: str, variant: str, command: str) -> None:
 
 
 def own_level(spec: str, how: str = "with --level") -> str:
-    """Return the level that a spec names: a file beside the spec, a scene of the project's game, or a shipped level.
+    """Return the level that a spec names, as an argument of commands.
 
-    If the spec names no level, return the scene of the project's game that is made for the spec, or the
-    only scene. ``how`` says in messages how to name a level.
+    Look for a file ``LEVEL.toml`` beside the spec, then for a scene of the project's game, then for a
+    level of the package. If the spec names no level, return the scene of the project's game that is made
+    for the spec, or its only scene. ``how`` says in messages how to name a level.
 
     Raises:
-        UsageError: the spec names no level, and no scene is made for it.
-        TltlError: TLT0800, the level does not exist; the game file of the project is invalid.
+        UsageError: the spec names no level, and there is no such scene.
+        TltlError: TLT0800, the level does not exist; the spec or the project's game file cannot be read.
     """
     fspa, _ = read_spec(spec)
     path = fileio.split_spec_name(spec)[0]
@@ -113,7 +115,7 @@ def own_level(spec: str, how: str = "with --level") -> str:
 
 
 def _project_game(spec: str) -> GameFile | None:
-    """Return the game that the project of a spec's file names; None if it names none."""
+    """Return the game that is named by the project file for ``spec``; None if there is none."""
     path = fileio.project_for(spec).game
     if path is None:
         return None

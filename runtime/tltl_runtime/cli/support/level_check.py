@@ -84,7 +84,7 @@ class _LevelReport:
         return check
 
     def _compile_own_spec(self, check: LevelCheck) -> list[cli.Input]:
-        """Compile the spec that a level is made for."""
+        """Compile the spec that a level is made for; return no input if it names none."""
         if check.spec is None:
             advice = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             self._say(f"{check.name}: the level does not name a spec; {advice}")
@@ -112,7 +112,10 @@ def _draw(path: Path, checked: list[LevelCheck]) -> None:
 
 
 def _specs(opened: cli.Input) -> Iterator[tuple[Fspa, Spec | None]]:
-    """Yield each automaton of an input with the spec that it was made from; None for an artefact."""
+    """Yield each automaton of an input with the spec that it was made from.
+
+    The spec is None if the input is a compiled artefact, which has no source.
+    """
     specs = {spec.name: spec for spec in opened.program.specs} if opened.program else {}
     for fspa in opened.automata:
         yield fspa, specs.get(fspa.name)

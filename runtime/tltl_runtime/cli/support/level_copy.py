@@ -18,10 +18,10 @@ NAMES: Final = (_STARTER.stem, *shipped_levels())
 
 
 def files(name: str) -> dict[str, str]:
-    """Return the texts of a level's files (with assets, overlays, spec) and of a README, by file name.
+    """Return the texts of all files of a level, and of a README, by file name.
 
-    Names are relative to the level's folder. The level's own file is the first. ``name`` is one of
-    :data:`NAMES` or a ``.toml`` file.
+    These are the level's own file, which comes first, its assets and overlays, and its spec. Names are
+    relative to the level's folder. ``name`` is one of :data:`NAMES` or a ``.toml`` file.
 
     Raises:
         TltlError: TLT0800, there is no such level; the errors of loading it.

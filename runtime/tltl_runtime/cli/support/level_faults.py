@@ -1,4 +1,4 @@
-"""Report errors in play that a level causes, such as a player who leaves it: they are not bugs."""
+"""Report errors that a level causes while it is played, such as a player who leaves it. They are not bugs of tltlc."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def level_faults() -> Iterator[None]:
-    """Within this context, raise TltlError if a level has caused an error in play.
+    """Within this context, raise TltlError in place of a RuntimeError that a level has caused.
 
     In the stealth game, this is TLT0806: a player has left the level. Other errors, such as those of
-    a physics engine, are bugs: they propagate.
+    a physics engine, are bugs and propagate.
     """
     try:
         yield

@@ -16,9 +16,9 @@ _GAME: Final = "FILE.game.toml[:SCENE[:VARIANT]]"
 
 
 def level_options(help_text: str) -> Callable[[Function], Function]:
-    """Return a decorator for ``--level`` and ``--game``, of which at most one may be given.
+    """Return a decorator that adds the options ``--level`` and ``--game`` to a command.
 
-    The command gets the value of either as ``level``.
+    At most one of them may be given. The command gets its value as ``level``; None without both.
     """
 
     def decorate(command: Function) -> Function:
@@ -35,7 +35,10 @@ def level_options(help_text: str) -> Callable[[Function], Function]:
 
 
 def game_option(help_text: str) -> Callable[[Function], Function]:
-    """Return a decorator for ``--game``. The command gets its value, of which the file may not exist, as ``game``."""
+    """Return a decorator that adds the option ``--game`` to a command, which gets its value as ``game``.
+
+    The form of the value is checked, but not whether the file exists.
+    """
     return click.option("--game", metavar=_GAME, callback=_check_game, help=help_text)
 
 

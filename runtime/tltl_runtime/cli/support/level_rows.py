@@ -11,7 +11,7 @@ from tltl_runtime.game.registry import STEALTH, game_named, shipped_levels
 def rows(_add: Callable[..., object]) -> Iterator[dict[str, str]]:
     """Yield a row for each variant of each level of the package.
 
-    The value of ``doc`` is what the overlays of the variant change or, without overlays, what the
+    ``doc`` says what the variant changes in the level. For a variant without changes, it says what the
     level is about.
     """
     level_files = game_named(STEALTH).level_files

@@ -1,4 +1,4 @@
-"""Say how to install a package that a command needs: by an optional part of tltlc, an extra of pip."""
+"""Say which extra of tltlc, such as ``tltlc[rl]``, installs a package that a command needs."""
 
 from __future__ import annotations
 
@@ -20,8 +20,7 @@ def name_missing_extra(command: str) -> Iterator[None]:
     """Raise TltlError, TLT0730, if the code of a ``with`` block imports a module that is not installed.
 
     The help of the error says which extra installs the module. ``command`` is the command that
-    needs it. Only the modules in ``_EXTRAS`` are reported so; for others, the ModuleNotFoundError
-    is raised as it is.
+    needs the module. If ``_EXTRAS`` does not list the module, the ModuleNotFoundError propagates.
     """
     try:
         yield

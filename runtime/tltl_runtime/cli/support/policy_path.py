@@ -18,10 +18,12 @@ from tltlc.api import Diagnostic, TltlError, fileio
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
     """Return the file of a policy, and the level and the variant to play.
 
-    If the returned level is None, the level and the variant in the policy's card are to be played.
     ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with a level.
     Without ``policy``, the policy that comes with ``level`` is used. At least one of the two must
     be given. ``command`` is a command that takes a policy as its argument; messages suggest it.
+
+    The returned variant is None if none was named. If the returned level is None, the caller plays the
+    level and the variant that the card, the description inside the policy's file, names.
 
     Raises:
         TltlError: TLT0853, no policy comes with the level; TLT0800, the level does not exist; TLT0001,
@@ -43,7 +45,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
 
 
 def policy_file(policy: Path) -> Path:
-    """Return the file of a policy, named as for :func:`policy_place`; its level is not checked.
+    """Return the file of a policy. ``policy`` has the same forms as in :func:`policy_place`; no level is checked.
 
     Raises:
         TltlError: TLT0853, no policy comes with the level; and the errors of :func:`policy_path`.
@@ -54,7 +56,8 @@ def policy_file(policy: Path) -> Path:
 def check_level_is_shipped(card: Card, policy: Path, command: str) -> None:
     """Raise TltlError, TLT0800, if a policy was trained on a user's level, or in a user's game.
 
-    The policy's file does not contain the path of that level or game.
+    The policy's file does not contain the path of that level or game, so the user must name it.
+    ``command`` is the command that the help of the error suggests.
     """
     level = card.level
     if card.spaces is not None:

@@ -18,12 +18,12 @@ from tltlc.api import Diagnostic, TltlError, fileio
 class RecordingFiles:
     """Writes each episode to a new file.
 
-    ``out`` is a folder for files called ``name``, or a path ``NAME.episode.npz``, or None for the working
-    directory.
+    ``out`` is a path ``NAME.episode.npz``, or a folder for files that are called ``name``, which is
+    created if it is missing. None means the working directory.
 
     Raises:
-        UsageError: ``out`` has another form.
-        TltlError: TLT0005, the folder cannot be written; also from ``save``.
+        UsageError: ``out`` has another extension.
+        TltlError: TLT0005, the folder cannot be written.
     """
 
     def __init__(self, out: Path | None, name: str) -> None:
@@ -53,7 +53,8 @@ class RecordingFiles:
     def save(self, episode: RecordedEpisode) -> str:
         """Write an episode, print its result, and return the path of its file.
 
-        If the folder cannot be written, the file goes to the folder for temporary files.
+        If the folder cannot be written, the file goes to the folder for temporary files. If this fails,
+        too, raise TltlError, TLT0005.
         """
         path = new_path(self._folder, self._name)
         try:

@@ -1,4 +1,4 @@
-"""Show on standard error how far the episodes of a case are: a bar on a terminal, else lines."""
+"""Show on standard error how many episodes of a case are finished: a bar on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ class RegressionDisplay:
     """Shows how many episodes of a case were played, and how many of them met the spec.
 
     Call the display, like a function, after each episode. As a context manager, it removes the bar
-    at the end. ``most``, such as ``at most``, is printed before the greatest number of episodes.
+    at the end. The text ``most``, such as ``at most``, is printed before the number of episodes of the
+    case: ``25 of at most 100 episodes``.
     """
 
     def __init__(self, most: str = "") -> None:

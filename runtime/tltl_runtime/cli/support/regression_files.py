@@ -111,7 +111,7 @@ def _cases_not_run(outcome: SuiteRun) -> Iterator[NotRun]:
 
 
 def _earlier_verdict(outcome: SuiteRun, name: str) -> CaseVerdict | None:
-    """Return the verdict on a case that an earlier run stored in the folder of the run; None without one."""
+    """Return the verdict of an earlier run on a case, from the folder of the run; None if there is none."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
         verdict = fileio.load_json(path, fileio.limits.REPORT)["content"]["verdict"]
@@ -167,7 +167,7 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         return ReportedCase(case.report)
     game = case.prepared.level.game
     episodes = _episodes(case.report, game, case_folder(suite, case.report.name, folder / CASES))
-    # What a game shows only when it is played is in the recordings.
+    # Some games show their levels only while they are played: take what the recordings show.
     level = game.played_level(case.prepared.level, (episodes[index] for index in sorted(episodes)))
     reported = ReportedCase(
         report=case.report,
@@ -191,9 +191,11 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
 
 
 def _baseline_level(level: Level, ready: PreparedCase, reference: Reference) -> Level | None:
-    """Return the level on which a reference was recorded; None if it is unknown, or has no bounds.
+    """Return the level on which ``reference``, the recorded episodes of the baseline, was played.
 
-    If ``level``, which was played now, has changed since, it is loaded from the texts in the baseline.
+    If the level's files have not changed since, this is ``level``, which was played now. Otherwise, the
+    level is loaded from the texts in the baseline. Return None if this fails, or if the loaded level has
+    no bounds.
     """
     if ready.played.files == reference.played.files:
         return level

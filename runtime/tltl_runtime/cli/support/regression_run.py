@@ -40,11 +40,12 @@ _EXPECTED_NOTE: Final = "v1 and v2 of the shipped levels are changed on purpose:
 class RegressOptions:
     """The options of ``tltlc regress``.
 
-    ``spec`` and ``now`` are the spec and the recorded traces of ``--spec`` and ``--now``; there is no
-    suite then, and ``baseline`` has the traces to compare with. ``thresholds`` are the thresholds that
-    options set. ``files`` maps the option of each requested report, such as ``--json``, to the file to write.
-    ``folder`` is the folder of the run. ``minutes`` limits the retraining of each case that does
-    not pass; None: no retraining.
+    With ``--spec``, ``spec`` judges the recorded traces ``now``, and ``baseline`` has the traces to
+    compare them with; there is no suite. ``judged_as`` is ``episodes`` or ``traces``. ``thresholds`` are
+    the thresholds that options set. ``changed`` are the files that ``--changed`` names; None without
+    this option. ``folder`` is the folder of the run. ``files`` maps the option of each requested report,
+    such as ``--json``, to the file to write. ``minutes`` limits the retraining of each case that does
+    not pass; None means no retraining. A value that was not given is None.
     """
 
     suite: Path | None
@@ -63,7 +64,7 @@ class RegressOptions:
 
     @property
     def printed_option(self) -> str | None:
-        """The option, such as ``--json``, of the report for standard output; None if the text goes there."""
+        """The option whose report goes to standard output, such as ``--json``; None if the text goes there."""
         return next((option for option, path in self.files.items() if is_standard_output(path)), None)
 
     @property
@@ -110,10 +111,11 @@ def run(options: RegressOptions) -> int:
 
 
 def _suite(options: RegressOptions) -> Suite:
-    """Return the suite that the options name, or one of a single case for ``--spec``.
+    """Return the suite that the options name; for ``--spec``, a suite with a single case.
 
     Raises:
-        TltlError: the errors of the suite or of the spec; TLT0001, a path has no trace.
+        TltlError: the suite or the spec cannot be read; TLT0001, a path does not exist or has no trace.
+        UsageError: an option has no effect on this suite.
     """
     if options.spec is None:
         suite = read_suite(options.suite or SHIPPED, options.baseline)
@@ -241,7 +243,7 @@ def _retrain(suite: Suite, options: RegressOptions, results: list[FinishedCase])
 
 
 def _untrained_count(options: RegressOptions, results: list[FinishedCase]) -> int:
-    """Return the number of cases whose retraining is requested, but not finished."""
+    """Return the number of cases whose retraining is requested but not finished."""
     return 0 if options.minutes is None else sum(case.case_to_train is not None for case in results)
 
 
@@ -291,8 +293,8 @@ def _outcome(
 def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
     """Report on a run that an error has ended.
 
-    If the report fails, too, only print its error. So the caller can raise the error that ended the
-    run.
+    If the report fails, too, print that error and raise nothing, because the caller raises the error
+    that ended the run.
     """
     try:
         _report(outcome, options)
@@ -301,9 +303,9 @@ def _report_after_error(outcome: SuiteRun, options: RegressOptions) -> None:
 
 
 def _are_expected(outcome: SuiteRun) -> bool:
-    """Whether it is no surprise that cases do not pass.
+    """Whether cases do not pass, and all of these play another variant than their baseline.
 
-    That is so if some cases do not pass, and each of these plays another variant than its baseline.
+    Such cases are expected not to pass.
     """
     findings = {case.report.name for case in outcome.cases if case.report.verdict != "pass"}
     return bool(findings) and all(

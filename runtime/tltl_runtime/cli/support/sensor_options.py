@@ -1,4 +1,4 @@
-"""The options for the agent's sensors, for all commands that create an environment."""
+"""The options for the agent's sensors: which entities, signals and map of the level the agent observes."""
 
 from __future__ import annotations
 

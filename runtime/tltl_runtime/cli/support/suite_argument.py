@@ -8,10 +8,10 @@ from tltlc.api import fileio
 
 
 def check_suite_exists(suite: Path | None) -> None:
-    """Check that the suite exists, before the slow imports of what plays.
+    """Check that the suite exists, before the slow import of the modules that play. None is accepted.
 
     Raises:
-        TltlError: TLT0001, the same error as reading the suite would raise.
+        TltlError: TLT0001, the error that reading the suite would raise.
     """
     if suite is not None and not fileio.exists(suite):
         from tltl_runtime.support.path_text import path_text

@@ -73,7 +73,10 @@ def threshold_option(threshold: str) -> str:
 
 
 def path_option(_: click.Context, option: click.Parameter, value: str | None) -> Path | None:
-    """Return the path that an option names. Raises BadParameter if it is empty."""
+    """Return the path that an option names; None if the option is not given.
+
+    Raises BadParameter if the value is empty.
+    """
     if value == "":
         raise click.BadParameter("it is empty: name a file or a folder", param=option)
     return None if value is None else Path(value)

@@ -46,7 +46,7 @@ _BAR: Final = 24, 10
 class TrainingDisplay:
     """Draws the last report of a training as text and bars.
 
-    The times in the picture go on between reports.
+    The times in the picture keep counting between two reports.
     """
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
@@ -93,7 +93,7 @@ class TrainingDisplay:
         )
 
     def _before_first_iteration(self, bar: int) -> RenderableType:
-        """Return the picture while the agent does not train yet: the progress of searching or recording."""
+        """Return the picture before the training: the progress of searching, or of recording demonstrations."""
         exploration, searched = self._run.settings.exploration, self._search
         if attempt := self._attempt:
             return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
@@ -119,7 +119,7 @@ class TrainingDisplay:
         messages = [self._confirmation] if self._confirmation else []
         messages += [search_line(self._search)] if self._search else []
         lines = [*_figures(report, stop, since), *messages, self._checkpoint_text(now, report)]
-        # Leave out violated states: an episode that violated the spec counts for the state before that.
+        # Leave out violated states: an episode that violated the spec counts for its state before the violation.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")
         count = max(1, min(_MOST_STATES, room - len(lines) - 2 * len(space) - 4))
         return Group(

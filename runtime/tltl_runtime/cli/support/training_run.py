@@ -75,7 +75,7 @@ class TrainOptions:
 
 
 def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
-    """Set up a new training, by default in a folder that is named after it.
+    """Set up a new training in ``folder``, by default a folder that is named after level, spec and seed.
 
     Raises:
         TltlError: the spec, the level, the sensors or the settings are invalid, or the initial policy
@@ -199,10 +199,10 @@ def _level_and_variant(options: TrainOptions, initial: InitialPolicyOptions | No
 
 
 def _with_level_place(run: TrainingRun, options: TrainOptions) -> TrainingRun:
-    """Return the training with the path that ``--level`` gives for its level, which may have moved.
+    """Return the training with the level's path from ``--level``, because the level may have moved.
 
-    If ``--level`` names another level, return the training unchanged. Without ``--level``, check
-    that the file of the training's level exists.
+    If ``--level`` names another level, return the training unchanged. Without ``--level``, raise
+    TltlError, TLT0001, if the file of the training's level is missing.
     """
     if options.level is None:
         check_level_exists(run.level, run.variant.text, resume_command(run.folder))
@@ -215,7 +215,7 @@ def _with_level_place(run: TrainingRun, options: TrainOptions) -> TrainingRun:
 
 
 def _level_place(level: str) -> tuple[Path, str]:
-    """Return the path of a level's file, and the level's name: a file may contain several."""
+    """Return the path of a level's file, and the level's name, because a game file may contain several scenes."""
     level_files = game_of(level).level_files
     return level_files.path(level).resolve(), level_files.level_name(level)
 
@@ -257,9 +257,10 @@ def _usage(message: str) -> click.UsageError:
 
 
 def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
-    """Return the settings with the values in a file in place of their own.
+    """Return ``settings`` with the values that the settings file ``path`` sets.
 
-    Raises TltlError: the file cannot be read, or has a wrong key or value (TLT0860 to TLT0862).
+    Raises:
+        TltlError: the file cannot be read, or has a wrong key or value (TLT0860 to TLT0862).
     """
     for table, values in read_values(fileio.read_source(path)).items():
         changed = {table: replace(getattr(settings, table), **values)} if table else values
@@ -268,7 +269,7 @@ def _with_file(settings: TrainingSettings, path: Path) -> TrainingSettings:
 
 
 def _with_limits(settings: TrainingSettings, options: TrainOptions) -> TrainingSettings:
-    """Return the settings with the limits, workers and device of ``options`` in place of their own."""
+    """Return ``settings`` with the limits, workers and device that ``options`` set."""
     stop, rollout = settings.stop, settings.rollout
     if options.workers == "ray":
         rollout = replace(rollout, pool="ray")

@@ -14,7 +14,9 @@ _OUTPUT: Final = ("-", "/dev/stdout")
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
-    """Check, before minutes of play, that files can be written. The keys of ``files`` are options.
+    """Check that the output files can be written, before the command plays for minutes.
+
+    ``files`` maps options, such as ``--json``, to the files that they name; None is ignored.
 
     Raises:
         TltlError: TLT0005 if a file cannot be written, TLT0700 if a file is an input of the command.
@@ -27,7 +29,7 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             # If the system does not allow the name, this raises an error.
             with suppress(FileNotFoundError):
                 path.stat()
-            # If the path is a link, its target is written.
+            # If the path is a link, the file is written in the folder of its target.
             with TemporaryFile(dir=path.resolve().parent):
                 pass
         except OSError as error:
@@ -37,9 +39,10 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
 
 
 def check_apart(files: Mapping[str, Path | None], inputs: Iterable[Path]) -> None:
-    """Raise TltlError, TLT0005, if a file would overwrite one of ``inputs`` or another output file.
+    """Raise TltlError, TLT0005, if an output file would overwrite one of ``inputs`` or another output file.
 
-    The keys of ``files`` are options.
+    ``files`` maps options, such as ``--json``, to the output files that they name; None is ignored.
+    ``inputs`` are the files that the suite reads.
     """
     uses = {path.resolve(): "the suite reads it" for path in inputs}
     for option, path in files.items():
