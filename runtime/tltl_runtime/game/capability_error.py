@@ -1,4 +1,4 @@
-"""The errors of commands that need what a game does not offer."""
+"""The errors of commands that need something that a game does not offer."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def capability_error(level: Level, lack: str, advice: str) -> TltlError:
-    """Return TLT0731: the game of a level lacks something, for example it "draws no pictures".
+    """Return the error TLT0731: "the game of `LEVEL` draws no pictures", where ``lack`` is "draws no pictures".
 
     ``advice`` says what the user can do instead.
     """
@@ -15,6 +15,6 @@ def capability_error(level: Level, lack: str, advice: str) -> TltlError:
 
 
 def no_expert_error(level: Level) -> TltlError:
-    """Return TLT0731: the game of a level has no scripted expert."""
+    """Return the error TLT0731, which says that the game of a level has no scripted expert."""
     advice = "let a trained policy play and be recorded: `tltlc evaluate POLICY --record all --out DIR`"
     return capability_error(level, "has no scripted expert", advice)

@@ -1,4 +1,4 @@
-"""The properties of a recorded episode that the runtime needs, whatever the game."""
+"""The properties that the recorded episodes of all games have."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class RecordedEpisode(Protocol):
     def actions(self) -> NDArray[Any]:
         """The actions, (n, width), as numbers.
 
-        In a game with ``Game.choices``, they are the index, from 0, of the choice in each branch.
+        In a game with ``Game.choices``, a row has the index, from 0, of the choice in each branch.
         """
 
     @property
@@ -117,7 +117,7 @@ class Cause:
     ``kind`` says how it ended, and ``text`` explains the reason to people. ``by`` depends on the
     kind: the enemies and lasers that killed the player, those with the most damage first; the atoms
     that violated the spec; or the entities that cannot be reached. ``time`` is in seconds since the
-    reset. ``place`` is the position of the player's feet at that time; None if the game does not say
+    reset. ``place`` is the position of the player's feet at that time; None if the game does not give
     it. ``broke`` names the atoms that violated the spec, whatever the ``kind``. It is empty if the
     spec was not violated.
     """
@@ -134,8 +134,9 @@ class Cause:
 class Trajectory:
     """The player's path, the automaton's states, and the end of an episode of n decisions.
 
-    It is much smaller than a recorded episode, so hundreds fit into memory. ``points`` are the x and y
-    of the feet, (n + 1, 2), in metres; ``states`` is (n + 1,).
+    A trajectory is much smaller than a recorded episode, so hundreds fit into memory. ``points`` are the
+    x and y of the player's feet, (n + 1, 2), in metres. ``states`` are the numbers of the automaton's
+    states, (n + 1,).
     """
 
     points: NDArray[np.float32]

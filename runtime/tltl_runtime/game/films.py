@@ -26,7 +26,8 @@ class Films(ABC, Generic[EpisodeT]):
     def frames(
         self, episode: EpisodeT, times: Sequence[float], view: str, size: tuple[int, int], notation: Notation
     ) -> Iterator[Picture]:
-        """Yield a picture of ``size`` (width, height) for each of ``times``, rising seconds since the reset.
+        """Yield a picture of the episode at each of ``times``.
 
-        ``view`` is one of ``views``. What remains to be satisfied is in ``notation``.
+        ``times`` are seconds since the reset, in ascending order. ``view`` is one of ``views``, and
+        ``size`` is the width and height in pixels. The pictures may show formulas, in ``notation``.
         """

@@ -33,12 +33,13 @@ from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, TltlError
 class Game(ABC, Generic[LevelT, EpisodeT]):
     """A game with levels of type ``LevelT`` and recorded episodes of type ``EpisodeT``.
 
-    Methods that are not abstract are what a game may offer besides; their defaults say what a game
-    without it has. An instance has no state, so that its methods can be sent to other processes.
+    A game implements the abstract methods. The other methods are optional: the defaults are those of a
+    game that does not offer the feature. An instance has no state, so that its methods can be sent to
+    other processes.
     """
 
     choices: Mapping[str, tuple[str, ...]] = EMPTY
-    """The branches of an action, each with the names of its choices.
+    """The branches of an action by name, each with the names of its choices: ``{"jump": ("no", "yes")}``.
 
     An action makes one choice in each branch. By default empty: the actions of the game have no
     names.
@@ -60,7 +61,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     """Lets a person play; None if only programs can play."""
 
     recordings_have_levels: bool = True
-    """Whether recordings contain all that is needed to play them again; if not, :meth:`located` adds it."""
+    """Whether a recording contains all that is needed to play it again; if not, :meth:`located` adds the rest."""
 
     modules: tuple[str, ...]
     """The modules that a process needs to play.
@@ -82,7 +83,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def load_level(self, name: str, variant: str | Variant = "v0") -> LevelT:
         """Load a level in one of its variants; ``name`` may be the path of a file.
 
-        A text ``VARIANT+OVERLAY`` is parsed as in arguments.
+        ``variant`` may be a text such as ``v0`` or ``v0+OVERLAY``, as in arguments of commands.
 
         Raises:
             TltlError: there is no such level or variant, or its file is invalid.
@@ -99,15 +100,17 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def check_fit(self, level: LevelT, fspa: Fspa, spec: str | Path | Fspa) -> None:
-        """Raise one TltlError for everything that a spec needs and a level lacks.
+        """Raise TltlError if a level lacks something that a spec needs.
 
-        ``fspa`` is the automaton of ``spec``. The labels of the error point into the spec's source.
+        The error has a diagnostic for each thing that is missing. ``fspa`` is the automaton of ``spec``.
+        The labels of the diagnostics point into the spec's source.
         """
 
     def level_check(self, name: str, variant: str | Variant, sensors: SensorChoice | None) -> LevelCheck | None:
-        """Read a level to check it against specs, for agents with ``sensors``.
+        """Read a level, so that it can be checked against specs.
 
-        By default None: the game cannot check its levels.
+        ``sensors`` are those of the agents that will play it; None means the level's own. By default
+        None: the game cannot check its levels.
 
         Raises:
             TltlError: the level cannot be read, or lacks something that ``sensors`` names.
@@ -121,7 +124,8 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         By default, agents have no sensors that can be chosen.
 
         Raises:
-            TltlError: TLT0815, for each mistake in ``choice``; by default, for all that it names.
+            TltlError: it has a diagnostic TLT0815 for each mistake in ``choice``. By default, everything
+                that ``choice`` names is a mistake, unless it equals the level's sensors.
         """
         keys = Sensors.__match_args__ if isinstance(choice, Sensors) else tuple(choice or ())
         if choice is None or not keys or choice == level.sensors:
@@ -132,7 +136,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def missing_sensors(self, level: LevelT, sensors: Sensors) -> Iterator[str]:
         """Yield what ``sensors`` names but the level does not have, for example "the entity `exit`".
 
-        By default nothing: the level is not asked.
+        By default nothing.
         """
         del level, sensors
         return iter(())
@@ -153,30 +157,31 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return {}
 
     def played_level(self, level: LevelT, episodes: Iterable[EpisodeT]) -> LevelT:
-        """Return a level with what ``episodes`` showed of it, for reports; by default nothing more.
+        """Return ``level`` with what ``episodes`` showed of it, so that reports can draw it.
 
-        A game may know where things are only when it is played.
+        Some games know only while they are played where things are. By default, return ``level``
+        unchanged.
         """
         del episodes
         return level
 
     def unreachable_entities(self, level: LevelT, fspa: Fspa) -> list[UnreachableEntity]:
-        """Return each entity of a spec that no player can reach; none if the level is too large to search.
+        """Return the entities of a spec that no player can reach.
 
-        By default none: the game does not search its levels.
+        The result is empty if the level is too large to search, and by default.
         """
         del level, fspa
         return []
 
     def is_infeasible(self, level: LevelT, fspa: Fspa) -> bool:
-        """Return whether no player can meet the spec; False, also by default, if that is unknown."""
+        """Return True if it is certain that no player can meet the spec; by default False."""
         del level, fspa
         return False
 
     def play_warnings(self, level: LevelT, fspa: Fspa) -> list[Diagnostic]:
         """Return the warnings to show before play, for example that nobody can reach a goal.
 
-        By default none: the game does not search its levels.
+        By default none.
         """
         del level, fspa
         return []
@@ -190,7 +195,11 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return None
 
     def is_same_game(self, level: LevelT, other: LevelT) -> bool:
-        """Return whether two levels are of the same game; by default always, if the class has one game alone."""
+        """Return whether two levels belong to the same game.
+
+        By default always, which is right for a class that stands for a single game. The class for game
+        files stands for many games.
+        """
         del level, other
         return True
 
@@ -256,20 +265,22 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Return the bytes of the file of an episode; equal episodes give equal bytes."""
 
     def located(self, episode: EpisodeT, level: str, variant: str | None) -> EpisodeT:
-        """Return an episode that can be played again on ``level``, in ``variant`` or the recorded one.
+        """Return ``episode`` with the place of its level, so that it can be played again there.
 
-        By default the episode as it is: its recording contains the level.
+        ``level`` names the level, and ``variant`` its variant; None means the recorded one. By default,
+        return the episode unchanged, because its recording contains the level.
 
         Raises:
-            TltlError: there is no such level, or it is another one than that of the episode.
+            TltlError: there is no such level, or the episode was played on another one.
         """
         del level, variant
         return episode
 
     def check_replay(self, episode: EpisodeT) -> tuple[Diagnostic, ...] | None:
-        """Play the actions of an episode again; return TLT0824 if the episodes differ, else an empty tuple.
+        """Play the actions of an episode again, and compare the result with the recording.
 
-        By default None: the game cannot play a recording again.
+        Return the diagnostic TLT0824 if they differ, and an empty tuple if they are equal. By default,
+        return None: the game cannot play a recording again.
 
         Raises:
             TltlError: TLT0730, a package that plays is not installed.
@@ -282,7 +293,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return summary_of(episode, index)
 
     def figures(self, episode: EpisodeT) -> GameFigures:
-        """Return the figures of an episode that only this game has; by default none."""
+        """Return the figures of an episode that only this game has, such as health; by default none."""
         del episode
         return GameFigures()
 
@@ -291,7 +302,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         """Return the reason why an episode ended."""
 
     def observers(self, episode: EpisodeT, begin_s: float, end_s: float) -> tuple[str, ...]:
-        """Return the enemies that saw the player between two times, in the order of the level.
+        """Return the names of the enemies that saw the player between two times, in the order of the level.
 
         The times are in seconds since the reset. By default none: the game has no enemies that see.
         """
@@ -299,9 +310,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return ()
 
     def shut_barriers(self, episode: EpisodeT) -> tuple[str, ...]:
-        """Return the barriers, in the level's order, that were shut at the end and that players cannot pass.
+        """Return the names of the barriers that were shut at the end of an episode and that players cannot pass.
 
-        By default none: the game has no barriers.
+        They are in the order of the level. By default none: the game has no barriers.
         """
         del episode
         return ()

@@ -60,14 +60,17 @@ class Hud:
 
 
 def clock_text(seconds: float, fspa: Fspa, step_s: float) -> str:
-    """Return the time of the game as text, with the time left if the spec has a limit; a step takes ``step_s``."""
+    """Return the time of the game as text, such as ``12.3 s, 27 s left``.
+
+    The time left is shown if the spec has a limit. ``step_s`` is the length of a step in seconds.
+    """
     if fspa.limit_steps is None:
         return f"{seconds:.1f} s"
     return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * step_s - seconds):.0f} s left"
 
 
 def goal_lines(text: str) -> tuple[Line, ...]:
-    """Return a text that says what remains to be done, as lines beside the picture; a long one is cut."""
+    """Wrap a text that says what remains to be done into lines beside the picture; cut it after ten lines."""
     lines = wrap(text, _WIDTH)
     if len(lines) > _MOST_LINES:
         lines = [*lines[: _MOST_LINES - 1], f"{lines[_MOST_LINES - 1][: _WIDTH - 2]} …"]

@@ -49,8 +49,8 @@ class Keyboard(ABC, Generic[EpisodeT]):
         """Open a window and play episodes of ``env`` until the player stops.
 
         Playing also ends if ``enough`` returns true after an episode. ``recordings`` stores the
-        episodes. ``seed`` is the seed of the first episode; None takes a new one. ``view``, one of
-        ``views``, is what the window shows first.
+        episodes. ``seed`` is the seed of the first episode; None means a new one. ``view`` is the one of
+        ``views`` that the window shows first. ``crouch`` says how the key for crouching works.
 
         Raises:
             TltlError: TLT0830, no window can be opened; TLT0730, a package is not installed.

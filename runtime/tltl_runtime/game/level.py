@@ -1,4 +1,4 @@
-"""The properties of a level that the runtime needs, whatever the game."""
+"""The properties that the levels of all games have."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class LevelSpec:
     """The spec that a level is made for: the spec called ``name`` in ``file``.
 
-    In a recorded level, ``file`` has no folder.
+    ``name`` is empty if only the file is known. In a recorded level, ``file`` has no folder.
     """
 
     file: Path
@@ -30,7 +30,10 @@ class LevelSpec:
 
 
 def parse_level_spec(text: str) -> LevelSpec | None:
-    """Parse ``FILE.tltl:NAME``, as files of levels and recordings contain it; None for an empty text."""
+    """Parse ``FILE.tltl:NAME`` or ``FILE.tltl``, as level files and recordings name a spec.
+
+    Return None for an empty text.
+    """
     file, colon, name = text.rpartition(":")
     if not text:
         return None
@@ -38,7 +41,7 @@ def parse_level_spec(text: str) -> LevelSpec | None:
 
 
 class Level(Protocol):
-    """One variant of a level."""
+    """A level in one of its variants, loaded and ready to be played."""
 
     @property
     def game(self) -> Game[Any, Any]:

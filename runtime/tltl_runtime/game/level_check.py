@@ -9,7 +9,7 @@ from tltlc.api import Diagnostic, Fspa, Spec, record
 
 @record
 class SensedPart:
-    """A part of an agent's observation: its ``key``, its ``shape``, and the ``names`` of what it shows."""
+    """A part of an agent's observation, a Dict: its ``key``, its ``shape``, and the ``names`` of what it shows."""
 
     key: str
     shape: tuple[int, ...]
@@ -33,14 +33,14 @@ class LevelCheck(ABC):
 
     @abstractmethod
     def diagnostics(self, fspa: Fspa, spec: Spec | None) -> list[Diagnostic]:
-        """Return what a spec needs and the level lacks, and what of the spec nobody can do.
+        """Return diagnostics for what a spec needs and the level lacks, and for goals that nobody can reach.
 
-        ``spec``, from which ``fspa`` was made, gives the places in its source; None if it has none.
+        ``spec`` is the source of ``fspa``, into which the diagnostics point; None if there is no source.
         """
 
     @abstractmethod
     def supplied(self, fspa: Fspa) -> tuple[str, ...]:
-        """Return what the level supplies to a spec, for people: ``s1``, ``reach = 1.5 m``."""
+        """Return texts that say what the level supplies to a spec, such as ``s1`` and ``reach = 1.5 m``."""
 
     @abstractmethod
     def picture(self) -> bytes:

@@ -12,7 +12,7 @@ from tltl_runtime.game.level_name import Variant
 
 LevelT = TypeVar("LevelT", bound=Level)
 FileKind = Literal["level", "asset", "overlay"]
-"""What a file of a level is: its own file, an asset or an overlay."""
+"""What a file of a level is: its own file, an asset that levels may share, or an overlay that changes assets."""
 
 _FOLDERS: Final[dict[FileKind, str]] = {"level": "", "asset": "assets", "overlay": "overlays"}
 
@@ -23,7 +23,7 @@ def listed_name(kind: FileKind, file_name: str) -> str:
 
 
 def file_kind(name: str) -> FileKind:
-    """Return what a level's file is, by the folder in its name; :func:`listed_name` made the name."""
+    """Return the kind of a level's file, given its listed name: ``assets/guard.toml`` is an asset."""
     folders = PurePosixPath(name).parts[:-1]
     return next((kind for kind, folder in _FOLDERS.items() if folders == (folder,)), "level")
 
@@ -47,7 +47,7 @@ class LevelFiles(ABC, Generic[LevelT]):
         """
 
     def level_name(self, name: str) -> str:
-        """Return the name of a level as :class:`~tltl_runtime.game.level.Level` has it; the level need not load.
+        """Return ``Level.name`` of a level, even if its file has errors or does not exist.
 
         Raises:
             TltlError: TLT0800, no level of the game has that name.
@@ -64,31 +64,31 @@ class LevelFiles(ABC, Generic[LevelT]):
 
     @abstractmethod
     def load_with_changes(self, name: str, variant: Variant) -> tuple[LevelT, tuple[str, ...]]:
-        """Load a level in one of its variants; also return the descriptions of the variant's overlays.
+        """Load a level in one of its variants; also return descriptions of what the variant's overlays change.
 
         Raises:
             TltlError: there is no such level or variant, or its file is invalid.
         """
 
     def description(self, name: str, variant: Variant) -> str:
-        """Return, for people, what the overlays of a variant change; empty without overlays.
+        """Say what the overlays of a variant change in the level.
 
-        A game may describe the level instead if there are no overlays. Raises the errors of
-        :meth:`load_with_changes`.
+        The text is empty if there are no overlays, or a game describes the level instead. Raises the
+        errors of :meth:`load_with_changes`.
         """
         return " ".join(self.load_with_changes(name, variant)[1])
 
     @abstractmethod
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
-        """Yield the files that a level depends on, among them its spec.
+        """Yield the paths of the files that a level depends on, among them its spec.
 
-        The level need not load: if a file has errors, the method uses what can be read of it. Also
-        yield the paths where a new file would take precedence over an existing one.
+        If a file has errors, use what can be read of it. Also yield the paths where a new file would take
+        precedence over an existing one.
         """
 
     @abstractmethod
     def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
-        """Yield the paths at which one of a level's files may be.
+        """Yield the paths at which a file of a level may be; the first path with a file is the one that is read.
 
-        ``file_name`` is the name of the file as ``Level.files`` has it.
+        ``file_name`` is the name of the file in ``Level.files``, such as ``assets/guard.toml``.
         """

@@ -15,29 +15,30 @@ if TYPE_CHECKING:
 
 
 class LevelMaps(ABC, Generic[LevelT, EpisodeT]):
-    """Draws maps of a game's levels, and gives a page's script the data of what moves on them.
+    """Draws maps of a game's levels, and returns the data with which a page's script draws what moves on them.
 
-    The levels have bounds. Lengths on a map are in centimetres of the map, from the north-western
-    corner of the level's bounds: see :mod:`~tltl_runtime.game.map_scale`.
+    Each level must have bounds. Coordinates on a map are centimetres of the map, measured from the
+    north-western corner of the bounds: see :mod:`~tltl_runtime.game.map_scale`.
     """
 
     values: tuple[str, ...] = ()
-    """The names of the values in [0, 1] of a player, beside progress, that recorded episodes show."""
+    """The names of the player's values in [0, 1], such as ``health``, that episodes record in addition to progress."""
 
     @abstractmethod
     def colours(self) -> Mapping[str, str]:
-        """Return the colours of the maps by name, as ``#rrggbb``: the property ``--map-NAME`` in CSS."""
+        """Return the colours of the maps by name, as ``#rrggbb``. The CSS property ``--map-NAME`` has each colour."""
 
     def metre(self, level: LevelT) -> float:
-        """Return the length in a level, in metres, that is a metre on its map; by default 1."""
+        """Return how many metres of a level a metre on its map stands for; by default 1."""
         del level
         return 1.0
 
     @abstractmethod
     def picture(self, level: LevelT, mentions: Mentions = NO_MENTIONS) -> Markup:
-        """Draw the map of a level, with what a report ``mentions`` highlighted.
+        """Draw the map of a level, and highlight the things and regions in ``mentions``.
 
-        The page's script fills its layers ``heat``, ``trajectories``, ``ends`` and ``live``.
+        The map has the empty layers ``heat``, ``trajectories``, ``ends`` and ``live``, which the page's
+        script fills.
         """
 
     @abstractmethod
@@ -46,20 +47,18 @@ class LevelMaps(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def map_data(self, level: LevelT) -> dict[str, Any]:
-        """Return what the page's script must know of a level to draw onto its map, as JSON data."""
+        """Return what the page's script must know about a level to draw onto its map, as JSON data."""
 
     @abstractmethod
     def episode_data(self, level: LevelT, index: int, episode: EpisodeT) -> dict[str, Any]:
         """Return an episode as JSON data for the page's player, which draws it on the map of ``level``.
 
-        ``index`` is the number of the episode within its case.
-
-        The functions of :mod:`~tltl_runtime.game.packing` encode the values, and ``packing.js``
-        decodes them.
+        ``index`` is the number of the episode within its case. The functions of
+        :mod:`~tltl_runtime.game.packing` encode the values, and ``packing.js`` decodes them.
         """
 
     def is_map_of(self, level: LevelT, episode: EpisodeT) -> bool:
-        """Return whether a recorded episode was played on the map of a level; by default always."""
+        """Return whether the map of a level also fits a recorded episode of it; by default always."""
         del level, episode
         return True
 

@@ -46,7 +46,7 @@ class Variant:
 
     @property
     def title(self) -> str:
-        """The variant as reports show it: overlays that are paths have only their names."""
+        """The variant as reports show it: ``v0+wider`` for ``v0+mine/wider.toml``."""
         overlays = (Path(overlay).stem if overlay.endswith(".toml") else overlay for overlay in self.overlays)
         return "+".join((self.name, *overlays))
 
@@ -61,8 +61,9 @@ class Variant:
 def split_level(argument: str) -> tuple[str, str | None]:
     """Split an argument into a level and a variant, for :meth:`~tltl_runtime.game.game.Game.load_level`.
 
-    The variant is None if the argument has none. The path of an existing file is not split, and
-    neither is a drive letter of Windows.
+    ``"vault:v1" -> ("vault", "v1")``, and ``"lake.game.toml:small" -> ("lake.game.toml:small", None)``.
+    The variant is None if the argument has none. The path of an existing file is not split, unless it
+    is a game file, and neither is a drive letter of Windows.
     """
     scene = _SCENE.match(argument)
     if scene:
@@ -78,19 +79,25 @@ def split_level(argument: str) -> tuple[str, str | None]:
 
 
 def is_scene(level: str) -> bool:
-    """Whether a level's name or path, without a variant, is that of a scene in a game file."""
+    """Whether a level, named without a variant, is a scene of a game file, such as ``lake.game.toml:small``."""
     return _SCENE.match(level) is not None
 
 
 def level_file(level: str) -> Path | None:
-    """Return the path of the file of a level, named without a variant; None if it is a name of the package."""
+    """Return the path of the level file or game file in the name of a level; None if the name has no path.
+
+    Without a path, the level comes with the package. ``level`` has no variant.
+    """
     if is_scene(level):
         return Path(split_scene(level)[0])
     return Path(level) if level.endswith(".toml") else None
 
 
 def level_stem(level: str) -> str:
-    """Return a short name of a level, named without a variant: that of its scene, or of its file."""
+    """Return a short name for a level, named without a variant: ``mine/vault.toml`` has the name ``vault``.
+
+    For a scene of a game file, this is the name of the scene or, without one, that of the game file.
+    """
     file, scene = split_scene(level) if is_scene(level) else (level, None)
     return scene or Path(file).name.removesuffix(GAME_FILE).removesuffix(".toml")
 
@@ -101,13 +108,20 @@ def level_option(level: str) -> str:
 
 
 def with_level_file(level: str, path: Path) -> str:
-    """Return a level, named without a variant, whose file is at ``path`` instead."""
+    """Return the name of a level with ``path`` in place of its file; ``level`` has no variant.
+
+    ``"lake.game.toml:small"`` with the path ``new/lake.game.toml`` becomes ``"new/lake.game.toml:small"``.
+    """
     scene = split_scene(level)[1] if is_scene(level) else None
     return str(path) if scene is None else f"{path}:{scene}"
 
 
 def split_scene(level: str) -> tuple[str, str | None]:
-    """Split the level ``FILE.game.toml:SCENE`` into file and scene; the scene is None if there is none."""
+    """Split the level ``FILE.game.toml:SCENE`` into file and scene; the scene is None if there is none.
+
+    Raises:
+        ValueError: the level is not a scene of a game file.
+    """
     match = _SCENE.match(level)
     if match is None:
         raise ValueError(f"`{level}` is not a scene of a game file")
@@ -117,8 +131,8 @@ def split_scene(level: str) -> tuple[str, str | None]:
 def parse_variant(text: str) -> Variant:
     """Parse ``VARIANT`` or ``VARIANT+OVERLAY+…``, as arguments and files contain it.
 
-    A path may contain a ``+`` after its first part: ``v0+/home/c++/wider.toml`` is ``v0`` and one
-    overlay.
+    The path of an overlay may contain a ``+`` after its first slash: ``v0+/home/c++/wider.toml`` is
+    ``v0`` and one overlay.
     """
     name, plus, overlays = text.partition("+")
     return Variant(name, tuple(_OVERLAY.findall(plus + overlays)))

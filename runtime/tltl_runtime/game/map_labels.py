@@ -50,7 +50,10 @@ class MapLabel:
 def thing_label(
     name: str, kind: str, place: tuple[int, int], above: int, scale: MapScale, mentions: Mentions
 ) -> MapLabel:
-    """Return the name of a thing at its default position, which is ``above`` its place, in centimetres."""
+    """Return the label of a thing at its default position: ``above`` centimetres above ``place``.
+
+    The label is moved to the side if it would not fit on the map. ``kind`` is its CSS class.
+    """
     half = _LETTER_WIDTH * len(name) // 2
     middle = min(max(place[0], half), max(half, scale.size[0] - half))
     return MapLabel((name,), kind, middle, place[1] - above, name in mentions.things)
@@ -63,7 +66,11 @@ def placed_labels(
     scale: MapScale,
     mentions: Mentions,
 ) -> Iterator[MapLabel]:
-    """Yield the labels of ``things``, moved apart, then those of ``regions``, which avoid things and obstacles."""
+    """Yield all labels of a map at their final positions.
+
+    First come the labels of ``things``, moved apart. Then come the labels of ``regions``, which are placed
+    so that they overlap neither the labels of things nor ``obstacles``, if possible.
+    """
     occupied: list[Rect] = []
     for label in things:
         separated = _separated(label, occupied, scale.size)
@@ -82,8 +89,8 @@ def placed_labels(
 def _separated(label: MapLabel, occupied: Sequence[Rect], size: tuple[int, int]) -> MapLabel:
     """Move a label to the position at which it overlaps the rectangles in ``occupied`` least.
 
-    The label stays on the map, which has the width and height ``size``. Of equally good positions,
-    those straight above or below the label's own come first.
+    The label stays on the map, which has the width and height ``size``. Among equally good positions,
+    prefer those straight above or below the label's own.
     """
     half = _LETTER_WIDTH * len(label.lines[0]) // 2
     right, lowest = max(half, size[0] - half), max(_LINE_HEIGHT, size[1])

@@ -19,7 +19,12 @@ _LAYERS: Final = ("heat", "trajectories", "ends", "live")
 def map_picture(
     title: str, scale: MapScale, ground: Iterable[Markup], things: Iterable[Markup], labels: Iterable[MapLabel]
 ) -> Markup:
-    """Return a map: from bottom to top the ground, the heat map, the things, trajectories, names and what moves."""
+    """Return a map as SVG.
+
+    From bottom to top, it shows the ground, the heat map, the things, the trajectories and their ends,
+    the names, and what moves. The page's script draws the heat map, the trajectories, their ends and
+    what moves.
+    """
     width, height = scale.size
     above = [element("g", class_=layer) for layer in _LAYERS[1:]]
     return element(
@@ -38,7 +43,10 @@ def map_picture(
 
 
 def sign_list(rows: Iterable[tuple[Markup, str]]) -> Markup:
-    """Return the legend of a map: each row has a sign, whose view is 16 wide and high, and its meaning."""
+    """Return the legend of a map; each row is a sign and its meaning.
+
+    Signs are drawn in a square of 16 by 16 units around the origin.
+    """
     return element(
         "ul",
         *(element("li", _sign(shape), meaning) for shape, meaning in rows),

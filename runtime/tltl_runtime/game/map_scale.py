@@ -17,8 +17,8 @@ Rect = tuple[int, int, int, int]
 class MapScale:
     """Converts the metres of a level to the centimetres of its map.
 
-    ``metre`` is the length in the level, in metres, of a metre on the map. ``size`` is the width and
-    the height of the map, in centimetres.
+    ``bounds`` are those of the level. ``metre`` says how many metres of the level a metre on the map
+    stands for. ``size`` is the width and the height of the map, in centimetres.
     """
 
     def __init__(self, bounds: Box, metre: float = 1.0) -> None:
@@ -27,7 +27,7 @@ class MapScale:
         self.size = (round(self._per_metre * (east - self.west)), round(self._per_metre * (self.north - south)))
 
     def at(self, point: Sequence[float]) -> tuple[int, int]:
-        """Return the map coordinates of a point."""
+        """Return the map coordinates of a point (x, y) or (x, y, z)."""
         return round(self._per_metre * (point[0] - self.west)), round(self._per_metre * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:

@@ -13,7 +13,7 @@ from tltlc.api import record
 class Mentions:
     """The names of the things and regions of a level that a text mentions.
 
-    ``things`` are entities and solids, or keys of their tables in the files of a level.
+    ``things`` are the names of entities, solids such as walls, and areas.
     """
 
     things: tuple[str, ...] = ()
@@ -26,10 +26,10 @@ NO_MENTIONS: Final = Mentions()
 def mentions_in(text: str, things: Iterable[str], regions: Sequence[str]) -> Mentions:
     """Return which of the ``things`` and ``regions`` of a level a text mentions.
 
-    A thing is mentioned by its name (```far_wall```) or by a key of its table in the level's file
-    (```wall.far_wall.at```). A region is mentioned by *the* and its name (*the left part*). If the
-    names of several regions fit at one place in the text, only the longest counts: *the left part*
-    does not mention ``left``.
+    A text mentions the thing ``far_wall`` if it contains that name in backticks, alone or with keys of
+    the level's file, such as "wall.far_wall.at" in backticks. It mentions the region ``left_part`` if it
+    contains "the left part". If the names of several regions fit at one place in the text, only the
+    longest counts: "the left part" does not mention the region ``left``.
     """
     return Mentions(tuple(name for name in things if _mentions_thing(name, text)), _regions(text, regions))
 

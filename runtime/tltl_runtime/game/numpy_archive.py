@@ -61,7 +61,7 @@ def read_array(data: bytes) -> NDArray[Any]:
 
 
 def _unpack(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """Unpack one file, but no more bytes than its entry in the archive declares."""
+    """Unpack one file; read no more bytes than its entry in the archive declares."""
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise zipfile.BadZipFile
     with archive.open(entry) as file:

@@ -67,7 +67,10 @@ class MapImage:
 
 @record
 class LevelOutline:
-    """The outline of a level: its bounds and what is in it, all in metres; the functions below check it."""
+    """The outline of a level: its bounds and what is in it, all in metres.
+
+    A game may return any values; :func:`outline_problem` checks them.
+    """
 
     bounds: Box
     boxes: tuple[NamedBox, ...] = ()
@@ -77,7 +80,10 @@ class LevelOutline:
 
 
 def hull(outline: LevelOutline) -> Box | None:
-    """Return the smallest box around the boxes, polygons, regions and the image; None if there are none."""
+    """Return the smallest box around the boxes, polygons, regions and the image of an outline.
+
+    Each side is at least a centimetre long. Return None if the outline has nothing but its bounds.
+    """
     corners = [*_corners(outline)]
     if not corners:
         return None
@@ -92,7 +98,10 @@ def widened(box: Box) -> Box:
 
 
 def outline_problem(outline: LevelOutline) -> str | None:
-    """Return what is wrong with an outline, as the end of a sentence about it; None if nothing is."""
+    """Return what is wrong with an outline, such as "has a box whose sides are shorter than a centimetre".
+
+    The text ends a sentence whose subject is the outline. Return None if nothing is wrong.
+    """
     names = [*(box.name for box in outline.boxes), *(polygon.name for polygon in outline.polygons)]
     names += [region.name for region in outline.regions]
     if len(names) > MOST_SHAPES:
@@ -132,7 +141,10 @@ def _boxes(outline: LevelOutline) -> list[Box]:
 
 
 def _corners(outline: LevelOutline) -> Iterator[Sequence[float]]:
-    """Yield corners of everything in an outline but its bounds; a polygon is at the bottom of the others."""
+    """Yield corners of an outline's content: two opposite ones of each box, region and image, all of each polygon.
+
+    Corners are (x, y, z). Polygons and the image lie at the bottom of the lowest box or region; at 0 without these.
+    """
     boxes = _boxes(outline)
     for box in boxes:
         yield from (box.low, box.high)

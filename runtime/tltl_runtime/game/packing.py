@@ -16,7 +16,7 @@ _CONTINUATION: Final = 32
 
 
 def steps(values: Iterable[float], scale: float) -> str:
-    """Encode numbers as a short text: the first, then each difference from the number before.
+    """Encode numbers as a short text: the first number, then the difference of each from the one before.
 
     Each number is first multiplied by ``scale`` and rounded to an integer. Integers are encoded as
     in source maps (base64 VLQ), so that a small difference takes a single character.
@@ -26,7 +26,7 @@ def steps(values: Iterable[float], scale: float) -> str:
 
 
 def _vlq(number: int) -> str:
-    """Encode an integer as in source maps."""
+    """Encode an integer as in source maps (base64 VLQ)."""
     remaining, digits = abs(number) << 1 | (number < 0), ""
     while remaining >= _CONTINUATION:
         digits += _DIGITS[remaining % _CONTINUATION + _CONTINUATION]
@@ -35,7 +35,7 @@ def _vlq(number: int) -> str:
 
 
 def runs(values: Iterable[T]) -> list[list[T | int]]:
-    """Run-length encode values, as pairs of a value and its number of repetitions."""
+    """Run-length encode values as pairs of a value and a count: ``[5, 5, 7] -> [[5, 2], [7, 1]]``."""
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
@@ -45,9 +45,10 @@ def scaled_runs(values: Iterable[float], scale: float) -> list[list[int]]:
 
 
 def position_steps(bounds: Box, points: Sequence[Sequence[float]], metre: float = 1.0) -> dict[str, str]:
-    """Encode the x and the y coordinates of points, given in metres, in centimetres of the map.
+    """Encode the ``x`` and the ``y`` coordinates of points, in centimetres of the map.
 
-    ``metre`` is the length in the level, in metres, of a metre on the map.
+    The points are in metres of the level. ``metre`` says how many of these a metre on the map stands
+    for.
     """
     return {
         "x": x_steps(bounds, [point[0] for point in points], metre),
@@ -58,7 +59,7 @@ def position_steps(bounds: Box, points: Sequence[Sequence[float]], metre: float 
 def x_steps(bounds: Box, xs: Sequence[float], centimetres: float = 1) -> str:
     """Encode x coordinates, given in metres, with :func:`steps`.
 
-    The encoded numbers are distances from the western bound, in units of ``centimetres``.
+    The encoded numbers are distances from the western bound; a unit is ``centimetres`` long.
     """
     return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
@@ -66,7 +67,7 @@ def x_steps(bounds: Box, xs: Sequence[float], centimetres: float = 1) -> str:
 def y_steps(bounds: Box, ys: Sequence[float], centimetres: float = 1) -> str:
     """Encode y coordinates, given in metres, with :func:`steps`.
 
-    The encoded numbers are distances southwards from the northern bound, in units of
-    ``centimetres``.
+    The encoded numbers are distances southwards from the northern bound; a unit is ``centimetres``
+    long.
     """
     return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

@@ -22,11 +22,12 @@ class Pictures(ABC, Generic[LevelT, EpisodeT]):
 
     @abstractmethod
     def episode(self, episode: EpisodeT, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
-        """Draw the path of an episode, with what remained to be satisfied in ``notation``.
+        """Draw the path of an episode, and say what remained to be satisfied on the way.
 
-        ``size`` is the width and the height in pixels; by default, it fits the level.
+        ``size`` is the width and the height in pixels; by default, it fits the level. ``notation`` is the
+        notation of formulas.
         """
 
     @abstractmethod
     def trajectories(self, level: LevelT, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
-        """Draw the trajectories of many episodes of a level that ``fspa`` judged."""
+        """Draw the trajectories of many episodes of a level; ``fspa`` is the automaton that judged them."""

@@ -28,9 +28,9 @@ LINE: Final = 0.22
 """The height of a line of the legend, in inches."""
 
 _ROOMY: Final = 6.0
-"""A plan at least this wide and high, in inches, has text of full size.
+"""A picture at least this wide and high, in inches, has text of full size.
 
-A smaller plan has text of full size only if it has its :func:`plan_size`.
+A smaller picture has text of full size only if it is as large as its :func:`plan_size`.
 """
 
 MOST_LISTED: Final = 12
@@ -45,10 +45,11 @@ _FAINTEST: Final = 0.12
 
 @record
 class Plan:
-    """The plan of a level: its ``bounds``, and a function that draws it into a new figure and returns the axes.
+    """How to draw the plan of a level.
 
-    ``metre`` is the length in the level, in metres, of a metre on the plan. ``marks`` are further
-    entries of the legend.
+    ``bounds`` are those of the level. ``axes`` is a function that draws the level into a new figure and
+    returns its axes. ``metre`` says how many metres of the level a metre on the plan stands for.
+    ``marks`` are handles of matplotlib for further entries of the legend.
     """
 
     bounds: Box
@@ -65,12 +66,15 @@ def draw_path(
     notation: Notation,
     death: int | None = None,
 ) -> bytes:
-    """Draw the ``path`` of an episode, a point for each moment, on the plan of its level as a PNG.
+    """Draw the path of an episode on the plan of its level; return a PNG.
 
-    The PNG is ``size`` (width, height) pixels large. By default, the plan has its
-    :func:`plan_size`. It shows the player's path, where the automaton's state changed, and how
-    the episode ended. The legend says what remained to be satisfied in each state. ``death`` is the
-    row of the moment at which the player had no health, if there is one.
+    ``path`` has a point for the moment of the reset and one for each step. The picture shows the path,
+    where the automaton's state changed, and how the episode ended. The legend says, in ``notation``,
+    what remained to be satisfied in each state.
+
+    ``size`` is the width and height of the picture, in pixels; if it is None, the plan has its
+    :func:`plan_size`. ``death`` is the index in ``path`` of the moment at which the player had no health
+    left; None if there is none.
     """
     states = episode.states.tolist()
     visited = list(dict.fromkeys(states))[:MOST_LISTED]
@@ -107,7 +111,7 @@ def draw_path(
 
 
 def draw_paths(plan: Plan, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
-    """Draw trajectories on the plan of a level, coloured by the automaton's state, as a PNG.
+    """Draw trajectories on the plan of a level, coloured by the automaton's state; return a PNG.
 
     Marks show where episodes ended; the marks of successes are small. The legend says what remained
     to be satisfied in each state and how many episodes ended in each way.
@@ -144,8 +148,8 @@ def draw_paths(plan: Plan, fspa: Fspa, trajectories: Sequence[Trajectory], title
 def plan_size(bounds: Box, metre: float = 1.0) -> tuple[float, float]:
     """Return the width and height, in inches, that the plan of a level has by default.
 
-    An inch shows two metres of the plan, unless it is so large that it is scaled down. ``metre`` is
-    that of :class:`Plan`. The height has 0.4 inches more than the level needs.
+    An inch shows two metres of the plan; very large plans are scaled down. ``metre`` is as in
+    :class:`Plan`. The height has 0.4 inches more than the level needs.
     """
     (x0, y0, _), (x1, y1, _) = bounds.low, bounds.high
     width, height = (x1 - x0) / metre / _METRES_PER_INCH, (y1 - y0) / metre / _METRES_PER_INCH
@@ -154,16 +158,17 @@ def plan_size(bounds: Box, metre: float = 1.0) -> tuple[float, float]:
 
 
 def text_scale(figure: Figure, bounds: Box, metre: float = 1.0) -> float:
-    """Return how large text in a figure is, compared with a plan of :func:`plan_size`.
+    """Return the factor, from 0.6 to 1, by which the text of a figure is scaled.
 
-    The result is from 0.6 to 1: small plans have smaller text.
+    It is below 1 if a side of the figure is shorter than six inches, and shorter than in the plan's
+    :func:`plan_size`.
     """
     roomy = np.minimum(plan_size(bounds, metre), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
 def plan_axes(figure: Figure, bounds: Box, title: str, scale: float, unit: str = "m") -> Any:
-    """Return new axes of a figure for a plan; ``scale`` is that of its text."""
+    """Return new axes of a figure for a plan; ``scale`` is the factor of its text, from :func:`text_scale`."""
     (x0, y0, _), (x1, y1, _) = bounds.low, bounds.high
     axes: Any = figure.add_subplot(
         xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=title, xlabel=f"x, {unit}", ylabel=f"y, {unit}"
@@ -198,7 +203,7 @@ def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "engl
     """Return the label of a state in the legend.
 
     It has the state's number and what remains to be satisfied, cut to ``letters`` characters. In
-    notations other than English, the verdict follows if it is settled.
+    notations other than English, the verdict follows if it is ``satisfied`` or ``violated``.
     """
     automaton_state = fspa.states[state]
     text = label_text(fspa, state, notation)
@@ -221,13 +226,13 @@ def png(figure: Figure) -> bytes:
 
 
 def area(box: Box, **style: Any) -> Rectangle:
-    """Return a box from above as a patch of matplotlib with a ``style``."""
+    """Return a rectangle of matplotlib that shows a box from above; ``style`` are the rectangle's properties."""
     (x0, y0, _), (x1, y1, _) = box.low, box.high
     return Rectangle((x0, y0), x1 - x0, y1 - y0, **style)
 
 
 def write_name(axes: Any, name: str, place: Point, size: float) -> None:
-    """Write a name above a place; ``size`` is that of its letters, in points."""
+    """Write a name above a place; ``size`` is the size of its letters, in points."""
     # matplotlib treats text between dollar signs as mathematics.
     name = name.replace("$", r"\$")
     axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=INK)

@@ -38,7 +38,10 @@ def judging_wrapper(env: gymnasium.Env[Any, Any]) -> TltlEnv:
 
 
 def recorded_end(last: Step | None, success: bool) -> End:
-    """Return how an episode ended; ``last`` is its last step, or None if it has no steps."""
+    """Return how an episode ended; ``last`` is its last step, or None if it has no steps.
+
+    ``success`` says whether the episode met the spec. The result is ``stopped`` if it was still going.
+    """
     if last is None or not last.done:
         return "stopped"
     return settled_end(success, last.verdict)

@@ -33,7 +33,7 @@ ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", aga
 
 STEALTH_FORMAT: Final = "tltl-episode"
 SCENE_FORMAT: Final = "tltl-scene-episode"
-"""The formats of recordings, by which the game of a recording is known."""
+"""The formats of recordings. They tell to which game a recording belongs."""
 
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that contain the bytes of a UTF-8 text."""
@@ -43,9 +43,9 @@ _TEXTS: Final = ("meta", "artefact")
 class Array:
     """The format of an array in an episode's file.
 
-    It has NumPy's ``dtype``, a shape, a unit, and the range of its values from ``low`` to ``high``.
-    A shape contains numbers, and names of axes whose lengths depend on the episode. ``doc`` says
-    what the values are. With ``gaps``, values may also be not-a-number.
+    ``dtype`` is in NumPy's notation. ``shape`` contains numbers, and names of axes whose lengths depend
+    on the episode: ``("n", "atoms")``. Values are from ``low`` to ``high``; with ``gaps``, they may also
+    be not-a-number. ``doc`` says what they are.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Array:
     gaps: bool = False
 
     def actual_shape(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
-        """Return the shape, with the lengths in ``sizes`` in place of the axes' names."""
+        """Return the shape, with the length from ``sizes`` in place of each axis's name."""
         return tuple(size if isinstance(size, int) else sizes[size] for size in self.shape)
 
 
@@ -85,10 +85,10 @@ def format_of(path: Path) -> str | None:
 class RecordingArchive:
     """The archive with the bytes ``data``; messages call the file ``name``.
 
-    ``arrays`` are the names of the arrays that it may contain; others are ignored.
+    ``arrays`` are the names of the arrays to read. The archive may lack some; others in it are ignored.
 
     Raises:
-        TltlError: TLT0820, ``data`` is not a whole archive, or it is too large.
+        TltlError: TLT0820, ``data`` is not a whole archive, is too large, or has no ``meta``.
     """
 
     def __init__(self, data: bytes, name: str, arrays: Iterable[str]) -> None:
@@ -103,11 +103,11 @@ class RecordingArchive:
             raise ERRORS.unreadable_error(name, "it is another kind of archive")
 
     def meta(self, format_: str, version: int) -> dict[str, Any]:
-        """Return the JSON object ``meta``.
+        """Return the JSON object ``meta``, which must have this format and version.
 
         Raises:
-            TltlError: TLT0820, its ``format`` is another; TLT0821, its ``version`` is another;
-                TLT0822, it is not JSON.
+            TltlError: TLT0820, it has another ``format``; TLT0821, it has another ``version``; TLT0822,
+                it is not JSON.
         """
         own, document = self.document()
         if own != format_:
@@ -136,7 +136,7 @@ class RecordingArchive:
         try:
             return _automaton(text)
         except TltlError:
-            # This raises the error that names the file.
+            # Read it again under the name of the file, so that the error contains this name.
             return compiler.read_artefact(SourceFile(f"{self._name}/artefact", text))
 
     def array(self, name: str) -> NDArray[Any]:
@@ -154,7 +154,7 @@ class RecordingArchive:
         return array.shape[0] if array.ndim else 0
 
     def arrays(self, arrays: Iterable[Array], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
-        """Return arrays by name; ``sizes`` has the lengths of the named axes.
+        """Return arrays by name, after checking them; ``sizes`` has the lengths of the named axes.
 
         Raises:
             TltlError: TLT0822, an array is missing, or its type, its shape or one of its values is wrong.

@@ -12,11 +12,11 @@ _Difference = tuple[str, object, object]
 
 
 def check(episode: RecordedEpisode) -> tuple[Diagnostic, ...]:
-    """Run the spec's automaton again on the recorded signals, and compare the results.
+    """Run the spec's automaton again on the recorded signals, and compare the results with the recording.
 
-    Atoms, states, progress, rewards and the kind of end must equal the recorded ones. Return
-    TLT0823 for the first step that differs, and an empty tuple if none does. If the monitor rejects
-    the signals, return the monitor's diagnostics.
+    Atoms, states, progress, rewards and the kind of end must be equal. Return the diagnostic TLT0823 for
+    the first step that differs, and an empty tuple if no step does. If the monitor rejects the signals,
+    return the monitor's diagnostics.
     """
     try:
         first = next(_differences(episode), None)
@@ -31,10 +31,10 @@ def check(episode: RecordedEpisode) -> tuple[Diagnostic, ...]:
 
 
 def replay_difference(episode: RecordedEpisode, row: int, versions: Mapping[str, str]) -> Diagnostic:
-    """Return TLT0824: an episode that was played again differs from its recording at step ``row``.
+    """Return the diagnostic TLT0824: played again, an episode differs from its recording at step ``row``.
 
-    Step 0 is the moment of the reset. ``versions`` are the present versions of what plays; the help
-    says which of them have changed since the recording.
+    Step 0 is the moment of the reset. ``versions`` are the present versions of Python and of the packages
+    that play; the help says which of them have changed since the recording.
     """
     when = f"at step {row}" if row else "at the start"
     title = f"played again from seed {episode.seed}, the episode is different {when}"
@@ -52,7 +52,7 @@ def replay_difference(episode: RecordedEpisode, row: int, versions: Mapping[str,
 
 
 def _differences(episode: RecordedEpisode) -> Iterator[tuple[int, _Difference]]:
-    """Yield each difference between recorded and recomputed values, after the number of its step.
+    """Yield the number of a step and a difference between its recorded and recomputed values, for each difference.
 
     Step 0 is the moment of the reset.
     """

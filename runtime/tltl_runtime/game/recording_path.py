@@ -18,11 +18,11 @@ def file_stem(episode: RecordedEpisode) -> str:
 
 
 def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Collection[str] = ()) -> Path:
-    """Return a path for an episode, so that nothing is overwritten.
+    """Return a path for a new recording, so that no other file is overwritten.
 
-    It is the first free one of ``STEM.episode.npz``, ``STEM-2.episode.npz`` and so on. ``pictures``
-    are the endings of files that are written beside the episode, such as ``.png``. A file with
-    exactly this ``content`` may be overwritten, and so may its pictures.
+    It is the first of ``STEM.episode.npz``, ``STEM-2.episode.npz`` and so on that is free. ``pictures``
+    are the endings of files that the caller writes beside the recording, such as ``.png``; these must be
+    free, too. A recording with exactly this ``content`` may be overwritten, and so may its pictures.
     """
     name, number = stem, 1
     while not _is_free(folder, name, content, pictures):

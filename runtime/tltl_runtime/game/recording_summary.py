@@ -1,4 +1,4 @@
-"""What ``tltlc replay`` says of a recorded episode, as JSON and as text."""
+"""The summary of a recorded episode that ``tltlc replay`` prints, as JSON and as text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tltlc.api import EMPTY, Notation, label_text, record
 
 @record
 class GameFigures:
-    """Figures of an episode that one game has, and others lack.
+    """Figures of an episode that only its game has, such as the player's health.
 
     ``values`` are for programs, by name. ``lines`` are for people: each has a name of at most 8
     characters and a text.
@@ -26,8 +26,8 @@ def summary(episode: RecordedEpisode, notation: Notation = "english") -> dict[st
     """Return a summary of an episode as JSON data.
 
     The key ``changes`` has a row for the start and for each change of the automaton's state. The
-    label in a row says, in ``notation``, what remains to be satisfied in that state. The figures
-    that only its game has come after ``reward``.
+    label in a row says, in ``notation``, what remains to be satisfied in that state. The keys after
+    ``reward`` are the figures that only the episode's game has.
     """
     level, fspa, game = episode.level, episode.fspa, episode.level.game
     result, reason = game.summary(episode), game.cause(episode)
@@ -71,7 +71,7 @@ def summary(episode: RecordedEpisode, notation: Notation = "english") -> dict[st
 
 
 def summary_text(values: Mapping[str, Any], figures: GameFigures) -> str:
-    """Return the result of :func:`summary` as text for people; ``figures`` are those of its game."""
+    """Return the result of :func:`summary` as text for people; ``figures`` come from :meth:`Game.figures`."""
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [

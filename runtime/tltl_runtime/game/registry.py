@@ -15,16 +15,16 @@ from tltlc.api import TltlError
 
 STEALTH: Final = "stealth"
 GYMNASIUM: Final = "gymnasium"
-"""The games that game files describe, all together."""
+"""The name that stands for all games that game files (``NAME.game.toml``) describe."""
 
 _MODULES: Final = {
     STEALTH: "tltl_runtime.stealth.stealth_game",
     GYMNASIUM: "tltl_runtime.gymnasium_games.gymnasium_game",
 }
-"""The modules of the games. The ``GAME`` in a module is the game.
+"""The modules of the games. The variable ``GAME`` of a module is the game.
 
-They are imported by their names, so that commands, evaluation, training and regression tests need
-not import a particular game.
+They are imported only when they are needed, so that commands, evaluation, training and regression
+tests do not depend on a particular game.
 """
 
 _GAMES_BY_FORMAT: Final = {STEALTH_FORMAT: STEALTH, SCENE_FORMAT: GYMNASIUM}
@@ -68,7 +68,7 @@ def game_of_recording(path: str | os.PathLike[str]) -> Game[Any, Any]:
 def level_fault(error: RuntimeError) -> TltlError | None:
     """Return the error to report if a level has caused ``error`` in play, else None.
 
-    Only the games that this process has loaded are asked: no other can have raised it.
+    Only the games that this process has imported are asked, because no other can have raised ``error``.
     """
     games = [game_named(name) for name, module in _MODULES.items() if module in sys.modules]
     return next(filter(None, (game.level_fault(error) for game in games)), None)

@@ -1,4 +1,4 @@
-"""The sensors of an agent, as data."""
+"""The sensors of an agent: which parts of a level it observes."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ class MapSensor:
 
 @record
 class Sensors:
-    """The parts of an agent's observation: vectors to ``entities``, values of signals, and a map.
+    """What an agent observes of a level: vectors to entities, values of signals, and a map.
 
-    ``variables`` are the names of the signals. ``map`` is None if the agent has no map.
+    ``entities`` are the names of the entities, and ``variables`` those of the signals. ``map`` is None if
+    the agent has no map.
     """
 
     entities: tuple[str, ...]
@@ -34,11 +35,14 @@ class Sensors:
 
 
 NO_SENSORS: Final = Sensors((), (), None)
-"""Those of agents whose observations have no parts that sensors choose."""
+"""The sensors of agents in games whose observations cannot be chosen."""
 
 
 def sensor_shapes(sensors: Sensors) -> dict[str, tuple[int, ...]]:
-    """Return the shapes of the parts of an observation that ``sensors`` give, by key."""
+    """Return the shapes of the parts of an observation that come from ``sensors``.
+
+    The keys are ``entities``, ``variables`` and ``map``. Sensors that are empty have no part.
+    """
     shapes: dict[str, tuple[int, ...]] = {}
     if sensors.entities:
         shapes["entities"] = (3 * len(sensors.entities),)

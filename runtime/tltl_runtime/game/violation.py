@@ -11,11 +11,11 @@ from tltlc.api import Atom
 def broken_atoms(
     episode: RecordedEpisode, preferred: Callable[[Atom], bool] = lambda atom: False
 ) -> list[tuple[str, bool]]:
-    """Return the atoms that caused a violation, each with whether it was true.
+    """Return the atoms that caused a violation, and for each whether it was true: ``[("alive", False)]``.
 
-    ``episode`` ended by a violation. The atoms form a prime implicant of the guard of the transition
-    into the violation, one that was true at the last step. If several implicants were true, one with a
-    ``preferred`` atom is taken. The list is empty if none was true.
+    ``episode`` must have ended by a violation. Its last transition has a guard. The atoms form a prime
+    implicant of this guard that was true at the last step. If several implicants were true, take one
+    with a ``preferred`` atom. The list is empty if none was true.
     """
     fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]

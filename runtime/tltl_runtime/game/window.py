@@ -98,7 +98,7 @@ class Window:
         self._pygame.quit()
 
     def read(self, keys: Collection[Key]) -> Pressed:
-        """Return what was done with ``keys`` since the last call; other keys that were pressed are forgotten.
+        """Return what was done with ``keys`` since the last call. Presses of other keys are discarded.
 
         Raises:
             ValueError: pygame has no key with this name.
@@ -117,7 +117,10 @@ class Window:
         return Pressed(held, tapped, closed)
 
     def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
-        """Show a picture (height, width, 3), with entities' names in it and a head-up display."""
+        """Show a picture (height, width, 3), with a head-up display.
+
+        ``names`` are written into the picture, each above its position.
+        """
         pygame = self._pygame
         picture = pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), frame.shape[1::-1], "RGB")
         self._surface.blit(pygame.transform.smoothscale(picture, self.size), (self._side, 0))
