@@ -25,7 +25,7 @@ class PlaySession(ABC, Generic[EpisodeT]):
     ) -> None:
         self._env, self._recordings, self._enough = env, recordings, enough
         self._unsaved = False
-        """Whether the episode has steps that were not passed to ``recordings.save`` yet."""
+        """Whether the episode has steps that ``recordings.save`` has not got."""
 
     def play(self, seed: int | None) -> None:
         """Play until the person stops; ``seed`` is the seed of the first episode."""

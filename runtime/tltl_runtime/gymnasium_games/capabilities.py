@@ -22,7 +22,7 @@ ATTRIBUTES: Final[Mapping[Capability, tuple[str, ...]]] = {
 
 
 def capabilities(env: gymnasium.Env[Any, Any]) -> tuple[Capability, ...]:
-    """Return what an environment offers; attributes are also searched in the environments that it wraps.
+    """Return what an environment, or an environment that it wraps, offers.
 
     ``render`` means that the environment can draw its frames as arrays.
     """

@@ -19,11 +19,14 @@ MOST_ENTITIES: Final = 1_000
 """The most entities of an episode."""
 
 _STILL_M: Final = 1e-6
-"""An entity that moves by no more than this many metres stays where it is."""
+"""An entity that moves by no more than this many metres counts as still."""
 
 
 class PositionsError(ValueError):
-    """Raised for positions that cannot be used: what is wrong with them, and how to correct it."""
+    """Raised for positions that cannot be used.
+
+    The text says what is wrong with them, and ``help`` how to correct it.
+    """
 
     def __init__(self, problem: str, help_: str) -> None:
         super().__init__(problem)
@@ -36,7 +39,7 @@ def read_positions(value: object) -> dict[str, Point]:
     An entity whose position is None or not-a-number is gone, and is left out.
 
     Raises:
-        PositionsError: the value gives no positions.
+        PositionsError: the value is not a mapping from names to positions, or has too many entities.
     """
     if not isinstance(value, Mapping):
         help_ = "return a mapping from names to positions: `{'player': (1.0, 2.0)}`"
@@ -84,10 +87,13 @@ class EntityPositions:
 
 
 def entity_positions(moments: Sequence[Mapping[str, Point]]) -> EntityPositions:
-    """Return the entities of an episode in the order in which they appear, without the player.
+    """Return the positions of the entities of an episode, without the player.
+
+    ``moments`` has the positions of all entities by name, at the reset and after each step. The entities
+    are in the order in which they first appear.
 
     Raises:
-        PositionsError: there are too many of them.
+        PositionsError: there are more than ``MOST_ENTITIES``.
     """
     names = tuple(dict.fromkeys(name for moment in moments for name in moment if name != PLAYER))
     if len(names) > MOST_ENTITIES:

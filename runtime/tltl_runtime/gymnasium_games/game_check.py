@@ -35,10 +35,10 @@ _AFTER_SNAPSHOT: Final = 50
 class SceneReport:
     """What a check found out about a variant of a scene.
 
-    ``supply`` is what it supplies to specs. ``steps_per_s`` counts steps with their signals.
-    ``reproducible`` says whether equal seeds and actions give equal signals and observations.
-    ``restores`` says whether a restored snapshot gives what was there before; None if the game has
-    no snapshots. ``diagnostics`` says what is wrong, apart from specs.
+    ``supply`` is what the scene supplies to specs. ``steps_per_s`` is the speed of steps, with their
+    signals. ``reproducible`` says whether equal seeds and actions give equal signals and observations.
+    ``restores`` says whether a restored snapshot brings back the state that was saved; None if the game
+    has no snapshots. ``diagnostics`` says what is wrong with the scene, whatever the spec.
     """
 
     scene: str
@@ -56,10 +56,13 @@ class SceneReport:
 def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
     """Start a variant of a scene, and play it twice with the same seed and actions.
 
-    The diagnostics of the report: TLT0783, warning, the plays differ; TLT0784, a restored snapshot
-    differs (error), or only one of the two methods exists (warning); TLT0785, warning, an
-    observation is not in the observation space; TLT0803, error, the game file does not name a key
-    for each action.
+    The diagnostics of the report:
+
+    - TLT0783, warning: the plays differ.
+    - TLT0784, error: a restored snapshot is not the state that was saved.
+    - TLT0784, warning: the game has only one of the methods ``tltl_snapshot`` and ``tltl_restore``.
+    - TLT0785, warning: an observation is not in the observation space.
+    - TLT0803, error: the game file names keys, but not one for each action.
 
     Raises:
         TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
@@ -104,7 +107,7 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
 
 
 def _check_places(env: SceneEnv) -> None:
-    """Raise TltlError, TLT0781, if the game says where things are, and what it says cannot be used."""
+    """Raise TltlError, TLT0781, if the game gives positions or an outline that cannot be used."""
     env.reset(seed=SEED)
     env.scene_positions()
     env.scene_outline()
@@ -117,7 +120,11 @@ def _clock_s(env: SceneEnv) -> float | None:
 def _differences(
     name: str, label: Label, first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]
 ) -> Iterator[Diagnostic]:
-    """Yield TLT0783 for the first signal and the first observation that differ in two plays."""
+    """Yield TLT0783 for the first signal that differs between two plays.
+
+    Also yield it for the first observation that differs, unless a signal differs at that step or before.
+    ``name`` is the scene and its variant, ``SCENE:VARIANT``.
+    """
     help_ = "draw all random numbers from `self.np_random`, which `super().reset(seed=seed)` seeds"
     difference = first_difference(first, second)
     if difference is not None:
@@ -149,10 +156,10 @@ def _when(step: int) -> str:
 
 
 def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reproducible: bool) -> Iterator[Diagnostic]:
-    """Yield TLT0784 if the game after a restored snapshot is another one than before.
+    """Yield TLT0784 if ``tltl_restore`` does not bring back the state that ``tltl_snapshot`` saved.
 
-    The signals are compared at once. If the game is ``reproducible``, the same actions must also give
-    the same signals and observations from there on.
+    The signals must be the same at once. If the game is ``reproducible``, the same actions must also
+    give the same signals and observations from there on.
     """
     actions = drawn_actions(env, _BEFORE_SNAPSHOT + _AFTER_SNAPSHOT, seed=SEED + 1)
     play(env, actions[:_BEFORE_SNAPSHOT], SEED + 1)
@@ -210,7 +217,7 @@ def _steps_text(steps: int) -> str:
 
 
 def _until_end(moments: Sequence[PlayedMoment]) -> list[PlayedMoment]:
-    """Return the moments up to the end of the episode: a snapshot need not determine the next episode."""
+    """Return the moments up to the first end of an episode; a snapshot need not determine later episodes."""
     end = next((index for index, moment in enumerate(moments) if moment.ended), len(moments))
     return list(moments[: end + 1])
 
@@ -229,7 +236,10 @@ def _outside_space(
 
 
 def _outside_part(space: spaces.Space[Any], observation: Any) -> tuple[str, str]:
-    """Return the name of the part of an observation that is not in its space, and a text for its value."""
+    """Return the part of an observation that is not in its space, and what is wrong with it, as texts.
+
+    For example, ``("the observation's `image`", "it is missing")``.
+    """
     if isinstance(space, spaces.Dict) and isinstance(observation, Mapping):
         for key, part in space.spaces.items():
             if key not in observation:

@@ -1,4 +1,4 @@
-"""Errors of games as diagnostics: the exception, and where in the user's files it was raised."""
+"""Turn exceptions of a game's code into diagnostics that point to the line in the user's files."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _LONGEST: Final = 200
 def guarded(game: GameFile, code: str, what: str, label: Label) -> Iterator[None]:
     """Turn an exception of the game's code in the ``with`` block into a TltlError.
 
-    ``what`` is the subject of the message, for example "the game's `step`". The label of the error
-    is the line in the game's folder that raised the exception, or else ``label``, which is a place
-    in the game file.
+    The error has the code ``code``. ``what`` is the subject of its message, for example "the game's
+    `step`". Its label is the innermost line in the game's folder that took part in the exception; if there
+    is none, ``label``, a place in the game file. A TltlError is raised unchanged.
     """
     try:
         yield
@@ -53,9 +53,9 @@ def exception_text(error: BaseException) -> str:
 
 
 def _place(folder: Path, error: BaseException) -> tuple[Label | None, str]:
-    """Return the label of the innermost line in ``folder`` that took part in an exception.
+    """Return the label of the innermost line in ``folder`` that took part in an exception; None without one.
 
-    The text says where the exception was raised if that is another place; empty if it is the label.
+    Also return where the exception was raised, as text; empty if that is the labelled line.
     """
     frames = [(Path(frame.filename), frame.lineno or 1) for frame in traceback.extract_tb(error.__traceback__)]
     if isinstance(error, SyntaxError) and error.filename:

@@ -22,16 +22,16 @@ from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, re
 
 SUFFIX: Final = ".game.toml"
 FIRST_VARIANT: Final = "v0"
-"""The variant of a scene as it stands in its table."""
+"""The variant of a scene without changes: it has the values of the scene's own table."""
 
 _LEAST_S, _MOST_S = 0.001, 86_400.0
 """The range of the deadlines ``start_s`` and ``step_s``, in seconds."""
 _HELP: Final = 'write values as in `clock = "10 Hz"` and `options = { size = 6 }`'
 _MODULE: Final = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z", re.ASCII)
 _MAKERS: Final = ("gymnasium", "python", "process", "connect")
-"""The keys of ``[game]`` of which exactly one says how the environment is made."""
+"""The keys of ``[game]`` that say how the environment is made. A game file has exactly one of them."""
 _OF_PROCESSES: Final = ("protocol", "start_s", "step_s")
-"""The keys of ``[game]`` for games in other processes alone."""
+"""The keys of ``[game]`` that only games in other processes may have."""
 _GAME_KEYS: Final = (*_MAKERS, *_OF_PROCESSES, "import", "signals", "clock", "observation", "keys")
 _SCENE_KEYS: Final = ("name", "options", "files", "spec", "variants")
 
@@ -55,7 +55,7 @@ class SceneVariant:
 
     ``options`` are the keyword arguments with which the environment is made. ``files`` are the files
     that the scene depends on. ``spec`` is the spec that the scene is made for; None if there is
-    none. ``label`` is the place of the options in the game file, or else that of the scene.
+    none. ``label`` is the place of the options in the game file; without options, that of the scene.
     """
 
     options: Mapping[str, Any]
@@ -76,15 +76,18 @@ class GameScene:
 class GameFile:
     """A game, as its file at ``path`` describes it.
 
-    The environment is the one with the id ``gymnasium``, or the result of the function ``python``, or
-    the game in another process, ``wire``; the others are None. ``modules`` are imported before, so
-    that they register the id.
+    One of three fields says how the environment is made; the others are None. ``gymnasium`` is the id of
+    a registered environment, ``python`` a function that returns the environment, and ``wire`` a game in
+    another process. ``modules`` are imported before that, so that they can register the id.
+
     ``signals`` is a function from an environment to its signals; None if the environment has a
-    method ``tltl_signals``. ``clock_s`` are the seconds of a step; None if the file does not say.
-    ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` are the
-    keys of the keyboard with which a person chooses each action; empty for those of the environment,
-    or the digits. ``has_scenes`` is false if the file names no scene; it then has one that is named
-    after the file. ``labels`` are the places of the keys of ``[game]``.
+    method ``tltl_signals``. ``clock_s`` is the length of a step in seconds; None if the file does not
+    say. ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` has
+    a key of the keyboard for each action. If it is empty, a person plays with the keys that the
+    environment names, or with the digits.
+
+    ``has_scenes`` is false if the file describes no scene; ``scenes`` then has one that is named after
+    the file. ``labels`` are the places of the keys of ``[game]``, and of the table itself as ``game``.
     """
 
     path: Path
@@ -106,9 +109,9 @@ class GameFile:
         return self.path.name.removesuffix(SUFFIX)
 
     def scene_for(self, spec: Path, name: str) -> GameScene | None:
-        """Return the first scene that is made for the spec called ``name`` in the file ``spec``, or the only scene.
+        """Return the first scene that is made for the spec called ``name`` in the file ``spec``.
 
-        None if there are several scenes, and none is made for the spec.
+        If there is none, return the only scene of the game, or None if the game has several.
         """
         for scene in self.scenes:
             own = scene.variants[FIRST_VARIANT].spec
@@ -126,13 +129,13 @@ class GameFile:
 def read_game_file(path: Path, *, allow_outside: bool = False) -> GameFile:
     """Read a game file. Paths in it are relative to its folder.
 
-    Unless ``allow_outside``, they must lead to files in this folder, or in a folder inside it.
+    Unless ``allow_outside``, these paths must lead to files in this folder, or in a folder inside it.
 
     Raises:
         TltlError: all errors that can be found at once. TLT0001, the file cannot be read; TLT0006,
             too many variants and files; TLT0801, not TOML; TLT0802, an unknown key; TLT0803, a
-            missing key, or a value of the wrong kind; TLT0804, two scenes of the same name; TLT0805,
-            a file does not exist.
+            missing key, or a value of the wrong kind; TLT0804, two scenes have the same name, or a
+            variant has a wrong name; TLT0805, a file does not exist.
     """
     source = fileio.read_source(path, path_text(path), max_bytes=fileio.limits.GAME_FILE.size)
     log: list[Diagnostic] = []
@@ -145,7 +148,7 @@ def read_game_file(path: Path, *, allow_outside: bool = False) -> GameFile:
 
 
 class _Reader:
-    """Reads the tables of a game file; errors go to the log of each table."""
+    """Reads the tables of a game file. The methods raise no errors, but add them to the log of the table."""
 
     def __init__(self, path: Path, *, allow_outside: bool) -> None:
         self._path = path
@@ -178,7 +181,10 @@ class _Reader:
         return result
 
     def _wire(self, game: CheckedTable) -> WireGame | None:
-        """Read how a game in another process is started or found; return None if it is in none."""
+        """Read how a game in another process is started or found.
+
+        Return None if the game runs in this process, or if the keys are wrong.
+        """
         process, connect = game.names("process", ()), game.text("connect", "")
         game.text("protocol", "tltl", one_of=("tltl",))
         start_s = game.number("start_s", START_S, low=_LEAST_S, high=_MOST_S, unit="s")
@@ -196,7 +202,7 @@ class _Reader:
         return WireGame(self._path.name, self._folder, process, connect, start_s, step_s)
 
     def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[GameScene, ...]:
-        """Read the scenes; if there are none, return one that is named after the file, labelled ``around``."""
+        """Read the scenes; if there are none, return one that is named after the file, with the label ``around``."""
         if not tables:
             first = SceneVariant({}, (), None, around)
             return (GameScene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}),)
@@ -229,9 +235,10 @@ class _Reader:
         return GameScene(name, variants)
 
     def _variant(self, table: CheckedTable, base: SceneVariant) -> SceneVariant:
-        """Read the keys of a variant; ``base`` has the values of keys that it does not set.
+        """Read a variant from its table; ``base`` gives the values that the table does not set.
 
-        Options are merged by name. Files are added to those of ``base``.
+        The table's options replace those of ``base`` with the same name. Its files are added to those of
+        ``base``.
         """
         options = table.table("options", needed=False)
         files = [self._inside(table, "files", name) for name in table.names("files", ())]
@@ -273,7 +280,10 @@ class _Reader:
 
 
 def _check_makers(game: CheckedTable) -> None:
-    """Log an error unless exactly one key says how the environment is made."""
+    """Log an error unless exactly one key says how the environment is made.
+
+    Also log an error for each key that only games in other processes may have, if the game is not one.
+    """
     given = [key for key in game.entries if key in _MAKERS]
     if len(given) > 1:
         title = f"`[game]` has both `{given[0]}` and `{given[1]}`"
@@ -334,7 +344,7 @@ def _clock_s(table: CheckedTable) -> float | None:
 
 
 def _options(table: CheckedTable) -> dict[str, Any]:
-    """Return the options of a scene as plain values; log an error for each value that JSON does not have."""
+    """Return the options of a scene as plain values; log an error for each value that JSON cannot contain."""
     values = _values(table.entries)
     for key, value in values.items():
         if not _is_plain(value):

@@ -1,7 +1,7 @@
 """Import the Python modules that a game file names.
 
-The folder of the game file comes first in the search for modules. A folder stays at the end of
-``sys.path``, so that modules which a game imports later are found, too.
+While a game is made, the folder of its game file comes first in the search for modules. Later, the
+folder stays at the end of ``sys.path``, so that modules which the game imports only then are found, too.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Label, TltlError
 
 _PACKAGES: Final = {"PIL": "pillow", "cv2": "opencv-python", "yaml": "pyyaml", "skimage": "scikit-image"}
-"""The packages of the index whose modules have another name, by module."""
+"""The names of PyPI packages that differ from the names of their modules, by module."""
 
 _folders: Final[set[Path]] = set()
 """The folders of the games that this process has imported modules from."""
@@ -29,17 +29,14 @@ _folders: Final[set[Path]] = set()
 
 @contextmanager
 def folder_first(game: GameFile) -> Iterator[None]:
-    """Search for modules in the folder of a game first.
+    """Within this context, search for modules in the folder of a game first.
 
-    Modules of other games are forgotten: this game may have modules of the same names, and what other
-    games register must not stay registered in place of what this game registers.
-
-    Raises:
-        TltlError: TLT0780, a module of the game has the name of a module that is imported already.
+    First, remove the modules of other games from ``sys.modules``. This game may have modules with the
+    same names. They must be imported, also so that they register their environments again.
     """
     folder = game.folder.resolve()
     own = _top_names(folder)
-    # Folders are resolved, and so are the paths of modules that were searched in them.
+    # The folders in `_folders` are resolved, so the paths of modules that were found in them are, too.
     others = tuple(f"{other}{os.sep}" for other in _folders if other != folder)
     for name, module in list(sys.modules.items()):
         if not isinstance(module, ModuleType):
@@ -64,8 +61,8 @@ def import_module(game: GameFile, name: str, key: str) -> ModuleType:
     """Import a module that the ``key`` of a game file names, within :func:`folder_first`.
 
     Raises:
-        TltlError: TLT0730, a package is not installed; TLT0780, there is no such module, or it
-            raises an exception.
+        TltlError: TLT0730, a package is not installed; TLT0780, there is no such module, it raises an
+            exception, or a module from outside the game's folder has its name.
     """
     label, folder = game.labels[key], game.folder.resolve()
     top = name.partition(".")[0]
@@ -95,7 +92,10 @@ def import_function(game: GameFile, name: FunctionName, key: str) -> Callable[..
 
 
 def _not_found(game: GameFile, name: str, error: ModuleNotFoundError, label: Label) -> Diagnostic:
-    """Return the diagnostic for a module that does not exist, or that imports one that does not exist."""
+    """Return the diagnostic for ``error``, which importing the module ``name`` has raised.
+
+    Either ``name`` does not exist, or a module that it imports.
+    """
     missing = error.name or name
     package = missing.partition(".")[0]
     own = _top_names(game.folder.resolve())
@@ -126,14 +126,17 @@ def _top_names(folder: Path) -> set[str]:
 
 
 def _is_of_a_game(module: ModuleType) -> bool:
-    """Whether a game file lies beside a module: a process may have imported it before it read that file."""
+    """Whether a game file lies in the folder of a module.
+
+    Then the module belongs to that game, even if this process has not read the game file.
+    """
     file = vars(module).get("__file__")
     return file is not None and any(Path(file).parent.glob(f"*{SUFFIX}"))
 
 
 def _is_from(module: ModuleType, folder: Path) -> bool:
     """Whether a module was imported from a file in a folder."""
-    # Some modules make attributes when they are asked for them.
+    # Do not use `getattr`: some modules create an attribute when it is asked for.
     known = vars(module)
     places = known.get("__path__", ())
     paths = [known.get("__file__"), *(places if isinstance(places, list) else ())]

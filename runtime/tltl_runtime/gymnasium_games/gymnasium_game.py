@@ -1,6 +1,6 @@
-"""The games of game files as one :class:`~tltl_runtime.game.game.Game`.
+"""The games that game files describe, all together as one :class:`~tltl_runtime.game.game.Game`.
 
-Each of its levels is a scene of a game file, which says how the environment is made.
+Each level of this game is a scene of a game file, which says how the environment is made.
 """
 
 from __future__ import annotations
@@ -57,20 +57,20 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         return level.content_hash
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
-        """Do nothing: which signals a scene has is only known when it is played."""
+        """Do nothing: only when a scene is played is it known which signals it has."""
 
     def landmarks(self, level: SceneLevel) -> dict[str, Point]:
         """Return the places of the entities that did not move in an episode, by name."""
         return dict(level.landmarks)
 
     def solids(self, level: SceneLevel) -> dict[str, Box]:
-        """Return the boxes of the outline by name; those that share a name are left out."""
+        """Return the boxes of the outline by name; boxes that share a name are left out."""
         boxes = () if level.outline is None else level.outline.boxes
         counts = Counter(item.name for item in boxes)
         return {item.name: item.box for item in boxes if counts[item.name] == 1}
 
     def played_level(self, level: SceneLevel, episodes: Iterable[SceneEpisode]) -> SceneLevel:
-        """Return a scene with the outline of the first episode, and the landmarks that all of them have."""
+        """Return a scene with the outline of the first episode, and the landmarks that are the same in all episodes."""
         played = list(episodes)
         if not played:
             return level
@@ -148,7 +148,14 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         return scene_episode_bytes(episode)
 
     def located(self, episode: SceneEpisode, level: str, variant: str | None) -> SceneEpisode:
-        """Return an episode whose level has a place; raises TltlError, TLT0800, if ``level`` is another scene."""
+        """Return ``episode`` with the place of its scene, so that it can be played again.
+
+        ``level`` is ``FILE.game.toml:SCENE``, or ``FILE.game.toml`` for the recorded scene. ``variant`` is
+        None for the recorded variant.
+
+        Raises:
+            TltlError: the errors of :meth:`load_level`; TLT0800, the episode was played in another scene.
+        """
         if split_scene(level)[1] is None:
             level = f"{level}:{episode.level.name}"
         here = self.load_level(level, variant or episode.level.variant)
@@ -158,7 +165,11 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         return replace(episode, level=replace(episode.level, place=here.place, variant=here.variant))
 
     def check_replay(self, episode: SceneEpisode) -> tuple[Diagnostic, ...] | None:
-        """Play the actions of an episode again, and compare the signals; None if its level has no place."""
+        """Play the actions of an episode again, and compare the signals.
+
+        Return TLT0824 if a signal or the end differs, an empty tuple if not, and None if it is unknown
+        where the episode's scene is: see :meth:`located`.
+        """
         from tltl_runtime.gymnasium_games.scene_replay import check_replay
 
         return check_replay(episode) if episode.level.place else None
@@ -169,4 +180,4 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
 
 GAME: Final = GymnasiumGame()
-"""The games of game files. :mod:`tltl_runtime.game.registry` finds it by this name."""
+"""The game for all game files. :mod:`tltl_runtime.game.registry` finds it by this name."""

@@ -29,9 +29,9 @@ _USUAL_STEP_S: Final = 0.1
 class KeyActions:
     """The action of each combination of keys.
 
-    If there is an action without a key, ``idle``, the game goes on by itself: a step takes
-    ``step_s`` seconds, and its action is that of the keys that are held. Else the game waits, and
-    each press of a key is a step. ``lines`` say which key does what.
+    ``idle`` is the action while no key is held, or None. If there is such an action, the game runs in
+    real time: a step takes ``step_s`` seconds, and the keys that are held choose its action. If there is
+    none, the game waits for keys, and each press of a key is a step. ``lines`` say which key does what.
     """
 
     actions: Mapping[frozenset[Key], int]
@@ -45,7 +45,7 @@ class KeyActions:
         return frozenset().union(*self.actions)
 
     def of_held(self, held: Collection[Key]) -> int:
-        """Return the action of the largest combination that is held, and else the one without a key."""
+        """Return the action of the largest combination of keys that is held; ``idle`` if there is none."""
         assert self.idle is not None
         possible = [keys for keys in self.actions if keys <= frozenset(held)]
         return self.actions[max(possible, key=len)] if possible else self.idle
@@ -54,12 +54,13 @@ class KeyActions:
 def key_actions(env: gymnasium.Env[Any, Any], level: Level) -> KeyActions:
     """Return the keys for the actions of ``env``, an environment of the scene ``level``.
 
-    They are the keys that the game file names, else those of the environment's method
-    ``get_keys_to_action``, else the digits from 1.
+    They are the keys that the game file names; if it names none, those of the environment's method
+    ``get_keys_to_action``; without this method, the digits from 1.
 
     Raises:
         TltlError: TLT0731, keys cannot choose an action; TLT0803, the game file names more or fewer
-            keys than there are actions; TLT0781, ``get_keys_to_action`` fails.
+            keys than there are actions; TLT0781, ``get_keys_to_action`` raises an exception or names a
+            wrong action.
     """
     space = env.action_space
     if not isinstance(space, spaces.Discrete):
@@ -81,7 +82,7 @@ def key_actions(env: gymnasium.Env[Any, Any], level: Level) -> KeyActions:
 
 
 def key_count_diagnostic(game: GameFile, scene: str, space: spaces.Space[Any]) -> Diagnostic | None:
-    """Return TLT0803, an error, if a game file names keys, but not one for each action of a scene; else None."""
+    """Return the error TLT0803 if a game file names keys, but not one for each action of a scene; else None."""
     if not game.keys or (isinstance(space, spaces.Discrete) and len(game.keys) == space.n):
         return None
     count = f"{len(game.keys)} key{'s' * (len(game.keys) != 1)}"
@@ -93,13 +94,13 @@ def key_count_diagnostic(game: GameFile, scene: str, space: spaces.Space[Any]) -
 
 
 def _one_by_one(env: gymnasium.Env[Any, Any], space: spaces.Discrete, keys: tuple[str, ...]) -> KeyActions:
-    """Return the keys of a game that waits for each key."""
+    """Return the actions of a game that waits for keys: the first key chooses the first action, and so on."""
     actions: dict[frozenset[Key], int] = {frozenset([key]): int(space.start) + i for i, key in enumerate(keys)}
     return KeyActions(actions, None, step_seconds(env), _lines(env, space, actions))
 
 
 def _own_keys(env: gymnasium.Env[Any, Any], space: spaces.Discrete, game: GameFile) -> KeyActions | None:
-    """Return the keys that an environment names itself; None if it names none."""
+    """Return the keys that an environment's ``get_keys_to_action`` names; None if it names none."""
     if not env.has_wrapper_attr("get_keys_to_action"):
         return None
     label, what = game.labels["game"], "the game's `get_keys_to_action`"
@@ -117,12 +118,18 @@ def _own_keys(env: gymnasium.Env[Any, Any], space: spaces.Discrete, game: GameFi
 
 
 def _combination(keys: object) -> frozenset[Key]:
-    """Return keys as Gymnasium has them: a number, a text of characters, or several of these."""
+    """Return the keys of a combination that an environment names.
+
+    As in Gymnasium, ``keys`` is a number, a text of characters, or a list or tuple of keys.
+    """
     return frozenset(map(named_key, keys)) if isinstance(keys, (tuple, list, str)) else frozenset([named_key(keys)])  # type: ignore[arg-type]
 
 
 def step_seconds(env: gymnasium.Env[Any, Any]) -> float:
-    """Return the seconds of a step of a game that goes on by itself: its clock, or the rate of its frames."""
+    """Return the length of a step in seconds, for a game that runs in real time.
+
+    This is the game's clock; without a clock, the time of a frame; without both, 0.1.
+    """
     if env.has_wrapper_attr("tltl_clock_s"):
         return float(env.get_wrapper_attr("tltl_clock_s"))
     rate = (env.metadata or {}).get("render_fps")
@@ -137,13 +144,13 @@ def _lines(
     for keys, action in actions.items():
         held = "+".join(sorted(key if isinstance(key, str) else f"key {key}" for key in keys))
         texts.append(f"{held}: {names[action - int(space.start)]}")
-    # A space that does not break keeps a key and its action in one line.
+    # No-break spaces keep a key and its action in one line.
     joined = "   ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
     return tuple(line.replace("\N{NO-BREAK SPACE}", " ") for line in wrap(joined, LONG))
 
 
 def _action_names(env: gymnasium.Env[Any, Any], space: spaces.Discrete) -> list[str]:
-    """Return a name for each action: as the environment has it, or else ``action N``."""
+    """Return a name for each action: the environment's own, or ``action N`` if it does not name each action."""
     names: list[str] = []
     if env.has_wrapper_attr("get_action_meanings"):
         names = [str(name).lower() for name in env.get_wrapper_attr("get_action_meanings")()]

@@ -38,7 +38,10 @@ _SPECIAL: Final[Mapping[int, str]] = {
 
 
 def named_key(key: str | int) -> str | int:
-    """Return the name of a key that an environment gives as a character or as a number; else the number itself."""
+    """Return pygame's name of a key that an environment gives as a character or a number: ``32 -> "space"``.
+
+    A number without a known name, and a text of several characters, are returned unchanged.
+    """
     number = ord(key) if isinstance(key, str) and len(key) == 1 else key
     if isinstance(number, str):
         return number

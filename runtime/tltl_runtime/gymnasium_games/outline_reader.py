@@ -42,7 +42,10 @@ _IMAGE_HELP: Final = (
 
 
 class OutlineError(ValueError):
-    """Raised for an outline that cannot be used: what is wrong with it, and how to correct it."""
+    """Raised for an outline that cannot be used.
+
+    The text says what is wrong with it, and ``help`` how to correct it.
+    """
 
     def __init__(self, problem: str, help_: str) -> None:
         super().__init__(problem)
@@ -50,9 +53,10 @@ class OutlineError(ValueError):
 
 
 def read_outline(value: object, folder: Path) -> LevelOutline:
-    """Return the outline that a game describes by a mapping; ``folder`` is that of its game file.
+    """Return the outline that ``value``, a mapping from a game, describes.
 
-    ``docs/games.md`` describes the mapping. Without ``bounds``, they are the hull of the rest.
+    ``docs/games.md`` describes the mapping. If it has no ``bounds``, these are the smallest box around
+    everything else. ``folder`` is the folder of the game file; paths of images are relative to it.
 
     Raises:
         OutlineError: the value describes no outline.
@@ -83,7 +87,10 @@ def read_outline(value: object, folder: Path) -> LevelOutline:
 
 
 def _shapes(value: Mapping[str, Any], key: str, read: Callable[[str, object], Iterator[_T]]) -> Iterator[_T]:
-    """Yield the shapes under a key, which maps names to shapes."""
+    """Yield the shapes under a key of the outline ``value``, such as ``boxes``.
+
+    The key has a mapping from names to shapes. ``read`` makes shapes of a name and its value.
+    """
     shapes = value.get(key)
     if shapes is None:
         return
@@ -98,7 +105,7 @@ def _shapes(value: Mapping[str, Any], key: str, read: Callable[[str, object], It
 
 
 def _named_boxes(name: str, value: object) -> Iterator[NamedBox]:
-    """Yield the box, or each box of the list of boxes, that has this name."""
+    """Yield the box with this name; if ``value`` is a list of boxes, yield each of them."""
     array = _numbers(value)
     several = array is not None and array.ndim == 3
     for item in array if array is not None and several else [value]:
@@ -117,7 +124,7 @@ def _named_regions(name: str, value: object) -> Iterator[Region]:
 
 
 def _box(value: object, what: str) -> Box:
-    """Return the box between two opposite corners, each (x, y) or (x, y, z); ``what`` names it."""
+    """Return the box between two opposite corners, each (x, y) or (x, y, z); errors call the box ``what``."""
     array = _numbers(value)
     if array is None or array.shape not in ((2, 2), (2, 3)) or not np.isfinite(array).all():
         raise OutlineError(f"has {what} that is not two corners", _BOX_HELP)
@@ -128,7 +135,7 @@ def _box(value: object, what: str) -> Box:
 
 
 def _numbers(value: object) -> NDArray[np.float64] | None:
-    """Return nested sequences of numbers as an array; None if they are no such thing."""
+    """Return a number or nested sequences of numbers as an array; None for any other value."""
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -172,7 +179,7 @@ def _png(key: str, value: object, folder: Path) -> bytes:
 
 
 def _file(name: str, folder: Path) -> bytes:
-    """Return the bytes of a file in the game's folder."""
+    """Return the bytes of a file in the game's folder; raises OutlineError if it is outside or cannot be read."""
     path = folder / name
     try:
         inside = path.resolve().is_relative_to(folder.resolve())
@@ -187,7 +194,7 @@ def _file(name: str, folder: Path) -> bytes:
 
 
 def _encoded(pixels: NDArray[Any]) -> bytes:
-    """Return an (H, W, 3) array of bytes as a PNG picture."""
+    """Return an array (height, width, 3) of bytes as a PNG picture; raises OutlineError for any other array."""
     from PIL import Image
 
     if pixels.dtype != np.uint8 or pixels.ndim != 3 or pixels.shape[2] != 3 or not pixels.size:

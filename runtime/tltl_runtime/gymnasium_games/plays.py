@@ -1,4 +1,4 @@
-"""Play a scene with drawn actions, and compare two plays."""
+"""Play a scene with random actions, and compare two plays."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ SEED: Final = 1
 class PlayedMoment:
     """What a game shows after a reset or a step.
 
-    ``step`` counts the steps of the play, from 1; it is 0 after the first reset. ``sample`` has the
-    values of the signals, ``ended`` says whether the episode ends here.
+    ``step`` counts the steps of the play, from 1; it is 0 after the first reset, and a later reset has
+    the number of the step before. ``sample`` has the values of the signals. ``ended`` says whether the
+    episode ends here.
     """
 
     step: int
@@ -34,7 +35,7 @@ class PlayedMoment:
 
 @record
 class ScenePlay:
-    """A play: its moments, those after resets included, and the seconds that it took."""
+    """A play: its moments, including those after resets, and how many seconds it took."""
 
     moments: tuple[PlayedMoment, ...]
     seconds: float
@@ -42,7 +43,10 @@ class ScenePlay:
 
 @record
 class PlayDifference:
-    """The first difference of two plays: what differs after ``step``, and its value in each play."""
+    """The first difference between two plays: the signal ``name`` after ``step``, and its value in each play.
+
+    ``name`` is empty if an episode ends here in one play only. Then the values say whether it ends.
+    """
 
     step: int
     name: str
@@ -71,7 +75,9 @@ def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> ScenePlay:
 
 
 def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[PlayedMoment]:
-    """Take actions from the present state on, and return the moments after them and after resets.
+    """Take actions from the present state on; return the moments after each step and each reset.
+
+    The environment is reset when an episode ends.
 
     Raises:
         TltlError: TLT0781, the game raises an exception.
@@ -88,7 +94,7 @@ def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[PlayedMoment]:
 
 
 def first_difference(first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]) -> PlayDifference | None:
-    """Return the first signal that differs, or that an episode ends in one play only; None if there is none."""
+    """Return the first difference between two plays, in a signal or in the end of an episode; None without one."""
     for one, other in zip(first, second, strict=False):
         if one.ended != other.ended:
             return PlayDifference(one.step, "", one.ended, other.ended)

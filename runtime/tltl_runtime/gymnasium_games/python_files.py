@@ -19,9 +19,10 @@ _NAMED_MODULE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0
 def python_files(folder: Path, modules: Iterable[str]) -> dict[str, bytes]:
     """Return the contents of the Python files in ``folder`` that ``modules`` consist of and import.
 
-    The keys are paths in ``folder``, with slashes. Modules outside the folder are not followed. A
-    module counts as imported wherever the import stands, and if a text names it alone or as
-    ``MODULE:NAME``. A file that is not valid Python counts, but its imports are unknown.
+    The keys are paths relative to ``folder``, with slashes. Modules outside the folder are not followed.
+    An import counts wherever it stands in a file. A string that is the name of a module, or
+    ``MODULE:NAME``, counts as an import, too. A file that is not valid Python is in the result, but its
+    imports are unknown.
 
     Raises:
         TltlError: TLT0001 or TLT0004, a file cannot be read or is too large.
@@ -38,9 +39,9 @@ def python_files(folder: Path, modules: Iterable[str]) -> dict[str, bytes]:
 
 
 def possible_python_files(folder: Path, modules: Sequence[str]) -> list[Path]:
-    """Return the paths in ``folder`` of the files that ``modules`` may consist of and import.
+    """Return the paths in ``folder`` at which the files of ``modules`` and of their imports may be.
 
-    Files that do not exist are among them: they may have been deleted.
+    Some of these files may not exist, for example because they were deleted.
     """
     contents = python_files(folder, modules)
     imported = [module for name, data in contents.items() for module in _imports(data, name)]
@@ -49,7 +50,7 @@ def possible_python_files(folder: Path, modules: Sequence[str]) -> list[Path]:
 
 
 def content_of(path: Path) -> bytes:
-    """Return the bytes of a file; line ends of a text become line feeds, as Git may convert them.
+    """Return the bytes of a file. In a text file, CR LF becomes LF, because Git may convert line ends.
 
     Raises:
         TltlError: TLT0001 or TLT0004, the file cannot be read or is too large.
@@ -63,14 +64,14 @@ def content_of(path: Path) -> bytes:
 
 
 def _files_of(folder: Path, module: str) -> Iterator[Path]:
-    """Yield the files that an import of a module runs: those of its packages, and its own."""
+    """Yield the files in ``folder`` that an import of a module runs: those of its packages, and its own."""
     return filter(fileio.is_file, _places_of(folder, module))
 
 
 def _places_of(folder: Path, module: str) -> Iterator[Path]:
     """Yield the paths at which the files of a module may be."""
     place = folder
-    # A relative import of a module that is in no package has an empty name.
+    # The name is empty for `from . import x` in a module that is in no package.
     for part in filter(None, module.split(".")):
         place /= part
         yield place / "__init__.py"
@@ -78,7 +79,7 @@ def _places_of(folder: Path, module: str) -> Iterator[Path]:
 
 
 def _imports(content: bytes, name: str) -> Iterator[str]:
-    """Yield the modules that a file may import; ``name`` is its path in the folder."""
+    """Yield the modules that a file may import; ``name`` is its path relative to the game's folder."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

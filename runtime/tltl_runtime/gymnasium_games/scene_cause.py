@@ -10,7 +10,10 @@ from tltlc.api import label_text
 
 
 def scene_cause(episode: SceneEpisode) -> Cause:
-    """Return why an episode ended: what the game says ended it, or else the atoms that broke the spec."""
+    """Return why an episode ended: the cause that the game names; without one, the atoms that broke the spec.
+
+    If the spec was not broken either, the text says what remained to be done.
+    """
     time = float(episode.times[-1])
     broken = broken_atoms(episode) if episode.end == "violation" else []
     names = tuple(name for name, _ in broken)

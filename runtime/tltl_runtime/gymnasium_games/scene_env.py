@@ -35,13 +35,13 @@ _PLAYER_HELP: Final = f"return two or three numbers for it: `{{'{PLAYER}': (1.0,
 class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     """The environment of a scene without a spec.
 
-    It has the method ``tltl_signals``, the ``tltl_clock_s`` of the game file, and only the keys of
-    the observation that the game file keeps. ``game_file`` is what that file says. An exception of
-    the game becomes a TltlError, TLT0781.
+    The wrapper adds the method ``tltl_signals``, and the ``tltl_clock_s`` of the game file. Observations
+    have only the keys that the game file keeps. ``game_file`` is the content of that file. An exception
+    of the game becomes a TltlError, TLT0781.
 
     Raises:
-        TltlError: TLT0803, the observation has no such key; TLT0780, the environment says no
-            signals, or its observation has a key that the spec adds.
+        TltlError: TLT0803, the observation lacks a key that the game file keeps; TLT0780, there are no
+            signals, or the observation has a key that the spec adds.
     """
 
     def __init__(
@@ -103,8 +103,8 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def scene_positions(self) -> dict[str, Point] | None:
         """Return the positions of the entities that are there now, by name, in metres.
 
-        None if the game does not say them. Raises TltlError, TLT0781, if they cannot be used, or if
-        there is no ``player`` after the reset.
+        None if the game has no method ``tltl_positions``. Raises TltlError, TLT0781, if the positions
+        cannot be used, or if there is no ``player`` after the reset.
         """
         if not self.env.has_wrapper_attr("tltl_positions"):
             return None
@@ -120,14 +120,17 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         return places
 
     def scene_cause(self) -> str:
-        """Return who or what ended the episode, as the game says; raises TltlError, TLT0781, if it raises."""
+        """Return who or what ended the episode, as ``tltl_cause`` says; empty if it says nothing.
+
+        Raises TltlError, TLT0781, if the game raises an exception.
+        """
         with guarded(self._game, RAISES, "the game's `tltl_cause`", self._label):
             return str(self.env.get_wrapper_attr("tltl_cause")() or "")
 
     def scene_expert(self) -> Callable[[Any], Any]:
-        """Return the function with which the game's own expert chooses actions.
+        """Return the function with which the game's own expert chooses an action for an observation.
 
-        Making it and calling it raise TltlError, TLT0781, if the game raises an exception.
+        Both this method and the function raise TltlError, TLT0781, if the game raises an exception.
         """
         with guarded(self._game, RAISES, "the game's `tltl_expert`", self._label):
             choose = self.env.get_wrapper_attr("tltl_expert")().choose
@@ -141,7 +144,8 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def scene_outline(self) -> LevelOutline | None:
         """Return the outline of the scene in this episode.
 
-        None if the game does not say it. Raises TltlError, TLT0781, if it cannot be used.
+        None if the game has no method ``tltl_outline``. Raises TltlError, TLT0781, if the outline cannot
+        be used.
         """
         if not self.env.has_wrapper_attr("tltl_outline"):
             return None
@@ -206,9 +210,9 @@ def make_base_env(
     """Make an environment of a scene without a spec.
 
     Raises:
-        TltlError: TLT0731, it has no such ``render_mode``; TLT0800, there is no such scene or variant;
-            TLT0730, a package is not installed; TLT0780, the environment cannot be made; TLT0803, the
-            observation has no such key.
+        TltlError: TLT0731, the environment has no such ``render_mode``; TLT0800, there is no such scene or
+            variant; TLT0730, a package is not installed; TLT0780, the environment cannot be made; TLT0803,
+            the observation lacks a key that the game file keeps; the errors of a game in another process.
     """
     own = variant_of(game, scene, variant)
     options = deepcopy(dict(own.options)) | ({} if render_mode is None else {"render_mode": render_mode})
@@ -233,7 +237,7 @@ def make_base_env(
 def _in_process(
     wire: WireGame, game: GameFile, scene: str, variant: str, options: Mapping[str, Any], own: SceneVariant
 ) -> gymnasium.Env[Any, Any]:
-    """Start a game in another process, or connect to it; it makes the scene itself."""
+    """Start a game in another process, or connect to it. The game gets the names of the scene and the variant."""
     from tltl_runtime.wire.env import WireEnv
 
     unknown = [key for key in options if key != "render_mode"]
@@ -294,7 +298,7 @@ def _from_id(
                 _check_options(what, creator, 0, known, own)
             return gymnasium.make(entry, **{"disable_env_checker": True, **options})
         except TypeError as error:
-            # `gymnasium.make` raises a TypeError with a long message from that of the environment.
+            # `gymnasium.make` replaces a TypeError of the environment by one with a long message: report the first.
             raise TltlError([raised(game, CANNOT_START, what, error.__cause__ or error, own.label)]) from error
         except ModuleNotFoundError as error:
             missing = (error.name or "").partition(".")[0]
@@ -306,7 +310,7 @@ def _from_id(
 
 
 def _no_pictures_error(scene: str, label: Label, advice: str) -> TltlError:
-    """Return TLT0731: the environment of a scene cannot have the render mode that is needed."""
+    """Return the error TLT0731, which says that the environment of a scene renders no pictures."""
     title = f"the game of `{scene}` renders no pictures (`render_mode` `rgb_array`)"
     return TltlError([Diagnostic("TLT0731", title, (label,), advice)])
 
@@ -323,9 +327,10 @@ def _takes(function: Callable[..., Any], name: str) -> bool:
 def _check_options(
     what: str, function: Callable[..., Any], positional: int, options: Mapping[str, Any], own: SceneVariant
 ) -> None:
-    """Raise TltlError, TLT0780, if a function does not take one of the ``options``.
+    """Raise TltlError, TLT0780, if a function does not take one of the ``options`` as a keyword argument.
 
-    ``positional`` is the number of arguments that it gets before them.
+    ``what`` is the name of the function in the message. The function gets ``positional`` other
+    arguments first, which no option can set.
     """
     try:
         parameters = list(inspect.signature(function).parameters.values())
@@ -343,7 +348,10 @@ def _check_options(
 
 
 def _check_offers(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVariant) -> None:
-    """Raise TltlError, TLT0780, if the game has a wrong ``tltl_clock_s``, or wrong ``tltl_params``."""
+    """Raise TltlError, TLT0780, if ``tltl_clock_s`` or the result of ``tltl_params`` has a wrong value.
+
+    The clock must be a number above 0, the params a mapping from names to numbers.
+    """
     clock_s = env.get_wrapper_attr("tltl_clock_s") if env.has_wrapper_attr("tltl_clock_s") else 1.0
     if not isinstance(clock_s, (int, float)) or not 0.0 < clock_s < inf:
         title = f"the game's `tltl_clock_s` is {clock_s!r:.40}, not the seconds of a step"

@@ -16,7 +16,7 @@ from tltlc.api import EMPTY, Fspa, RewardOptions, record
 
 @record
 class SceneEpisode:
-    """One episode of n steps in a scene, with all data that is needed to judge it again.
+    """A recorded episode of n steps in a scene, with all data that is needed to judge it again.
 
     If the game is deterministic, and the scene is reset with ``seed`` and ``actions`` are played, the
     same episode results. Arrays of length n + 1 begin with the moment of the reset.
@@ -34,9 +34,9 @@ class SceneEpisode:
     actions: NDArray[np.float64]
     """(n, width), flat actions: see :mod:`~tltl_runtime.policies.spaces.action_layout`."""
     times: NDArray[np.float64]
-    """(n + 1,), the seconds since the reset; steps if the game has no clock."""
+    """(n + 1,), the seconds since the reset; the numbers of the steps if the game has no clock."""
     positions: NDArray[np.float64] | None
-    """(n + 1, 3), the positions of the player; None if the game does not say them."""
+    """(n + 1, 3), the positions of the player, in metres; None if the game does not give them."""
     signals: NDArray[np.float64]
     """(n + 1, signals), the signals of the spec, in its order and in SI units."""
     atoms: NDArray[np.float64]
@@ -58,4 +58,4 @@ class SceneEpisode:
     versions: Mapping[str, str] = EMPTY
     """The versions of Python and of the packages that played the episode."""
     entities: EntityPositions | None = None
-    """Where the entities beside the player were; None if the game does not say it."""
+    """Where the other entities were; None if the game does not give positions."""

@@ -84,7 +84,7 @@ class SceneMeta:
     layout: ActionLayout
     level: SceneLevel
     entities: tuple[str, ...] | None = None
-    """The names of the entities beside the player; None if the game does not say where they are."""
+    """The names of the entities without the player; None if the game does not give positions."""
 
 
 @fileio.resource_limits()
@@ -103,7 +103,7 @@ def scene_episode_bytes(episode: SceneEpisode) -> bytes:
     """Return the bytes of the file of an episode; equal episodes give equal bytes.
 
     Raises:
-        ValueError: the shapes of the arrays do not fit the action's layout and the automaton.
+        ValueError: the shapes of the arrays do not fit the layout of actions and the automaton.
     """
     columns = {
         "time": episode.times,
@@ -195,7 +195,7 @@ def _sizes(layout: ActionLayout, fspa: Fspa, count: int, entities: int) -> dict[
 
 
 def _check(arrays: Arrays, meta: SceneMeta, fspa: Fspa, name: str) -> None:
-    """Raise TltlError, TLT0822, if a value is out of range, if time does not go on, or if the outline is wrong."""
+    """Raise TltlError, TLT0822, if a value is out of range, times do not increase, or the outline is invalid."""
     choices: NDArray[np.float64] = arrays["actions"][:, : len(meta.layout.sizes)]
     if ((choices < 0) | (choices >= np.array(meta.layout.sizes)) | (choices != np.rint(choices))).any():
         raise ERRORS.broken_error(name, "the array `actions` has invalid values")

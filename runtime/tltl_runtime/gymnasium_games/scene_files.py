@@ -27,7 +27,7 @@ class SceneFiles(LevelFiles[SceneLevel]):
         return Path(split_scene(name)[0])
 
     def level_name(self, name: str) -> str:
-        """Return the name of a scene; raises the errors of ``read_game_file`` if ``name`` has none."""
+        """Return the name of a scene. If ``name`` has none, read the game file and return its first scene's name."""
         return split_scene(name)[1] or _scene(name)[1].name
 
     def variants(self, name: str) -> tuple[str, ...]:
@@ -63,7 +63,10 @@ class SceneFiles(LevelFiles[SceneLevel]):
         return level, ()
 
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
-        """Yield the game file, the files of the scene, the Python files that the game imports, and the spec."""
+        """Yield the game file, the files of the scene, the Python files that the game imports, and the spec.
+
+        If the game file or one of these files cannot be read, yield the game file and its folder instead.
+        """
         yield self.path(name)
         try:
             game, scene = _scene(name)
@@ -71,14 +74,14 @@ class SceneFiles(LevelFiles[SceneLevel]):
             yield from (game.folder / file for file, _ in file_hashes(game, scene.name, variant.name))
             yield from possible_files(game)
         except TltlError:
-            # Any file in the folder may be the reason, or what is missing.
+            # Any file in the folder may have the error, or a file may be missing in it.
             yield self.path(name).parent
             return
         if own.spec is not None:
             yield from spec_files(own.spec.file)
 
     def candidates(self, name: str, variant: Variant, file_name: str) -> Iterator[Path]:
-        """Yield the path of a file of the scene: its name is relative to the folder of the game file."""
+        """Yield the only path at which a file of the scene may be: its name is relative to the game file's folder."""
         del variant
         yield self.path(name).parent / file_name
 

@@ -1,4 +1,4 @@
-"""The films of episodes of scenes: what the environment renders when the episode is played again."""
+"""The films of episodes of scenes: the environment renders them while the episode is played again."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ class SceneFilms(Films[SceneEpisode]):
         """Play the episode again, and yield a picture for each time.
 
         Raises:
-            TltlError: TLT0731, the environment renders no pictures; TLT0800, the level has no place;
-                TLT0824, played again, the episode is another one; the errors of playing it again.
+            TltlError: TLT0731, the environment renders no pictures; TLT0800, it is unknown where the scene
+                is; TLT0824, the episode differs when it is played again; the errors of
+                :func:`~tltl_runtime.gymnasium_games.scene_replay.replayed_env`.
         """
         del view
         from tltl_runtime.gymnasium_games.frame_strip import with_strip

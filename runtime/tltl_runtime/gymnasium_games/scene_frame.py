@@ -12,15 +12,15 @@ from tltl_runtime.game.films import Picture
 from tltl_runtime.game.level import Level
 
 NO_PICTURES = "renders no pictures (`render_mode` `rgb_array`)"
-"""What a game lacks whose environments render no arrays."""
+"""What a game lacks if its environments cannot render frames as arrays."""
 
 
 def scene_frame(env: gymnasium.Env[Any, Any], level: Level, advice: str) -> Picture:
     """Return what an environment with the render mode ``rgb_array`` shows now, (height, width, 3).
 
     Raises:
-        TltlError: TLT0731 with ``advice`` as its help: it renders no pictures; TLT0781, its ``render``
-            raises an exception.
+        TltlError: TLT0731, with ``advice`` as its help, if the environment renders no pictures; TLT0781,
+            if its method ``render`` raises an exception.
     """
     frame = env.render()
     if not isinstance(frame, np.ndarray) or frame.ndim != 3 or frame.shape[2] < 3 or not frame.size:

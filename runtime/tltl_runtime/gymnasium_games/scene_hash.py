@@ -16,12 +16,13 @@ from tltlc.api import fileio
 
 
 def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
-    """Return the SHA-256, in hexadecimal, of what the game's files say about a variant of a scene.
+    """Return the SHA-256, in hexadecimal, of everything in a game's files that can change an episode of a scene.
 
-    It covers the entries of ``[game]``, the name of the scene, its options, the contents of its
-    ``files``, the files that the game consists of (:func:`game_files`), and the versions of the
-    packages that ``[game]`` names. For a game in another process, it covers the name of the variant,
-    too. It does not cover the spec. No code of the game runs.
+    It covers the entries of ``[game]`` that say how the game is made and what it shows, the name of the
+    scene, its options, the contents of its ``files``, the files that the game consists of
+    (:func:`game_files`), and the versions of the packages that ``[game]`` names. For a game in another
+    process, it covers the name of the variant, too. It does not cover the spec. No code of the game
+    runs.
 
     Raises:
         TltlError: TLT0800, there is no such scene or variant; TLT0001 or TLT0004, a file cannot be
@@ -49,8 +50,8 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
 def file_hashes(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> tuple[tuple[str, str], ...]:
     """Return the name and the SHA-256, in hexadecimal, of each file that a variant of a scene consists of.
 
-    The first is the game file; the others are the scene's ``files``, and the Python files in the game's
-    folder that the game imports. Names are relative to this folder.
+    The first is the game file; the others are the scene's ``files``, and the files of
+    :func:`game_files`. Names are relative to the folder of the game file.
 
     Raises:
         TltlError: the errors of :func:`scene_hash`.
@@ -62,10 +63,10 @@ def file_hashes(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> tup
 
 
 def game_files(game: GameFile) -> dict[str, bytes]:
-    """Return the contents of the files in a game's folder that the game itself consists of, by name.
+    """Return the contents of the files in a game's folder that the game consists of, by name.
 
-    They are the Python files that it imports; of a game in another process, the files that its command
-    names, and the Python files that these import. Names are relative to the folder.
+    These are the Python files that the game imports. For a game in another process, they are the files
+    that its command names, and the Python files that these import. Names are relative to the folder.
 
     Raises:
         TltlError: TLT0001 or TLT0004, a file cannot be read or is too large.
@@ -88,7 +89,10 @@ def possible_files(game: GameFile) -> list[Path]:
 
 
 def _package_versions(game: GameFile) -> dict[str, str]:
-    """Return the versions of the installed packages that a game file names, by their modules."""
+    """Return the versions of the packages that a game file names, by module: ``{"minigrid": "2.3.1"}``.
+
+    A module is left out unless an installed package has its name.
+    """
     versions: dict[str, str] = {}
     for module in _named_modules(game):
         top = module.partition(".")[0]
@@ -98,7 +102,7 @@ def _package_versions(game: GameFile) -> dict[str, str]:
 
 
 def _named_modules(game: GameFile) -> list[str]:
-    """Return the modules that a game file names."""
+    """Return the Python modules that a game file names, for example in ``import`` and ``signals``."""
     functions = [function.module for function in (game.python, game.signals) if function]
     registering, colon, _ = (game.gymnasium or "").partition(":")
     return [*game.modules, *functions, *([registering] if colon else [])]

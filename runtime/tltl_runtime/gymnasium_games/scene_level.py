@@ -29,12 +29,12 @@ class SceneLevel:
     ``game_name`` is the name of the game. ``options`` are the keyword arguments with which the
     environment is made. ``content_hash`` is the SHA-256, in hexadecimal, of everything in the game
     file and the scene's files that can change an episode. ``files`` has the name and the SHA-256 of
-    each of these files; the game file is the first. ``place`` says where the scene can be played:
-    ``FILE.game.toml:SCENE``. It is empty for the level of a recording.
+    each of these files; the game file is the first. ``place`` is the scene as an argument,
+    ``FILE.game.toml:SCENE``, with which it can be played. It is empty for the level of a recording.
 
-    The level of a recording has the ``outline`` that the game showed in the episode; it is None if the
-    game shows none, or before it was played. ``landmarks`` are the entities that did not move in an
-    episode, with their places. ``is_one_of_many`` is true if other episodes had other outlines.
+    The remaining fields are known only after the scene was played. ``outline`` is the one that the game
+    showed in the recorded episode; None if it showed none. ``landmarks`` are the entities that did not
+    move, with their positions. ``is_one_of_many`` is true if other episodes had other outlines.
     """
 
     json_texts = MappingProxyType({"spec": (_spec_text, parse_level_spec)})

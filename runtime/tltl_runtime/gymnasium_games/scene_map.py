@@ -30,7 +30,7 @@ _SIGNS: Final = {
 
 
 def scene_map(level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
-    """Draw the map of a scene with an outline. What the report mentions is highlighted."""
+    """Draw the map of a scene, which must have an outline; highlight the things and regions in ``mentions``."""
     scale, outline = MapScale(_outline(level).bounds, scene_metre(level)), _outline(level)
     obstacles = [scale.rect(item.box) for item in outline.boxes]
     labels = placed_labels(_thing_labels(level, scale, mentions), obstacles, outline.regions, scale, mentions)
@@ -95,7 +95,10 @@ def _landmarks(level: SceneLevel, scale: MapScale) -> Iterator[Markup]:
 
 
 def _thing_labels(level: SceneLevel, scale: MapScale, mentions: Mentions) -> Iterator[MapLabel]:
-    """Yield the names of landmarks, and those of areas and boxes that are mentioned and have their own names."""
+    """Yield labels for all landmarks, and for the boxes and areas that the report mentions.
+
+    Boxes that share their name with other boxes get no label.
+    """
     outline = _outline(level)
     for name, place in level.landmarks:
         yield thing_label(name, "thing-name still", scale.at(place), LABEL_OFFSET, scale, mentions)

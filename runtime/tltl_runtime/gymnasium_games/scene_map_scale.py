@@ -12,11 +12,11 @@ _LONGEST_SIDE_M: Final = 20.0
 
 
 def scene_metre(level: SceneLevel) -> float:
-    """Return the length in a scene that is a metre on its map; 1 if the game does not say where things are."""
+    """Return how many metres of a scene a metre on its map stands for; 1 if the scene has no bounds."""
     return 1.0 if level.bounds is None else scale_of(level.bounds)
 
 
 def scale_of(bounds: Box) -> float:
-    """Return the length in a scene with these ``bounds`` that is a metre on its map."""
+    """Return how many metres of a scene with these ``bounds`` a metre on its map stands for."""
     (west, south, _), (east, north, _) = bounds.low, bounds.high
     return max(east - west, north - south) / _LONGEST_SIDE_M

@@ -28,14 +28,14 @@ _COLOURS: Final[Mapping[str, str]] = {
 
 
 class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
-    """Draws maps of scenes with outlines. It imports what it needs for that only when it draws."""
+    """Draws maps of scenes with outlines. The modules for drawing are imported only when a map is drawn."""
 
     def colours(self) -> Mapping[str, str]:
         """Return the colours of what an outline shows, of landmarks and of entities."""
         return _COLOURS
 
     def metre(self, level: SceneLevel) -> float:
-        """Return the length in a scene that is a metre on its map: all maps have the same size."""
+        """Return how many metres of a scene a metre on its map stands for; all maps have the same size."""
         return scene_metre(level)
 
     def picture(self, level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
@@ -62,7 +62,10 @@ class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
         return scene_playback(level, index, episode)
 
     def is_map_of(self, level: SceneLevel, episode: SceneEpisode) -> bool:
-        """Return whether an episode was played on the map of a level: games may change it at each reset."""
+        """Return whether an episode has the outline of ``level``; False if the level's outline varies.
+
+        A game may return another outline after each reset.
+        """
         return level.outline == episode.level.outline and not level.is_one_of_many
 
     def mentions(self, level: SceneLevel, text: str) -> Mentions:

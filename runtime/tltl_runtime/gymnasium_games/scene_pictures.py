@@ -15,7 +15,7 @@ class ScenePictures(Pictures[SceneLevel, SceneEpisode]):
     """Draws episodes on the outlines of their scenes. It imports matplotlib only when it draws."""
 
     def draws(self, episode: SceneEpisode) -> bool:
-        """Return whether the game said where the player was."""
+        """Return whether the recording contains the positions of the player."""
         return episode.positions is not None
 
     def episode(

@@ -42,7 +42,11 @@ def draw_scene_trajectories(level: SceneLevel, fspa: Fspa, trajectories: Sequenc
 
 
 def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.float64]) -> Plan:
-    """Return the plan of a scene with the paths ``points``, (n, 2); without an outline, it shows these alone."""
+    """Return the plan of a scene with its outline and landmarks.
+
+    ``points``, (n, 2), are the points of the paths to draw. Without an outline, the plan's bounds
+    enclose these points.
+    """
     bounds = _hull(points) if level.bounds is None else level.bounds
     metre = scale_of(bounds)
 
@@ -85,7 +89,7 @@ def _add_outline(axes: Any, outline: LevelOutline, letters: float) -> None:
 
 
 def _add_image(axes: Any, image: MapImage) -> None:
-    """Draw the image of an outline; nothing if it is damaged, since a recording is not to be trusted."""
+    """Draw the image of an outline; do nothing if it is damaged, because recordings may contain anything."""
     from PIL import Image
 
     west, south, east, north = image.extent

@@ -16,13 +16,13 @@ from tltl_runtime.gymnasium_games.scene_map_scale import scene_metre
 
 
 def scene_playback(level: SceneLevel, index: int, episode: SceneEpisode) -> dict[str, Any]:
-    """Return an episode as JSON data for the report page; ``index`` is its number within its case.
+    """Return an episode as JSON data for the report page, which draws it on the map of ``level``.
 
-    The page draws it on the map of ``level``, which has bounds, and the game says where things are.
-    For an episode of n steps, each list has n + 1 values, the first before step 1; lists about atoms
-    have n. Lengths are in centimetres on the map, times in milliseconds, robustness in hundredths,
-    progress in thousandths. ``there`` is 0 while an entity is gone. The functions of
-    :mod:`~tltl_runtime.game.packing` encode the values.
+    ``index`` is the number of the episode within its case. The level must have bounds, and the episode
+    positions of the player. For an episode of n steps, each list has n + 1 values, the first before
+    step 1; lists about atoms have n. Lengths are in centimetres on the map, times in milliseconds,
+    robustness in hundredths, progress in thousandths. ``there`` is 0 while an entity is gone. The
+    functions of :mod:`~tltl_runtime.game.packing` encode the values.
     """
     bounds, metre = level.bounds, scene_metre(level)
     assert bounds is not None and episode.positions is not None, "the page draws no map of this scene"
@@ -39,7 +39,10 @@ def scene_playback(level: SceneLevel, index: int, episode: SceneEpisode) -> dict
 
 
 def _entities(entities: EntityPositions, level: SceneLevel) -> Iterator[dict[str, Any]]:
-    """Yield the entities that are there at some time. While one is gone, it keeps the place of another time."""
+    """Yield the data of each entity that appears in an episode.
+
+    While an entity is gone, it keeps its last position; before it first appears, it has its first one.
+    """
     assert level.bounds is not None
     for column, name in enumerate(entities.names):
         places = entities.places[:, column]

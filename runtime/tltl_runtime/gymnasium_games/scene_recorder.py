@@ -32,7 +32,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
     recording.
 
     Raises:
-        TltlError: TLT0844, the actions are of a space that cannot be recorded.
+        TltlError: TLT0844, the actions of this action space cannot be recorded.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], player: str = "unknown") -> None:
@@ -79,7 +79,10 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
         )
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begin a new episode and discard the previous one; without a seed, draw one from the environment's."""
+        """Begin a new episode and discard the previous one.
+
+        Without a seed, draw one from the environment's random generator.
+        """
         if seed is None:
             seed = int(self.np_random.integers(1 << 31))
         observation, info = self.env.reset(seed=seed, options=options)
@@ -112,12 +115,15 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
         rows.signals.append([float(sample[name]) for name in self._names])
         places = self.env.get_wrapper_attr("scene_positions")()
         if places is not None:
-            # A player that is gone stays where it was last.
+            # If the player is gone, keep its last position.
             rows.player.append(places[PLAYER] if PLAYER in places else rows.player[-1])
             rows.entities.append(places)
 
     def _entities(self, rows: _Rows) -> EntityPositions | None:
-        """Return where the entities were; None if the game does not say it."""
+        """Return where the entities were; None if the game gives no positions.
+
+        Raises TltlError, TLT0781, if there were too many entities in the episode.
+        """
         if not rows.entities:
             return None
         try:
@@ -130,8 +136,9 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
 class _Rows:
     """The data of an episode that is still being played, with a row for each step.
 
-    ``signals``, and ``player`` and ``entities`` if the game says where things are, have one more row:
-    the first is for the moment of the reset. ``outline`` is that of the scene in this episode.
+    ``signals``, ``player`` and ``entities`` have one more row: the first is for the moment of the reset.
+    ``player`` and ``entities`` are empty if the game gives no positions. ``outline`` is the outline of
+    the scene in this episode; None if the game gives none.
     """
 
     def __init__(self, seed: int, outline: LevelOutline | None) -> None:

@@ -18,12 +18,13 @@ from tltlc.api import Diagnostic, TltlError
 
 
 def check_replay(episode: SceneEpisode) -> tuple[Diagnostic, ...]:
-    """Play the actions of an episode again; return TLT0824 if a signal of the spec differs, else an empty tuple.
+    """Play the actions of an episode again, and compare the signals of the spec and the end.
 
-    The level of the episode must have a place.
+    Return the diagnostic TLT0824 if they differ, else an empty tuple. ``episode.level.place`` must say
+    where the scene is.
 
     Raises:
-        TltlError: the errors of making and playing the environment; TLT0822, its actions are others.
+        TltlError: the errors of :func:`replayed_env`; the game raises an exception.
     """
     with closing(replayed_env(episode)) as env:
         difference = next(filter(None, play_again(env, episode)), None)
@@ -31,7 +32,7 @@ def check_replay(episode: SceneEpisode) -> tuple[Diagnostic, ...]:
 
 
 def replayed_env(episode: SceneEpisode, render_mode: str | None = None) -> gymnasium.Env[Any, Any]:
-    """Make the environment in which an episode was recorded; its level must have a place.
+    """Make the environment in which an episode was recorded; ``episode.level.place`` must say where its scene is.
 
     Raises:
         TltlError: the errors of making the environment; TLT0822, the actions of the recording are not
@@ -51,7 +52,8 @@ def replayed_env(episode: SceneEpisode, render_mode: str | None = None) -> gymna
 def play_again(env: gymnasium.Env[Any, Any], episode: SceneEpisode) -> Iterator[Diagnostic | None]:
     """Reset an environment with the seed of an episode and take its actions.
 
-    Yield after each of these moments: None, or TLT0824 if a signal of the spec, or the end, differs.
+    After the reset and after each step, yield None, or the diagnostic TLT0824 if a signal of the spec
+    differs from the recording, or if the episode ends at another step.
     """
     names, judge = [signal.name for signal in episode.fspa.signals], judging_wrapper(env)
     env.reset(seed=episode.seed)

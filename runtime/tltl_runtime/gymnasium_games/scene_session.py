@@ -29,12 +29,12 @@ _STILL_WAIT: Final = 0.05
 _FRAME_TIME: Final = 1 / 60
 """The longest time for which the window does not respond, in seconds."""
 _KEEP_INTERVAL_S: Final = 5.0
-"""Seconds after which an unfinished episode is written again."""
+"""Seconds between two times at which an unfinished episode is written."""
 
 
 @record
 class _Wish:
-    """What the person wants: an action, or None, and whether to restart or to stop."""
+    """What the person wants: an action, None if there is none, and whether to restart or to stop."""
 
     action: int | None
     restart: bool = False
@@ -44,7 +44,7 @@ class _Wish:
 class SceneSession(PlaySession[SceneEpisode]):
     """Lets a person play episodes of a scene in ``window``.
 
-    ``actions`` are the actions of the keys. The other arguments are those of ``PlaySession``.
+    ``actions`` says which keys choose which actions. The other arguments are those of ``PlaySession``.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class SceneSession(PlaySession[SceneEpisode]):
         self._window, self._actions = window, actions
         self._fspa = env.get_wrapper_attr("task").fspa
         self._level = env.get_wrapper_attr("level")
-        # A key of the game is not a command, but Escape always stops.
+        # A key that chooses an action is not a command, but Escape always stops.
         self._commands: frozenset[Key] = frozenset(COMMANDS) - actions.keys | {"escape"}
         self._pending: deque[Key] = deque()
         """The keys that were pressed, and have had no effect yet, in a game that waits for keys."""
@@ -97,10 +97,10 @@ class SceneSession(PlaySession[SceneEpisode]):
         return self._wish(self._commands)
 
     def _wait_still(self, *, begins: bool = False, ended: bool = False) -> _Wish:
-        """Wait until the person wants something.
+        """Wait until the person wants something, and return it.
 
-        If the episode ``begins``, there is nothing to restart. If it has ``ended``, there is no action,
-        and no key of the game hides a command.
+        If the episode ``begins``, ignore a restart. If it has ``ended``, ignore actions; all command keys
+        work then, even those that choose actions.
         """
         commands = frozenset(COMMANDS) if ended else self._commands
         while True:
@@ -110,7 +110,11 @@ class SceneSession(PlaySession[SceneEpisode]):
             self._window.wait(_STILL_WAIT)
 
     def _wish(self, commands: frozenset[Key], *, still: bool = False) -> _Wish:
-        """Read the keys, of which ``commands`` are no actions. While the game stands ``still``, no key is no action."""
+        """Read the keys and return what the person wants.
+
+        ``commands`` are the keys that restart or stop the episode. If no key is held, a game that runs in
+        real time gets its idle action; while it stands ``still``, it gets no action.
+        """
         pressed = self._window.read(self._actions.keys | commands)
         if pressed.closed:
             return _Wish(None, stop=True)
@@ -123,7 +127,7 @@ class SceneSession(PlaySession[SceneEpisode]):
         return _Wish(action, _RESTART in given, not given.isdisjoint(_STOP))
 
     def _next_wish(self) -> _Wish:
-        """Return what the next pressed key means: keys count one by one, however fast they were pressed."""
+        """Return what the next pressed key means. Each press counts, even if several came at once."""
         if not self._pending:
             return _Wish(None)
         key = self._pending.popleft()
@@ -134,7 +138,7 @@ class SceneSession(PlaySession[SceneEpisode]):
         self._window.show(fitted(frame, self._window.size), display)
 
     def _hud(self, info: Mapping[str, Any]) -> Hud:
-        """Return the head-up display; ``info`` is that of the environment's last step or reset."""
+        """Return the head-up display; ``info`` is the info of the environment's last step or reset."""
         first = Line(f"{self._time_text()}   {info['verdict']}", "quiet")
         lines = goal_lines(label_text(self._fspa, info["state"]))
         return Hud((Bar("progress", info["progress"], "warn"),), (first, *lines))

@@ -30,10 +30,10 @@ def space_text(space: spaces.Space[Any]) -> str:
 
 
 def space_json(space: spaces.Space[Any]) -> dict[str, Any]:
-    """Return a space as JSON data: its ``type`` in small letters, and what describes it.
+    """Return a space as JSON data: ``{"type": "discrete", "n": 4, "start": 0}``.
 
-    ``low`` and ``high`` of a box are numbers if all its elements have the same bounds, else nested
-    lists; an element without a bound has None.
+    ``low`` and ``high`` of a box are each a number if all elements have the same bound, else nested
+    lists. None stands for an infinite bound. A space of an unknown type has only its ``type``.
     """
     match space:
         case spaces.Dict():

@@ -20,8 +20,9 @@ _MOST_LISTED: Final = 30
 class Supply:
     """What a scene supplies to specs.
 
-    ``moments`` are those of a play. ``params`` has the values of ``tltl_params``, None if the game
-    has no such method. ``clock_s`` is the time of a step in seconds, None if it is unknown.
+    ``moments`` are the moments of a play, with the signals. ``params`` is the result of ``tltl_params``;
+    None if the game has no such method. ``clock_s`` is the length of a step in seconds; None if it is
+    unknown.
     """
 
     scene: str
@@ -39,7 +40,7 @@ def check_fit(supply: Supply, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic
     - TLT0811, error: the game has no such signal.
     - TLT0612, error: a signal has a value that monitors refuse.
     - TLT0812, warning: a signal has a value outside the range that the spec declares.
-    - TLT0782: the game has no such param (note; warning, if it has one with a similar name).
+    - TLT0782: the game has no such param. It is a note, but a warning if a param has a similar name.
     - TLT0307, error: the game's value of a param is outside the range that the spec declares.
     - TLT0617, error: the spec's clock differs from the game's.
     - TLT0813, warning: the spec names another level.
@@ -58,7 +59,7 @@ def check_fit(supply: Supply, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic
 
 
 def _check_signal(supply: Supply, signal: Signal, places: SpecPlaces) -> Iterator[Diagnostic]:
-    """Yield the first thing that is wrong with a signal in a play, if there is any."""
+    """Yield diagnostics for the first moment of the play at which a signal is wrong; nothing if it never is."""
     low = -inf if signal.low is None else signal.low - _ROUNDING
     high = inf if signal.high is None else signal.high + _ROUNDING
     for moment in supply.moments:
@@ -88,7 +89,7 @@ def _check_signal(supply: Supply, signal: Signal, places: SpecPlaces) -> Iterato
 
 
 def _known_signals(name: str, sample: Mapping[str, Any]) -> str:
-    """Return the hint for a signal that is not in ``sample``: a similar name, or the names that are."""
+    """Return the hint for a signal ``name`` that ``sample`` lacks: a similar name in the sample, or its names."""
     if len(sample) <= _MOST_LISTED:
         return suggestion(name, map(str, sample))
     listed = ", ".join(f"`{known}`" for known in [*sample][:_MOST_LISTED])
