@@ -1,9 +1,9 @@
 """The runtime of ``.tltl`` specs: a stealth game, Gymnasium environments, and automata in batches.
 
 The rewards of the environments follow from a spec. Importing this package registers the
-environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and ``tltl/Branching-v0``. It loads
-neither torch nor pybullet. The package needs the extra ``game``; :mod:`tltl_runtime.spec.batch`
-needs the extra ``rl``.
+environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and ``tltl/Branching-v0``. The import
+loads neither torch nor pybullet. The package needs the pip extra ``game`` of tltlc;
+:mod:`tltl_runtime.spec.batch` needs the extra ``rl``.
 """
 
 from __future__ import annotations

@@ -28,16 +28,17 @@ Position = tuple[float, ...]
 
 
 class ReportedError(Exception):
-    """Raised for the message ``error`` of a game; its text is that of the message."""
+    """Raised if a game sends the message ``error``; the text is that of the message."""
 
 
 @record
 class GameState:
     """The message ``state``.
 
-    ``signals`` are floats and bools by name, ``observation`` is a value of the observation space.
-    ``ended`` says whether the episode has ended, and ``cause`` who or what ended it, None if that is
-    unknown. ``positions`` are those of the entities by name, with two or three coordinates in metres.
+    ``signals`` are floats and bools by name. ``observation`` is a value of the observation space.
+    ``ended`` says whether the episode has ended. ``cause`` says who or what ended it; None if that is
+    unknown. ``positions`` are the positions of the entities by name, each with two or three coordinates
+    in metres; empty if the game gives none.
     """
 
     signals: Mapping[str, float]
@@ -48,11 +49,13 @@ class GameState:
 
 
 def body_of(message: Any, expected: str) -> Any:
-    """Return the content of a message that must be of the kind ``expected``; other keys are ignored.
+    """Return the content of a message that must be of the kind ``expected``.
+
+    For the kind ``state``, this is the value of the key ``state``. Keys that are no kinds are ignored.
 
     Raises:
         ReportedError: the message is an ``error``.
-        MalformedMessageError: it is of another kind.
+        MalformedMessageError: the message is of another kind.
     """
     if type(message) is not dict:
         raise MalformedMessageError(f"sent {value_text(message)} instead of an object")
@@ -71,7 +74,7 @@ def body_of(message: Any, expected: str) -> Any:
 
 
 class StateReader:
-    """Reads the ``state`` messages of a game with this ``hello``."""
+    """Reads the ``state`` messages of a game, which must agree with its ``hello``."""
 
     def __init__(self, hello: Hello) -> None:
         self._declared = hello.signals
@@ -86,7 +89,7 @@ class StateReader:
 
         Raises:
             ReportedError: the message is an ``error``.
-            MalformedMessageError: it is no ``state``, or differs from what the game declared.
+            MalformedMessageError: the message is no ``state``, or does not agree with the ``hello``.
         """
         body = an_object(body_of(message, STATE), STATE)
         ended, cause = body.get("ended", False), body.get("cause")
@@ -101,7 +104,11 @@ class StateReader:
         )
 
     def _signals(self, values: Any) -> dict[str, float]:
-        """Return the values of all declared signals; each has its type and is in its range."""
+        """Return the signals of a state by name.
+
+        Raises MalformedMessageError unless ``values`` has all declared signals and no others, each with
+        its declared type and in its range.
+        """
         if type(values) is not dict:
             raise wrong("state.signals", "an object", values)
         if values.keys() != self._declared.keys():
@@ -122,7 +129,10 @@ class StateReader:
 
 
 def snapshot_id(message: Any) -> int | str:
-    """Return the id in a message ``snapshot``; the errors are those of :func:`body_of`."""
+    """Return the id in a message ``snapshot``.
+
+    Raises the errors of :func:`body_of`, and MalformedMessageError if the id is no whole number or text.
+    """
     value = an_object(body_of(message, SNAPSHOT), SNAPSHOT).get("id")
     if type(value) is not int and not (isinstance(value, str) and value):
         raise wrong("snapshot.id", "a whole number or a text", value)
@@ -130,7 +140,10 @@ def snapshot_id(message: Any) -> int | str:
 
 
 def screenshot(message: Any) -> NDArray[np.uint8]:
-    """Return the picture in a message ``screenshot``, (height, width, 3); the errors are those of :func:`body_of`."""
+    """Return the picture in a message ``screenshot``, (height, width, 3), without transparency.
+
+    Raises the errors of :func:`body_of`, and MalformedMessageError if the content is no picture.
+    """
     picture = array_from(body_of(message, SCREENSHOT), SCREENSHOT)
     if picture.ndim != 3 or picture.shape[2] not in (3, 4) or not picture.size:
         raise MalformedMessageError(f"sent a screenshot of the shape {list(picture.shape)}, not [height, width, 3]")

@@ -1,4 +1,4 @@
-"""Read lines, or a number of bytes, from a socket, with limits on time and size."""
+"""Read lines, or a given number of bytes, from a socket, with limits on time and size."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ _CHUNK: Final = 1 << 16
 
 
 class ByteStream:
-    """A connected socket; ``rest`` are bytes that were received and not read yet.
+    """A connected socket; ``rest`` are bytes that were already received from it but not read yet.
 
-    All methods raise :class:`GameSilentError` after ``patience`` seconds, and
+    The methods that send or receive raise :class:`GameSilentError` after ``patience`` seconds, and
     :class:`GameGoneError` if the other side has closed the connection.
     """
 
@@ -27,7 +27,7 @@ class ByteStream:
 
     @property
     def has_rest(self) -> bool:
-        """Whether bytes were received that nothing has read."""
+        """Whether there are bytes that were received but not read yet."""
         return bool(self._rest)
 
     def send(self, data: bytes, patience: float) -> None:
@@ -43,7 +43,7 @@ class ByteStream:
     def line(self, patience: float, limit: int) -> bytes | bytearray:
         """Return the next line, with its line end.
 
-        Raises MalformedMessageError as soon as the line has more than ``limit`` bytes.
+        Raises MalformedMessageError if the line has more than ``limit`` bytes.
         """
         if not self._rest:
             data = self._received(patience)
@@ -61,7 +61,7 @@ class ByteStream:
         return bytes(data[:count])
 
     def some(self, patience: float) -> bytes:
-        """Return the next bytes, at least one."""
+        """Return the next bytes that are available, at least one."""
         data, self._rest = self._rest or self._received(patience), b""
         return data
 

@@ -1,4 +1,4 @@
-"""Messages over a stream of bytes, in the two encodings of the protocol."""
+"""Send and receive messages over a stream of bytes, as JSON or as MessagePack."""
 
 from __future__ import annotations
 
@@ -16,20 +16,23 @@ _LENGTH_BYTES: Final = 4
 class Channel(ABC):
     """Sends and receives messages.
 
-    All methods raise :class:`~tltl_runtime.wire.errors.GameSilentError` after ``patience`` seconds,
-    and :class:`~tltl_runtime.wire.errors.GameGoneError` if the game has closed the connection.
+    ``send`` and ``receive`` raise :class:`~tltl_runtime.wire.errors.GameSilentError` after ``patience``
+    seconds, and :class:`~tltl_runtime.wire.errors.GameGoneError` if the game has closed the connection.
     """
 
     @abstractmethod
     def send(self, message: Any, patience: float) -> None:
         """Send a message.
 
-        Raises MalformedMessageError if the game has sent more than it was asked for.
+        Raises MalformedMessageError if the game has sent more than one answer to the last request.
         """
 
     @abstractmethod
     def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
-        """Return the next message; raises MalformedMessageError if it is not one, or larger than ``limit`` bytes."""
+        """Return the next message.
+
+        Raises MalformedMessageError if the bytes are no message, or if it has more than ``limit`` bytes.
+        """
 
     @abstractmethod
     def close(self) -> None:
@@ -65,7 +68,7 @@ class JsonLines(Channel):
 
 
 class MessagePackFrames(Channel):
-    """Each message is its length, four bytes with the highest first, and that many bytes of MessagePack."""
+    """Each message is a length of four bytes, the highest first, and that many bytes of MessagePack."""
 
     def __init__(self, stream: ByteStream) -> None:
         import msgpack
@@ -91,12 +94,12 @@ class MessagePackFrames(Channel):
         self._stream.close()
 
     def with_msgpack(self) -> Channel:
-        """Return a channel that uses MessagePack."""
+        """Return this channel, which uses MessagePack already."""
         return self
 
 
 def unpacked(data: bytes) -> Any:
-    """Return the value of a message in MessagePack; raises MalformedMessageError if it is not one."""
+    """Return the value of a message in MessagePack; raises MalformedMessageError if it is not MessagePack."""
     import msgpack
 
     try:

@@ -29,36 +29,37 @@ _METHODS: Final = {
     "tltl_snapshot": (hello.SNAPSHOT, "_snapshot"),
     "tltl_restore": (hello.SNAPSHOT, "_restore"),
 }
-"""Maps methods to the capability that each needs, and to the method that does its work."""
+"""For each optional method, the capability that it needs, and the method that does the work."""
 
 
 class WireEnv(gymnasium.Env[Any, Any]):
-    """A game that speaks the protocol ``tltl/1``, started or found as ``game`` says.
+    """A game that speaks the protocol ``tltl/1``; ``game`` says how it is started or found.
 
     An episode begins in ``scene`` and ``variant``; ``options["scene"]`` and ``options["variant"]`` of
     :meth:`reset` take their place for one episode. The default scene is the game's first one. A
-    step plays ``repeat`` ticks of the game with the same action. Its reward is 0: a spec rewards
-    (:class:`~tltl_runtime.spec.wrapper.TltlEnv`).
+    step plays ``repeat`` ticks of the game with the same action. The reward of a step is 0, because
+    rewards come from a spec: wrap the environment in :class:`~tltl_runtime.spec.wrapper.TltlEnv`.
 
-    The environment has these attributes only if the game names them in its ``hello``:
+    The environment has these attributes only if the ``hello`` of the game, its first message, declares
+    them:
 
     - ``tltl_clock_s``: the seconds of a step;
-    - ``tltl_params``: returns values for params of specs;
+    - ``tltl_params``: returns the values that the game gives to the params of specs;
     - ``tltl_positions``: returns the positions of the entities, in metres, by name;
-    - ``tltl_snapshot`` and ``tltl_restore``: keep the state of the game, and return to it. A snapshot is bytes that
-      hold an id; it is valid until the game ends.
+    - ``tltl_snapshot`` and ``tltl_restore``: keep the state of the game, and return to it. A snapshot is
+      the id of a state that the game keeps, as bytes; it is valid until the game ends.
 
     With ``render_mode="rgb_array"``, which the capability ``screenshot`` allows, :meth:`render`
     returns a picture, (height, width, 3).
 
     If the game hangs, ends, reports an error or breaks the protocol, a method raises
     :class:`~tltl_runtime.wire.errors.WireError`, and the game is ended with its child processes. The
-    next :meth:`reset` starts it again, so one episode is lost.
+    next :meth:`reset` starts the game again, so only one episode is lost.
 
     Raises:
-        WireError: the game does not start, or says ``hello`` wrong.
+        WireError: the game does not start, or its ``hello`` is wrong.
         TltlError: TLT0803, ``game.connect`` is no address.
-        ValueError: there is no such scene, or the game cannot render.
+        ValueError: there is no such scene, the game cannot render, or ``repeat`` is below 1.
     """
 
     tltl_clock_s: float
@@ -139,7 +140,12 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return state.observation, 0.0, state.ended, False, {}
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return a picture of the game; None without a ``render_mode``."""
+        """Return a picture of the game, (height, width, 3); None without a ``render_mode``.
+
+        Raises:
+            WireError: the game is lost, breaks the protocol, or reports an error.
+            ResetNeeded: there is no episode.
+        """
         if self.render_mode is None:
             return None
         self._current()
@@ -151,7 +157,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         self._state = None
 
     def tltl_signals(self) -> Mapping[str, float]:
-        """Return the signals, in SI units, as they are after the last reset or step."""
+        """Return the signals after the last reset or step, by name and in SI units."""
         return self._current().signals
 
     def tltl_cause(self) -> str | None:
@@ -160,14 +166,14 @@ class WireEnv(gymnasium.Env[Any, Any]):
 
     @property
     def process_id(self) -> int | None:
-        """The id of the process that supervises the game; None for a game that was found running."""
+        """The id of the process that supervises the game; None for a game that was already running."""
         return self._session.process_id
 
     def __getattr__(self, name: str) -> Any:
-        """Return a method that the environment has only with a capability.
+        """Return a method that the environment has only if the game has the capability for it.
 
-        Attributes of the instance would make a cycle, and the game would outlive the last reference to
-        the environment.
+        Methods in attributes of the instance would make a cycle of references, so the game would outlive
+        the last reference to the environment.
         """
         capability, method = _METHODS.get(name, ("", ""))
         if capability and "hello" in self.__dict__ and capability in self.hello.capabilities:
@@ -183,7 +189,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return json.dumps({"session": self._session_name, "id": kept}).encode()
 
     def _restore(self, snapshot: bytes) -> None:
-        """Return to a snapshot; raises ValueError if the game that took it has ended."""
+        """Return to a snapshot; raises ValueError if the game that took the snapshot has ended."""
         document = json.loads(snapshot)
         if self._session.is_over or document["session"] != self._session_name:
             raise ValueError("the game that took this snapshot has ended")
@@ -205,7 +211,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return scene
 
     def _restart(self) -> None:
-        """Start the game again; it must declare the same as before."""
+        """Start the game again; raises WireError unless it declares the same in its ``hello`` as before."""
         session = WireSession(self._game)
         if not _same(session.hello, self.hello):
             session.refuse("declares other signals, spaces or capabilities than when it was first started")

@@ -11,11 +11,11 @@ REPORTED = "TLT0793"
 
 
 class WireError(TltlError):
-    """A game in another process was lost, or cannot be started; its current episode is lost, too.
+    """Raised if a game in another process cannot be started, or is lost with its current episode.
 
-    The code of its diagnostic says why. TLT0790: the game did not start. TLT0791: it hangs, ended, or closed its
-    connection. TLT0792: it broke the protocol. TLT0793: it reported an error. The help contains the
-    last lines that the game wrote to standard error.
+    The code of the diagnostic says why. TLT0790: the game did not start. TLT0791: it hangs, has ended,
+    or has closed its connection. TLT0792: it broke the protocol. TLT0793: it reported an error. The help
+    contains the last lines that the game wrote to standard error.
     """
 
 

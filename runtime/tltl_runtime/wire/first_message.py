@@ -1,4 +1,4 @@
-"""The first message on a new connection, over TCP or WebSocket: its first bytes tell them apart."""
+"""Read the first message on a new connection. Its first bytes tell whether the game uses plain TCP or WebSocket."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ _REQUEST = b"GET "
 
 
 class FirstMessage:
-    """The bytes that a new connection has sent until now."""
+    """Collects the bytes of a new connection until its first message is complete."""
 
     def __init__(self) -> None:
         self._data = bytearray()
         self._web: WebSocketMessages | None = None
 
     def add(self, received: bytes) -> bytes | None:
-        """Take further bytes, none at the end of the connection; return the first message once it is complete.
+        """Add received bytes; return the first message if it is complete now, else None.
 
-        Raises MalformedMessageError if no message can follow.
+        Empty ``received`` means that the connection was closed. Raises MalformedMessageError if it was
+        closed too early, or if the bytes cannot become a message.
         """
         limit = fileio.limits.WIRE_HELLO.size
         if not received:
@@ -48,11 +49,11 @@ class FirstMessage:
         return None
 
     def reply(self) -> bytes:
-        """Return what to send now: the answer to the handshake of WebSocket, or nothing."""
+        """Return the bytes to send now: the answer to the handshake of WebSocket, or none."""
         return self._web.outgoing() if self._web is not None else b""
 
     def refusal(self, reason: str) -> bytes:
-        """Return the bytes of the message that tells the game why it is refused."""
+        """Return the bytes of a message that tells the game why it is refused; ``reason`` follows "because it"."""
         text = json.dumps({"error": {"message": f"tltlc refuses this game, because it {reason}"}}).encode()
         return self._web.text(text) if self._web is not None and self._web.is_open else text + b"\n"
 

@@ -23,11 +23,12 @@ _TO_END_S: Final = 5.0
 
 
 class GameProcess:
-    """A game that was started, with the words of its command, in a folder.
+    """A running game, started in ``folder`` by a command with these ``words``.
 
-    It never outlives this process, even if this process is killed. On Unix a supervisor, a small process
-    between the two, ends the game and its child processes
-    (:mod:`~tltl_runtime.wire.supervisor`). On Windows, only the game itself is ended.
+    ``variables`` are added to the game's environment variables. On Unix, the game never outlives this
+    process, even if this process is killed: a small process between the two, the supervisor, then ends
+    the game and its child processes (:mod:`~tltl_runtime.wire.supervisor`). On Windows, there is no
+    supervisor, and only the game itself is ended.
 
     Raises:
         WireError: TLT0790, the program does not exist, or cannot be started.
@@ -83,12 +84,15 @@ class GameProcess:
         self._end()
 
     def last_lines(self) -> str:
-        """Return the last lines of the standard error of a game that has ended."""
+        """Return the last lines that the game wrote to standard error; the game must have ended."""
         return self._tail.lines()
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """Close the pipe, so that the supervisor kills the game and ends."""
+    """Close the supervisor's standard input, so that it kills the game and ends; wait until it has ended.
+
+    On Windows, kill the game itself.
+    """
     assert process.stdin is not None
     with suppress(OSError):
         process.stdin.close()
@@ -102,7 +106,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _check_program(program: str, folder: Path) -> None:
-    """Raise TLT0790 if there is no such program; a path is relative to ``folder``."""
+    """Raise WireError, TLT0790, if there is no such program; a path is relative to ``folder``."""
     is_path = os.sep in program or (os.altsep is not None and os.altsep in program)
     path = shutil.which(folder / program) if is_path else shutil.which(program)
     if path is None:

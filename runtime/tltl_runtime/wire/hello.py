@@ -39,13 +39,13 @@ class DeclaredSignal:
 
 @record
 class Hello:
-    """What a game declares.
+    """What a game declares in its message ``hello``.
 
-    ``token`` proves that the game is the one that was started; empty if there is none.
-    ``clock_hz`` is the number of its ticks in a second; None if it does not say. ``params`` are
-    values for the params of specs, in SI units. ``scenes`` are their names, empty if the game has
-    only one. ``capabilities`` are words such as ``seed``; unknown words are kept. ``encoding`` is
-    the one that the game asks for, ``json`` or ``msgpack``.
+    ``token`` proves that this is the game that was started; empty if the game sent none. ``clock_hz`` is
+    the number of its ticks in a second; None if the game does not say. ``params`` are values for the
+    params of specs, in SI units. ``scenes`` are the names of its scenes; empty if it has only one.
+    ``capabilities`` are words such as ``seed``; unknown words are kept. ``encoding``, ``json`` or
+    ``msgpack``, is the encoding of further messages that the game asks for.
     """
 
     name: str
@@ -61,10 +61,11 @@ class Hello:
 
 
 def token_of(message: Any) -> str:
-    """Return the token of a ``hello``, before anything else of it is read.
+    """Return the token of a ``hello``, empty if it has none. Only the version of the protocol is checked.
 
     Raises:
-        MalformedMessageError: the message is no ``hello``, or of another version of the protocol.
+        MalformedMessageError: the message is no ``hello``, it has another version of the protocol, or the
+            token is no text.
     """
     if not isinstance(message, dict) or not isinstance(body := message.get("hello"), dict):
         raise MalformedMessageError('must first send a line such as `{"hello": {"tltl": 1, …}}`, but sent another one')
@@ -85,7 +86,8 @@ def hello_from(message: Any) -> Hello:
     """Return the ``hello`` in a message.
 
     Raises:
-        MalformedMessageError: a part is missing or wrong; the text names it by its path.
+        MalformedMessageError: a part is missing or wrong; the text names this part by its path, such as
+            ``hello.signals``.
     """
     token = token_of(message)
     body = message["hello"]
@@ -130,7 +132,7 @@ def _signal(value: Any, path: str) -> DeclaredSignal:
 
 
 def _scenes(value: Any) -> tuple[str, ...]:
-    """Return the names of the scenes; a scene is its name, or an object with a ``name``."""
+    """Return the names of the scenes. In the message, a scene is its name, or an object with a ``name``."""
     names = []
     for index, scene in enumerate(a_list(value, "hello.scenes")):
         name = scene.get("name") if isinstance(scene, dict) else scene

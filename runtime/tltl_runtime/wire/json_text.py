@@ -22,7 +22,8 @@ _ENCODER: Final = json.JSONEncoder(separators=(",", ":"), allow_nan=False)
 def parse(line: bytes | bytearray) -> Any:
     """Return the value of a JSON text.
 
-    A number that is too large for a float, such as ``1e999``, becomes infinite; the readers of values refuse it.
+    A number that is too large for a float, such as ``1e999``, becomes infinite; the code that reads
+    values refuses it later.
 
     Raises:
         MalformedMessageError: the text is not JSON, or contains NaN or Infinity.
@@ -45,13 +46,13 @@ def line(message: Any) -> bytes:
 
 
 def quoted(data: bytes | bytearray) -> str:
-    """Return the beginning of some bytes for an error message, without control characters."""
+    """Return the beginning of ``data`` as text in backticks for an error message, without control characters."""
     text = data[: 4 * _SHOWN].decode(errors="replace")
     return f"`{shortened(text)}`"
 
 
 def shortened(text: str) -> str:
-    """Return a text of one line, cut off after some characters."""
+    """Return the beginning of a text for an error message: at most 60 characters and ``…``, in one line."""
     printable = "".join(
         char if char.isprintable() else "\N{REPLACEMENT CHARACTER}" for char in text[: 2 * _SHOWN].strip()
     )
@@ -59,7 +60,7 @@ def shortened(text: str) -> str:
 
 
 def value_text(value: Any) -> str:
-    """Return a value of JSON as an error message shows it."""
+    """Return a value of JSON for an error message: ``true``, ``3``, ``"text"``, or only "a list" or "an object"."""
     if isinstance(value, list):
         return "a list"
     if isinstance(value, dict):

@@ -17,7 +17,7 @@ from tltl_runtime.wire.first_message import FirstMessage
 from tltl_runtime.wire.hello import token_of
 
 _LOOK_S: Final = 0.05
-"""Seconds between two looks whether the game has ended."""
+"""Seconds between two checks whether the game has ended."""
 _MOST_PENDING: Final = 16
 """The most connections that have not said ``hello`` yet."""
 _CHUNK: Final = 1 << 16
@@ -26,8 +26,8 @@ _CHUNK: Final = 1 << 16
 class Listener:
     """Listens on a free port of 127.0.0.1 for the one game that knows ``token``.
 
-    Other connections are told why they are refused, and closed. Their last refusal is
-    ``refusal``, empty if there was none.
+    Any other connection is told why it is refused, and closed. ``refusal`` is the reason of the last
+    refusal, such as "sent a wrong token"; empty if there was none.
     """
 
     def __init__(self, token: str) -> None:
@@ -46,15 +46,18 @@ class Listener:
         return port
 
     def hello(self, patience: float, has_ended: Callable[[], bool]) -> tuple[Channel, Any]:
-        """Return the connection to the game, and its first message, of which only the token is checked.
+        """Wait for the game; return its connection and its first message.
+
+        Only the token and the version of the protocol in the message are checked. ``has_ended`` returns
+        whether the game has ended.
 
         Raises:
-            GameSilentError: there was none after ``patience`` seconds, or before ``has_ended()``.
-            MalformedMessageError: the game sent the right token and another version of the protocol.
+            GameSilentError: no such message came within ``patience`` seconds, or before the game ended.
+                ``refusal`` then says why the last connection was refused.
         """
         deadline = time.monotonic() + patience
         while True:
-            # What an ended game has sent before is still read.
+            # If the game has ended, still read what it sent before.
             is_last = has_ended()
             left = deadline - time.monotonic()
             ready = self._selector.select(0 if is_last else min(max(left, 0), _LOOK_S))
@@ -85,7 +88,10 @@ class Listener:
             self._selector.register(connection, selectors.EVENT_READ)
 
     def _read(self, connection: Any) -> tuple[Channel, Any] | None:
-        """Read from a connection; return it once its first message has the right token."""
+        """Read from a connection; return it and its first message once this message has the right token.
+
+        Return None if the message is not complete yet, or if the connection was refused.
+        """
         first = self._pending[connection]
         try:
             received = connection.recv(_CHUNK)

@@ -1,4 +1,4 @@
-"""A conversation with a game, from its start to its end or its loss."""
+"""A conversation with a game in another process, from the game's start to its end."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class WireSession:
     """A running game that has said ``hello``.
 
     Raises:
-        WireError: the game does not start, does not say ``hello``, or says it wrong.
+        WireError: the game does not start, does not say ``hello``, or says a wrong ``hello``.
         TltlError: TLT0803, ``connect`` is no address.
     """
 
@@ -50,7 +50,7 @@ class WireSession:
 
     @property
     def is_over(self) -> bool:
-        """Whether the conversation has ended."""
+        """Whether the conversation has ended, by ``close`` or by an error."""
         return self._channel is None
 
     @property
@@ -59,9 +59,10 @@ class WireSession:
         return self._process.pid if self._process else None
 
     def ask(self, kind: str, message: dict[str, Any], read: Callable[[Any], Answer]) -> Answer:
-        """Send a request, such as a ``step``, and return what ``read`` makes of the answer.
+        """Send a request and return what ``read`` makes of the answer.
 
-        If anything goes wrong, even Ctrl-C, the game is ended: nobody knows which answer would come next.
+        ``kind`` is the kind of the request, such as ``step``. On any exception, even KeyboardInterrupt, the
+        game is ended, because a late answer would count for the next request.
 
         Raises:
             WireError: TLT0791, the game is lost; TLT0792, its answer is malformed; TLT0793, the answer is an error.
@@ -78,7 +79,10 @@ class WireSession:
         raise self._lost(MalformedMessageError(reason), "hello", self._game.start_s)
 
     def close(self) -> None:
-        """Ask the game to end, and end it if it does not."""
+        """Ask the game to end, and close the connection.
+
+        If tltlc started the game and it does not end within five seconds, kill it.
+        """
         if self._channel is not None:
             with suppress(Exception):
                 self._channel.send(CloseRequest().message(), _TO_CLOSE_S)
@@ -90,7 +94,7 @@ class WireSession:
     # --- the beginning ------------------------------------------------------------------------------
 
     def _started(self) -> tuple[Channel, Any]:
-        """Start the game; return the connection that it makes, and its first message."""
+        """Start the game, and wait until it connects; return the connection and the game's first message."""
         token = secrets.token_hex(_TOKEN_BYTES)
         listener = Listener(token)
         try:
@@ -106,7 +110,7 @@ class WireSession:
             listener.close()
 
     def _connected(self) -> tuple[Channel, Any]:
-        """Connect to a game that is running; say hello and return the connection and the answer."""
+        """Connect to a game that is already running; say hello and return the connection and the answer."""
         host, port = address(self._game.connect)
         try:
             connection = socket.create_connection((host, port), self._game.start_s)
@@ -115,7 +119,7 @@ class WireSession:
             help_ = "start the game first; it may also be busy with another tltlc"
             raise wire_error(errors.NOT_STARTED, title, help_) from None
         channel = self._channel = JsonLines(ByteStream(connection))
-        # Whoever connects sends the token, so here tltlc does.
+        # The side that connects sends the token: here, this is tltlc.
         token = os.environ.get("TLTL_TOKEN", "")
         channel.send({"hello": {"tltl": VERSION, "token": token}}, self._game.start_s)
         message = channel.receive(self._game.start_s, fileio.limits.WIRE_HELLO.size)
@@ -134,7 +138,11 @@ class WireSession:
     # --- the end ------------------------------------------------------------------------------------
 
     def _lost(self, error: BaseException, kind: str, patience: float) -> BaseException:
-        """End the game after an error; return what to raise: the error itself, if it is not about the game."""
+        """End the game after an error, and return the exception to raise.
+
+        This is a WireError if the error is about the game, else the error itself. ``kind`` is the request
+        to which no good answer came, and ``patience`` how many seconds the game had for it.
+        """
         self._close_channel()
         has_ended = self._has_ended(error)
         self._end_process()
@@ -165,7 +173,10 @@ class WireSession:
         return wire_error(code, f"{name} did not {what} within {patience:g} s{ended}", help_, lines)
 
     def _has_ended(self, error: BaseException) -> bool:
-        """Whether the game has ended by itself; a game that has closed its connection may be about to."""
+        """Whether the game has ended by itself.
+
+        A game that has closed its connection may end soon, so wait for it a few seconds.
+        """
         if self._process is None:
             return False
         return self._process.wait(_TO_CLOSE_S if isinstance(error, GameGoneError) else 0)

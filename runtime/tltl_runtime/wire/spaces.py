@@ -1,4 +1,4 @@
-"""The spaces of Gymnasium as JSON, and back."""
+"""Convert spaces of Gymnasium to JSON, and back."""
 
 from __future__ import annotations
 
@@ -25,11 +25,13 @@ _DEEPEST: Final = fileio.limits.WIRE_HELLO.depth or 0
 
 
 def space_from(document: Any, path: str) -> Space[Any]:
-    """Return the space that ``document``, a value of JSON at ``path`` in a message, describes.
+    """Return the space that ``document``, a value of JSON, describes: ``{"type": "discrete", "n": 3}``.
+
+    ``path`` is the place of the document in the message, such as ``hello.actions``.
 
     Raises:
-        MalformedMessageError: it describes no space, or one that nests too deep or has too many numbers. The text names
-            the wrong part by its path.
+        MalformedMessageError: the document describes no space, or one that nests too deep or has too many
+            numbers. The text names the wrong part by its path.
     """
     space = _space(document, path, 1)
     if (count := size(space)) > _MOST_NUMBERS:
@@ -38,7 +40,10 @@ def space_from(document: Any, path: str) -> Space[Any]:
 
 
 def document_of(space: Space[Any]) -> dict[str, Any]:
-    """Return a space as a value of JSON; raises TypeError for a space that the protocol does not have."""
+    """Return a space as a value of JSON, as :func:`space_from` reads it.
+
+    Raises TypeError for a space that the protocol does not have.
+    """
     if isinstance(space, spaces.Discrete):
         return {"type": "discrete", "n": int(space.n)} | ({"start": int(space.start)} if space.start else {})
     if isinstance(space, spaces.MultiDiscrete):
@@ -139,7 +144,7 @@ def _shape(value: Any, path: str) -> tuple[int, ...]:
 
 
 def _whole_numbers(value: Any, path: str, least: int) -> NDArray[np.int64]:
-    """Return a list of whole numbers, or lists of such lists, as an array."""
+    """Return a list of whole numbers, or nested lists of them, as an array; each is at least ``least``."""
     array = np.array(a_list(value, path), dtype=object)
     if array.size == 0:
         raise wrong(path, "a list of whole numbers, at least one", value)
@@ -148,7 +153,11 @@ def _whole_numbers(value: Any, path: str, least: int) -> NDArray[np.int64]:
 
 
 def _bound(value: Any, dtype: np.dtype[Any], shape: tuple[int, ...], path: str, *, lowest: bool) -> NDArray[Any]:
-    """Return the bounds of a Box in an array; None, also inside lists, means that there is no bound."""
+    """Return the lower or the upper bounds of a Box as an array of ``shape``.
+
+    ``value`` is a number for all elements, or nested lists. None, also inside lists, means that there is
+    no bound. ``lowest`` says whether these are the lower bounds.
+    """
     kind: Any = np.iinfo(dtype) if dtype.kind in "iu" else np.finfo(dtype)
     # Numbers of NumPy cannot be compared with whole numbers that are too large for a float.
     least, most = (float(kind.min), float(kind.max)) if dtype.kind == "f" else (int(kind.min), int(kind.max))
@@ -170,9 +179,9 @@ def _bound(value: Any, dtype: np.dtype[Any], shape: tuple[int, ...], path: str, 
 
 
 def _bound_document(bound: NDArray[Any]) -> Any:
-    """Return the bounds of a Box as JSON: one number if all are equal, else nested lists.
+    """Return the lower or the upper bounds of a Box as JSON: one number if all are equal, else nested lists.
 
-    None stands where there is no bound.
+    None stands for an infinite bound.
     """
     if bound.size and (bound == bound.flat[0]).all():
         first = bound.flat[0].item()

@@ -16,7 +16,7 @@ _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 
 class StderrTail:
-    """Reads a pipe in a thread, so that the game never waits, and keeps its last bytes."""
+    """Reads a pipe in a thread, so that the game can always write to it, and keeps the last bytes."""
 
     def __init__(self, pipe: IO[bytes]) -> None:
         self._pipe = pipe
@@ -25,7 +25,7 @@ class StderrTail:
         self._thread.start()
 
     def lines(self) -> str:
-        """Return the last lines after the process has ended: as text, without control characters."""
+        """Return the last lines as text, without control characters. Call this after the process has ended."""
         self._thread.join(_TO_END_S)
         lines = _COLOUR.sub("", self._data.decode(errors="replace")).splitlines()
         shown = [_printable(line) for line in lines if line.strip()]

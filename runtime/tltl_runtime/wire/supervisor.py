@@ -21,7 +21,11 @@ _NOT_FOUND = 127
 
 
 def main(words: list[str]) -> int:
-    """Run the game; return its status as :func:`os.waitpid` gives it, -1 if it was killed here."""
+    """Run the game with the command ``words`` until it ends, or until standard input is closed.
+
+    Kill what is left of it. Return its status, as :func:`os.waitpid` gives it; -1 if it did not end by
+    itself.
+    """
     _prctl(_SET_CHILD_SUBREAPER, 1)
     reads, writes = os.pipe()
     os.set_blocking(writes, False)
@@ -41,7 +45,7 @@ def main(words: list[str]) -> int:
 
 
 def _become(words: list[str], supervisor: int) -> None:
-    """Replace this process, a new child, by the game."""
+    """Run the game in place of this process, a new child; exit with status 127 if the game cannot be started."""
     with suppress(OSError):
         os.setpgid(0, 0)
     signal.set_wakeup_fd(-1)
@@ -59,7 +63,10 @@ def _become(words: list[str], supervisor: int) -> None:
 
 
 def _wait(game: int, woken: int) -> int:
-    """Wait until the game has ended, or standard input is closed; return the status, or -1."""
+    """Wait until the game has ended, and return its status; return -1 if standard input is closed before.
+
+    ``woken`` is the pipe that gets a byte when a child process has ended.
+    """
     while True:
         ready, _, _ = select.select([0, woken], [], [])
         if woken in ready:
@@ -72,7 +79,7 @@ def _wait(game: int, woken: int) -> int:
 
 
 def _ended() -> list[tuple[int, int]]:
-    """Collect the children that have ended, with their statuses."""
+    """Return the ids of the child processes that have ended since the last call, each with its status."""
     ended = []
     with suppress(ChildProcessError):
         while (pair := os.waitpid(-1, os.WNOHANG))[0]:
@@ -96,7 +103,7 @@ def _kill(game: int) -> None:
 
 
 def _children() -> list[int]:
-    """Return the children of this process; none on systems other than Linux."""
+    """Return the ids of the child processes of this process; none on systems other than Linux."""
     try:
         children = Path(f"/proc/self/task/{os.getpid()}/children").read_text(encoding="ascii")
         return [int(child) for child in children.split()]

@@ -1,4 +1,4 @@
-"""Values of spaces in messages: numbers, nested lists, and arrays in base64."""
+"""Convert values of spaces to and from messages, where they are numbers, nested lists, or arrays in base64."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ _DTYPES: Final = {
 
 
 def value_reader(space: Space[Any], path: str) -> Reader:
-    """Return a function from a value in a message, at ``path``, to a value of ``space``.
+    """Return a function that converts a value in a message to a value of ``space``.
 
-    The function raises MalformedMessageError if the value is not in the space.
+    The function raises MalformedMessageError if the value is not in the space. ``path`` is the place of
+    the value in the message, such as ``state.observation``; errors name it.
     """
     if isinstance(space, spaces.Dict):
         return _dict_reader({key: value_reader(part, member(path, key)) for key, part in space.items()}, path)
@@ -47,9 +48,9 @@ def value_reader(space: Space[Any], path: str) -> Reader:
 
 
 def value_writer(space: Space[Any]) -> Writer:
-    """Return a function from a value of ``space`` to a value of JSON.
+    """Return a function that converts a value of ``space`` to a value of JSON.
 
-    The function raises ValueError if the value is not in the space.
+    The function raises ValueError if a number or an array is not in its part of the space.
     """
     if isinstance(space, spaces.Dict):
         writers = {key: value_writer(part) for key, part in space.items()}
@@ -63,9 +64,9 @@ def value_writer(space: Space[Any]) -> Writer:
 
 
 def array_from(value: Any, path: str) -> NDArray[Any]:
-    """Return the numbers in a message, nested lists or an array in base64, as an array.
+    """Return the numbers at ``path`` in a message, nested lists or an array in base64, as an array.
 
-    Raises MalformedMessageError if they are neither, or not all finite.
+    Raises MalformedMessageError if ``value`` is neither. Numbers that are not finite are not refused here.
     """
     if isinstance(value, dict):
         return _decoded(value, path)
@@ -79,10 +80,10 @@ def array_from(value: Any, path: str) -> NDArray[Any]:
 
 
 def _decoded(table: dict[str, Any], path: str) -> NDArray[Any]:
-    """Return the array ``{"base64": …, "dtype": …, "shape": …}``.
+    """Return the array that ``{"base64": …, "dtype": …, "shape": …}`` contains.
 
-    Its bytes are little-endian, and the last index changes fastest. MessagePack has ``bytes`` in
-    place of ``base64``.
+    Its bytes are little-endian, and the last index changes fastest. In MessagePack, the key ``bytes`` may
+    have the bytes themselves, in place of ``base64``.
     """
     text, name, data = table.get("base64"), table.get("dtype"), table.get("bytes")
     if not isinstance(text, str) and not isinstance(data, bytes):
@@ -130,7 +131,7 @@ def _whole_number_reader(space: Space[Any], path: str) -> Reader:
         array = _shaped(value, path, space.shape)
         if array.dtype.kind == "f" and not (np.isfinite(array).all() and (array == np.trunc(array)).all()):
             raise MalformedMessageError(f"sent `{path}` with numbers that are not whole, but declared {space.dtype}")
-        # The conversion would wrap numbers around.
+        # Compare before the conversion, which would wrap numbers around.
         if not ((array >= low) & (array <= high)).all():
             raise MalformedMessageError(f"sent `{path}` with numbers outside the declared range")
         return array.astype(space.dtype)
@@ -191,7 +192,7 @@ def _array_writer(space: Space[Any]) -> Writer:
 
 
 def a_short_text(array: NDArray[Any]) -> str:
-    """Return an array as a text for an error message."""
+    """Return the first eight numbers of an array as a text for an error message."""
     return a_text(str(array.ravel()[:8].tolist()), "action") + (" …" if array.size > 8 else "")
 
 

@@ -17,7 +17,8 @@ from tltlc.api import fileio
 class WebSocketMessages:
     """Turns received bytes into messages, and messages into bytes to send; uses no socket itself.
 
-    ``messages`` are those that were received and not read yet.
+    ``messages`` are the messages that were received but not read yet. In the WebSocket protocol, tltlc is
+    the server, and the game is the client.
 
     Raises ModuleNotFoundError if the package ``websockets`` is not installed.
     """
@@ -32,16 +33,16 @@ class WebSocketMessages:
 
     @property
     def is_open(self) -> bool:
-        """Whether messages can be sent."""
+        """Whether the handshake is done, so that messages can be sent."""
         from websockets.protocol import State
 
         return bool(self._protocol.state is State.OPEN)
 
     def feed(self, data: bytes) -> None:
-        """Take received bytes.
+        """Process received bytes; complete messages are appended to ``messages``.
 
         Raises:
-            MalformedMessageError: they are not WebSocket, or the message is too large.
+            MalformedMessageError: the bytes do not follow the WebSocket protocol, or a message is too large.
             GameGoneError: the game closes the connection.
         """
         from websockets.frames import Frame, Opcode
@@ -63,12 +64,12 @@ class WebSocketMessages:
         return b"".join(self._protocol.data_to_send())
 
     def text(self, data: bytes) -> bytes:
-        """Return the bytes that send a text."""
+        """Return the bytes to send for a message of text."""
         self._protocol.send_text(data)
         return self.outgoing()
 
     def binary(self, data: bytes) -> bytes:
-        """Return the bytes that send other data."""
+        """Return the bytes to send for a message of binary data."""
         self._protocol.send_binary(data)
         return self.outgoing()
 
@@ -89,7 +90,7 @@ class WebSocketMessages:
 
 
 class WebSocketChannel(Channel):
-    """Each message is a text with JSON, or, with MessagePack, binary data."""
+    """Each message is a text of JSON or, after :meth:`with_msgpack`, binary data of MessagePack."""
 
     def __init__(self, connection: socket.socket, messages: WebSocketMessages) -> None:
         self._stream, self._messages = ByteStream(connection), messages
@@ -121,7 +122,7 @@ class WebSocketChannel(Channel):
         self._stream.close()
 
     def with_msgpack(self) -> Channel:
-        """Use MessagePack from now on."""
+        """Use MessagePack from now on; return this channel."""
         import msgpack
 
         self._msgpack = msgpack

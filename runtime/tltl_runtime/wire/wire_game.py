@@ -36,7 +36,7 @@ def address(text: str) -> tuple[str, int]:
     """Return the host and the port of ``HOST:PORT``; an IPv6 address has brackets, as in ``[::1]:5000``.
 
     Raises:
-        TltlError: TLT0803, it is no address.
+        TltlError: TLT0803, ``text`` is no address.
     """
     host, colon, port = text.rpartition(":")
     host = host[1:-1] if host.startswith("[") and host.endswith("]") else host

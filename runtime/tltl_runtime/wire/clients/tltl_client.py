@@ -59,11 +59,11 @@ KINDS = ("reset", "step", "snapshot", "restore", "screenshot", "close")
 
 
 class Refusal(Exception):
-    """A request cannot be met; its text says why, and tltlc shows it."""
+    """Raise this in a method of the game if a request cannot be met. tltlc shows the text, which says why."""
 
 
 class Disconnected(Exception):
-    """tltlc has closed the connection, or refuses this game; the text says why, if tltlc said so."""
+    """Raised if tltlc has closed the connection, or refuses this game. The text says why, if that is known."""
 
 
 def state(
@@ -73,11 +73,11 @@ def state(
     cause: str | None = None,
     positions: Mapping[str, Iterable[float]] | None = None,
 ) -> dict[str, Any]:
-    """Return the message about the state of the game.
+    """Return the state of the game as a dict for a message.
 
-    ``signals`` are numbers in SI units and bools, by name. ``cause`` says who or what ended the
-    episode. ``positions`` are lists of two or three coordinates in metres, by the name of the
-    entity; that of the player is ``player``.
+    ``signals`` are numbers in SI units and bools, by name. ``ended`` says whether the episode has ended,
+    and ``cause`` who or what ended it. ``positions`` are lists of two or three coordinates in metres, by
+    the name of the entity; the player's name is ``player``.
     """
     message: dict[str, Any] = {"signals": signals, "ended": bool(ended), "cause": cause}
     if observation is not None:
@@ -88,19 +88,20 @@ def state(
 
 
 def array(data: bytes, dtype: str, shape: Iterable[int]) -> dict[str, Any]:
-    """Return a large array, such as a picture, for a message.
+    """Return a large array, such as a picture, as a dict for a message.
 
-    ``data`` are its bytes, little-endian, the last index fastest; ``dtype`` is a word such as
-    ``uint8``; ``shape`` is a list such as ``[84, 84, 3]``.
+    ``data`` are the bytes of the array, little-endian; the last index changes fastest. ``dtype`` is a
+    word such as ``uint8``, and ``shape`` a list such as ``[84, 84, 3]``.
     """
     return {"base64": base64.b64encode(data).decode(), "dtype": dtype, "shape": list(shape)}
 
 
 def play(game: Any, client: Client | None = None) -> None:
-    """Connect to tltlc and do what it asks for, until it closes the connection.
+    """Connect to tltlc and answer its requests, until it closes the connection.
 
-    If tltlc refuses the game, or has not started it, the process ends with a message. A game that waits for
-    tltlc passes a ``client``: ``play(game, listen(game_hello(game), 5000))``.
+    If tltlc refuses the game, or has not started it, the process ends with a message. If the game is
+    started first and tltlc connects to it, pass a ``client``:
+    ``play(game, listen(game_hello(game), 5000))``.
     """
     try:
         client = client or Client(game_hello(game))
@@ -123,7 +124,7 @@ def play(game: Any, client: Client | None = None) -> None:
 
 
 def game_hello(game: Any) -> dict[str, Any]:
-    """Return the declaration of a game; the capabilities of its methods are added."""
+    """Return the ``hello`` of a game, with the capabilities ``snapshot`` and ``screenshot`` if it has the methods."""
     words = set(game.hello.get("capabilities", []))
     if hasattr(game, "snapshot") and hasattr(game, "restore"):
         words.add("snapshot")
@@ -153,13 +154,13 @@ def _answer(game: Any, client: Client, kind: str, body: Any) -> None:
 
 
 class Client:
-    """A connection to tltlc that has said ``hello``.
+    """A connection to tltlc, which sends ``hello`` at once.
 
     ``hello`` is the declaration of the game, without version and token. By default, the port and
-    the token come from the variables TLTL_PORT and TLTL_TOKEN. ``connection`` is a socket that is
-    connected already.
+    the token come from the environment variables TLTL_PORT and TLTL_TOKEN. ``connection`` is a socket
+    that is connected already; then no port is needed.
 
-    Raises Disconnected if there is no tltlc.
+    Raises Disconnected if no tltlc can be reached.
     """
 
     def __init__(
@@ -198,7 +199,11 @@ class Client:
         self.answer({"error": {"message": reason}})
 
     def answer(self, message: Mapping[str, Any]) -> None:
-        """Send a message; raises ValueError if a number in it is not finite."""
+        """Send a message.
+
+        Raises ValueError if a number in it is not finite, and Disconnected if tltlc has closed the
+        connection.
+        """
         data = json.dumps(message, separators=(",", ":"), allow_nan=False).encode() + b"\n"
         try:
             self._socket.sendall(data)
@@ -240,9 +245,9 @@ def _connected(port: int | str | None) -> socket.socket:
 def listen(hello: Mapping[str, Any], port: int, token: str | None = None) -> Client:
     """Wait on a port of 127.0.0.1 until tltlc connects; return the Client.
 
-    This is for a game file with ``connect = "127.0.0.1:PORT"``. If ``token``, by default the
-    variable TLTL_TOKEN, is not empty, tltlc must send the same. While one tltlc plays, no other can
-    connect.
+    Use this if the game file has ``connect = "127.0.0.1:PORT"``. The default of ``token`` is the
+    environment variable TLTL_TOKEN. If the token is not empty, tltlc must send the same one. While one
+    tltlc plays, no other can connect.
 
     Raises Disconnected if another program uses the port.
     """
@@ -273,7 +278,7 @@ def _accepted(port: int) -> socket.socket:
 
 
 def _refusal(message: Any, token: str) -> str:
-    """Return why a game that listens refuses this ``hello`` of tltlc; empty if it does not."""
+    """Return why the game refuses ``message``, the first message of tltlc; empty if it accepts the message."""
     hello = message.get("hello") if isinstance(message, dict) else None
     if not isinstance(hello, dict):
         return "the first line must be a `hello`"
@@ -285,7 +290,7 @@ def _refusal(message: Any, token: str) -> str:
 
 
 class Recorder:
-    """Writes the play of a person as traces, which ``tltlc monitor`` judges; needs no tltlc.
+    """Writes the play of a person as traces, which ``tltlc monitor`` can judge later; needs no connection.
 
     Each episode is a file in ``folder``: ``trace-0001.csv``, ``trace-0002.csv`` and so on; no file is
     overwritten. ``signals`` are the names of the signals, as specs write them. With ``clock_hz``,
@@ -305,7 +310,7 @@ class Recorder:
         self._samples = 0
 
     def begin(self) -> Path:
-        """Begin a trace, and end the one before; return the path of its file."""
+        """Begin a new trace, and end the one before; return the path of the new file."""
         self.end()
         self._folder.mkdir(parents=True, exist_ok=True)
         number = 1
@@ -322,7 +327,7 @@ class Recorder:
         return path
 
     def sample(self, signals: Mapping[str, float]) -> None:
-        """Write the values of all signals at one moment; they are in the file at once."""
+        """Write the values of all signals at one moment to the file at once; begin a trace if there is none."""
         if self._file is None:
             self.begin()
         values = [_value(name, signals[name]) for name in self._signals]
