@@ -159,7 +159,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def played_level(self, level: LevelT, episodes: Iterable[EpisodeT]) -> LevelT:
         """Return ``level`` with what ``episodes`` showed of it, so that reports can draw it.
 
-        Some games know only while they are played where things are. By default, return ``level``
+        Some games know where things are only while they are played. By default, return ``level``
         unchanged.
         """
         del episodes

@@ -19,7 +19,7 @@ On the screen, text keeps its size whatever the size of the map.
 """
 
 LABEL_OFFSET: Final = 35
-"""Centimetres from the centre of a small thing to the foot of its name."""
+"""Centimetres from the centre of a small thing to the baseline of its name."""
 
 _MARGIN: Final = 12
 """Centimetres between the western side of a region and its name."""
@@ -35,9 +35,9 @@ _STEP: Final = 50
 class MapLabel:
     """A name on the map.
 
-    The foot of its first line is at ``x`` and ``y``, in centimetres. ``kind`` is a CSS class: a
-    ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred there.
-    ``is_mentioned`` says that the report mentions the name.
+    ``lines`` are its lines of text. The baseline of the first line is at ``y``, in centimetres. ``kind``
+    is a CSS class: a ``region-name`` starts at ``x``, a ``thing-name`` or ``enemy-name`` is centred
+    there. ``is_mentioned`` says that the report mentions the name.
     """
 
     lines: tuple[str, ...]

@@ -26,10 +26,10 @@ NO_MENTIONS: Final = Mentions()
 def mentions_in(text: str, things: Iterable[str], regions: Sequence[str]) -> Mentions:
     """Return which of the ``things`` and ``regions`` of a level a text mentions.
 
-    A text mentions the thing ``far_wall`` if it contains that name in backticks, alone or with keys of
-    the level's file, such as "wall.far_wall.at" in backticks. It mentions the region ``left_part`` if it
-    contains "the left part". If the names of several regions fit at one place in the text, only the
-    longest counts: "the left part" does not mention the region ``left``.
+    A text mentions the thing ``far_wall`` if it contains, in backticks, either "far_wall" or a key of the
+    level's file with this name in it, such as "wall.far_wall.at". A text mentions the region
+    ``left_part`` if it contains "the left part". If the names of several regions fit at one place in the
+    text, only the longest counts: "the left part" does not mention the region ``left``.
     """
     return Mentions(tuple(name for name in things if _mentions_thing(name, text)), _regions(text, regions))
 

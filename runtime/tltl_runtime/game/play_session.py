@@ -28,7 +28,10 @@ class PlaySession(ABC, Generic[EpisodeT]):
         """Whether the episode has steps that ``recordings.save`` has not got."""
 
     def play(self, seed: int | None) -> None:
-        """Play until the person stops; ``seed`` is the seed of the first episode."""
+        """Play episodes until the person stops or ``enough()`` is true.
+
+        ``seed`` is the seed of the first episode; None means a new one.
+        """
         going = True
         try:
             while going:

@@ -1,4 +1,4 @@
-"""Check a recording: run its spec's automaton again on its signals, and compare it with a replay."""
+"""Check a recording: run its spec's automaton again on its signals, and describe how a replay differs from it."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def replay_difference(episode: RecordedEpisode, row: int, versions: Mapping[str,
 
 
 def _differences(episode: RecordedEpisode) -> Iterator[tuple[int, _Difference]]:
-    """Yield the number of a step and a difference between its recorded and recomputed values, for each difference.
+    """Yield each difference between a recorded and a recomputed value, with the number of its step.
 
     Step 0 is the moment of the reset.
     """

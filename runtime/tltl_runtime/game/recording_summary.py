@@ -26,8 +26,8 @@ def summary(episode: RecordedEpisode, notation: Notation = "english") -> dict[st
     """Return a summary of an episode as JSON data.
 
     The key ``changes`` has a row for the start and for each change of the automaton's state. The
-    label in a row says, in ``notation``, what remains to be satisfied in that state. The keys after
-    ``reward`` are the figures that only the episode's game has.
+    label in a row says, in ``notation``, what remains to be satisfied in that state. Figures that only
+    the episode's game has, such as health, follow the key ``reward``.
     """
     level, fspa, game = episode.level, episode.fspa, episode.level.game
     result, reason = game.summary(episode), game.cause(episode)

@@ -34,7 +34,7 @@ class PositionsError(ValueError):
 
 
 def read_positions(value: object) -> dict[str, Point]:
-    """Return the positions that a game gives, in metres; z is 0 if it gives x and y alone.
+    """Return the positions in ``value``, which a game gives, by name and in metres; without a z, z is 0.
 
     An entity whose position is None or not-a-number is gone, and is left out.
 

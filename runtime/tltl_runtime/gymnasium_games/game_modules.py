@@ -31,8 +31,8 @@ _folders: Final[set[Path]] = set()
 def folder_first(game: GameFile) -> Iterator[None]:
     """Within this context, search for modules in the folder of a game first.
 
-    First, remove the modules of other games from ``sys.modules``. This game may have modules with the
-    same names. They must be imported, also so that they register their environments again.
+    First, remove the modules of other games from ``sys.modules``. Otherwise, they would take the place of
+    this game's modules with the same names, which would then not register their environments.
     """
     folder = game.folder.resolve()
     own = _top_names(folder)

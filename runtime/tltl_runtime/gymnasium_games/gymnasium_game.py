@@ -57,10 +57,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         return level.content_hash
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
-        """Do nothing: only when a scene is played is it known which signals it has."""
+        """Do nothing: the signals of a scene are known only when it is played."""
 
     def landmarks(self, level: SceneLevel) -> dict[str, Point]:
-        """Return the places of the entities that did not move in an episode, by name."""
+        """Return the positions of the entities that did not move in the recorded episodes, by name."""
         return dict(level.landmarks)
 
     def solids(self, level: SceneLevel) -> dict[str, Box]:

@@ -51,12 +51,12 @@ class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
         return scene_map_key(level, mentions)
 
     def map_data(self, level: SceneLevel) -> dict[str, Any]:
-        """Return no data: nothing on the map of a scene is computed by the page's script."""
+        """Return an empty mapping: the page's script needs no data about a scene to draw onto its map."""
         del level
         return {}
 
     def episode_data(self, level: SceneLevel, index: int, episode: SceneEpisode) -> dict[str, Any]:
-        """Return the player and the entities of an episode over time."""
+        """Return an episode as JSON data: where the player and the entities are, and what the spec says."""
         from tltl_runtime.gymnasium_games.scene_playback import scene_playback
 
         return scene_playback(level, index, episode)

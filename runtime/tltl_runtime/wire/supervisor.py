@@ -1,9 +1,9 @@
 """A program that runs a game, and ends it with all its child processes as soon as tltlc ends.
 
 It is started as ``python -I -S supervisor.py WORDS…``, imports only the standard library, and
-works on Unix. Its standard input is a pipe whose other end belongs to tltlc. Once the pipe is closed,
-because tltlc closed it or was killed, or once the game has ended, it kills what is left of the
-game. Its exit status is that of the game.
+works on Unix. Its standard input is a pipe whose other end belongs to tltlc. The pipe is closed when
+tltlc closes it or is killed. Then, or when the game has ended, the supervisor kills all processes of the
+game that still run. Its exit status is that of the game.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _NOT_FOUND = 127
 def main(words: list[str]) -> int:
     """Run the game with the command ``words`` until it ends, or until standard input is closed.
 
-    Kill what is left of it. Return its status, as :func:`os.waitpid` gives it; -1 if it did not end by
-    itself.
+    Then kill all of its processes that still run. Return the game's status, as :func:`os.waitpid` gives
+    it; -1 if the game did not end by itself.
     """
     _prctl(_SET_CHILD_SUBREAPER, 1)
     reads, writes = os.pipe()
@@ -122,7 +122,10 @@ def _prctl(option: int, value: int) -> None:
 
 
 def _end(status: int) -> None:
-    """End as the game ended: with its exit status, or by the same signal."""
+    """End this process as the game ended: with the same exit status, or by the same signal.
+
+    ``status`` is the result of :func:`main`. If the game did not end by itself, exit with status 0.
+    """
     if status != -1 and os.WIFSIGNALED(status):
         import resource
 

@@ -95,7 +95,7 @@ class EvaluationFiles:
         return tuple(name for name in self._removed if self._folder and not (self._folder / name).exists())
 
     def add(self, result: PlayedEpisode) -> None:
-        """Add the next result, and write its recording if it has one."""
+        """Add the next result. If it has a recording, write the recording, and a picture of its path if possible."""
         sampled = result.request.sampled
         if self._folder is not None and not any(self._summaries.values()):
             self._removed = self._remove_older(self._folder)

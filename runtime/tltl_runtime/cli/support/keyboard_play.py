@@ -43,7 +43,7 @@ def keyboard_options(function: Function) -> Function:
 
 
 def keyboard_of(level: Level) -> Keyboard[Any]:
-    """Return the object that lets a person play a level's game; raises TltlError, TLT0731, if no person can."""
+    """Return the object that lets a person play a level's game; raises TltlError, TLT0731, if there is none."""
     keyboard = level.game.keyboard
     if keyboard is None:
         advice = "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`"

@@ -79,8 +79,8 @@ def run(options: RegressOptions) -> int:
     On KeyboardInterrupt or an error, report on the finished cases and raise the exception again.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0942, a policy lies in the folder of a training;
-            errors from reading the suite, playing and training.
+        TltlError: TLT0005, a file cannot be written; TLT0942, a policy of the suite lies in a folder that
+            retraining needs; errors from reading the suite, playing and training.
     """
     check_no_training(options.folder)
     check_writable(options.report_files)

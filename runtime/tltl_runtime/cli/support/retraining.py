@@ -55,8 +55,8 @@ def retrain_cases(options: Retraining, results: list[FinishedCase], *, to_stderr
     error, and the next case follows.
 
     Raises:
-        TltlError: TLT0942, a policy lies in the folder of a training; TLT0730, TLT0850 and TLT0852,
-            errors of the workers; TLT0005, a file cannot be written.
+        TltlError: TLT0942, a policy of the suite lies in a folder that retraining needs; TLT0730, TLT0850
+            and TLT0852, errors of the workers; TLT0005, a file cannot be written.
     """
     for case in results:
         if reason := case.training_obstacle:

@@ -57,9 +57,10 @@ def sensor_options(command: Function) -> Function:
 
 
 def option_of(key: str, sensors: Sensors) -> str:
-    """Return the command-line option that selects one part of the agent's sensors, quoted for a shell.
+    """Return the command-line option that selects one part of ``sensors``, quoted for a shell.
 
-    ``key`` is the part: ``entities``, ``variables`` or ``map``.
+    ``key`` is the part: ``entities``, ``variables`` or ``map``. Examples of the result are
+    ``--entities s1,exit`` and ``--no-map``.
     """
     if key == "map" and sensors.map is not None:
         value = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"

@@ -65,7 +65,7 @@ def check_no_training(folder: Path) -> None:
 
 
 def is_standard_output(path: Path) -> bool:
-    """Whether a path is standard output: `-`, its device, or the file that standard output is redirected to."""
+    """Whether a path is ``-``, ``/dev/stdout``, or the file that standard output is redirected to."""
     return str(path) in _OUTPUT or fileio.descriptor_of(path) == 1
 
 
