@@ -11,14 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium import spaces
 
-from tests.runtime.training.runs import SMALL
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recording_path import SUFFIX
@@ -27,9 +26,10 @@ from tltl_runtime.policies.spaces.action_layout import action_layout
 from tltl_runtime.policies.spaces.values import flat_action
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.training.files.run_file import TrainingRun
-from tltl_runtime.training.files.settings import read_settings
 from tltlc.core.record import replace
+
+if TYPE_CHECKING:
+    from tltl_runtime.training.files.run_file import TrainingRun
 
 SPEC = """\
 signal gap in [0, 2]
@@ -166,6 +166,11 @@ def only_game() -> Iterator[None]:
 
 def line_run(folder: Path, variant: str = "v0", **changes: Any) -> TrainingRun:
     """Return a training on the line; ``changes`` override settings, as in ``runs.run_in``."""
+    # Workers import this module, and need not import what learns.
+    from tests.runtime.training.runs import SMALL
+    from tltl_runtime.training.files.run_file import TrainingRun
+    from tltl_runtime.training.files.settings import read_settings
+
     settings = read_settings()
     defaults = {**SMALL, "exploration.ways": read_settings().exploration.ways}
     for name, value in {**defaults, **{name.replace("__", "."): value for name, value in changes.items()}}.items():
