@@ -58,7 +58,7 @@ def drop_deep_declarations(
     """Drop the declarations, and the clauses of specs, with an expression that nests too deep.
 
     Return the other declarations, and an error for each declaration or clause that was dropped. If all
-    clauses of a spec are dropped, so is the spec.
+    clauses of a spec are dropped, so is the spec; a spec that has none is kept.
     """
     kept: list[Declaration] = []
     diagnostics: list[Diagnostic] = []
@@ -69,7 +69,7 @@ def drop_deep_declarations(
         elif isinstance(declaration, tree.SpecDecl):
             clauses, errors = drop_deep_clauses(source, declaration.clauses)
             diagnostics += errors
-            if clauses:
+            if clauses or not declaration.clauses:
                 kept.append(replace(declaration, clauses=clauses))
         else:
             errors = [error for part in expressions(declaration) if (error := expression_depth_error(source, part))]
