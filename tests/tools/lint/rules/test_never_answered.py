@@ -26,6 +26,10 @@ from tltlc.tools.lint.rules import never_answered
         ("require not (at(x) implies at(y))", []),
         ("require F (at(x) implies at(y))", []),
         ("keep at(z) iff (at(x) implies at(y))", []),
+        ("keep at(z) or (at(x) implies at(y))", []),
+        ("require (at(x) implies at(y)) until at(z)", []),
+        ("require at(z) weak_until (at(x) implies at(y))", []),
+        ("keep at(z) and (at(x) implies at(y))", ["at(x) implies at(y)"]),
     ],
 )
 def test_implications_of_exclusive_atoms_are_reported(clause: str, expected: list[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
@@ -13,6 +14,9 @@ from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+_REQUIRING: Final = ("and", "implies", "G", "X", "N")
+"""The expression holds only if the operands of these operators hold, or the right one of `implies`."""
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -31,13 +35,13 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
     """Yield the implications in an expression, outer before inner.
 
-    Implications inside `eventually`, `then`, `not` or `iff`, and in the conditions of other
+    Implications below other operators than those in ``_REQUIRING``, and in the conditions of other
     implications, are left out: they need not hold for the expression to hold.
     """
     pending = [value]
     while pending:
         part = pending.pop()
-        if isinstance(part.tree, (Unary, BinaryExpr)) and part.tree.op in ("not", "F", "then", "iff"):
+        if isinstance(part.tree, (Unary, BinaryExpr)) and part.tree.op not in _REQUIRING:
             continue
         operands = part.children()
         if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
