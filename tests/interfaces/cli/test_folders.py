@@ -102,6 +102,15 @@ def test_a_folder_without_sources_is_rejected(command: str, tltlc: Command, insi
     assert (outcome.status, outcome.err.splitlines()[0]) == (2, "error[TLT0722]: there is no .tltl file in `empty`")
 
 
+def test_the_tests_of_other_arguments_run_after_a_folder_without_sources(tltlc: Command, inside: Path) -> None:
+    Path("empty").mkdir()
+    Path("a.tltl").write_text(
+        'signal a: bool\nspec s { reach a }\ntest "a" for s { step a  expect satisfied }\n', encoding="utf-8"
+    )
+    outcome = tltlc("test", "empty", "a.tltl")
+    assert (outcome.status, outcome.out.splitlines()[-1]) == (2, "1 passed, 0 failed"), outcome.out + outcome.err
+
+
 @pytest.mark.parametrize("command", ["fmt", "lint", "test"])
 def test_an_artefact_is_rejected_as_a_source(command: str, tltlc: Command, inside: Path) -> None:
     tltlc("compile", "hide.tltl", "-t", "json")

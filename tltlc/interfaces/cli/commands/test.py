@@ -32,14 +32,15 @@ def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> i
     Without arguments, the command runs the tests of the current folder. The exit status is 1 if a test fails or a file
     has errors.
     """
-    from tltlc.interfaces.cli.folders import sources
+    from tltlc.interfaces.cli.folders import every_source
     from tltlc.interfaces.cli.report import Report
 
     passed = failed = unreadable = 0
     with Report(format, results=True) as report:
         for argument in paths or (".",):
             before = passed + failed + unreadable
-            for path in sources(argument):
+            paths_inside = every_source([argument], report)
+            for path in paths_inside:
                 try:
                     results = _run(path, settings, report.add)
                 except TltlError as error:
@@ -51,7 +52,7 @@ def command(paths: tuple[str, ...], settings: CompileSettings, format: str) -> i
                     print(f"{verdict}  {_place(result)}  {result.test.title}", flush=True)
                     passed, failed = passed + result.passed, failed + (not result.passed)
                     report.add([result.failure] if result.failure else [])
-            if passed + failed + unreadable == before:
+            if paths_inside and passed + failed + unreadable == before:
                 report.say(f"{argument}: it contains no test block; the form is {DECLARATIONS['test']}")
         print(f"{passed} passed, {failed} failed{_unread_text(unreadable)}")
     return report.status
