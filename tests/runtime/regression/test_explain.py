@@ -399,6 +399,11 @@ def test_longer_and_shorter_successes_are_described(
     assert sentences(level, fspa, now)[1:] == ([text] if text else [])
 
 
+def test_successes_without_positions_pass_through_no_region(level: StealthLevel, fspa: Fspa) -> None:
+    now = [replace(explained, way=(), place=None) for explained in successes(fspa)]
+    assert sentences(level, fspa, now, now)[1:] == []
+
+
 def test_a_new_route_of_successes_is_described(level: StealthLevel, fspa: Fspa) -> None:
     through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
     now = [

@@ -193,7 +193,8 @@ def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[Exp
 def _visits(episode: ExplainedEpisode, region: Region) -> bool:
     (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
     end = [] if episode.place is None else [episode.place[:2]]
-    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*positions_along(episode.way), *end))
+    along = positions_along(episode.way) if episode.way else ()
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*along, *end))
 
 
 def _count_text(count: int, episodes: Sequence[ExplainedEpisode], noun: str) -> str:
