@@ -281,6 +281,15 @@ def test_sarif_matches_its_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert change["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "b"}}]
 
 
+def test_a_file_of_the_current_folder_may_begin_with_two_dots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    log = json.loads(
+        render([Diagnostic("TLT0101", "a title", (Label(SourceFile("..a.tltl", "a"), Span(0, 1)),))], "sarif")
+    )
+    (location,) = log["runs"][0]["results"][0]["locations"]
+    assert location["physicalLocation"]["artifactLocation"]["uri"] == "..a.tltl"
+
+
 def test_github_commands_are_escaped() -> None:
     source = SourceFile("a:b,c.tltl", "one\nkeep é%\nlast")
     diagnostics = [

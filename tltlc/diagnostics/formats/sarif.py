@@ -83,7 +83,16 @@ def _uri(source: SourceFile) -> str:
     For a text that is no file of the user, such as ``<stdin>``, return its quoted name.
     """
     is_file = source.kind == "file" and source.name
-    path = os.path.relpath(source.name) if is_file else source.name
-    if is_file and path.startswith(os.pardir):
+    path = _relative_path(source.name) if is_file else source.name
+    if path is None:
         return "file://" + quote(os.path.abspath(source.name).replace(os.sep, "/"))  # noqa: PTH100
     return quote(path.replace(os.sep, "/"))
+
+
+def _relative_path(file: str) -> str | None:
+    """Return the path of a file relative to the current folder; None for a file outside this folder."""
+    try:
+        path = os.path.relpath(file)
+    except ValueError:  # On Windows, the file is on another drive.
+        return None
+    return None if path == os.pardir or path.startswith(os.pardir + os.sep) else path
