@@ -125,7 +125,7 @@ def temporaries() -> Iterator[Temporaries]:
 def new_folders(folders: Iterable[Path]) -> Iterator[None]:
     """Create missing folders and their missing parents at the start of the ``with`` block.
 
-    If the block raises an exception, remove the new folders that are empty.
+    If the block raises an exception, or a folder cannot be created, remove the new folders that are empty.
 
     Raises:
         OSError, ValueError: the system refuses to create a folder.
@@ -145,7 +145,7 @@ def new_folders(folders: Iterable[Path]) -> Iterator[None]:
 def _make_folder(folder: Path, created: list[Path]) -> None:
     """Create a folder and its missing parents; append the new folders to ``created``."""
     missing = []
-    while not folder.exists():
+    while not folder.exists() and folder != folder.parent:
         missing.append(folder)
         folder = folder.parent
     if not folder.is_dir():

@@ -154,7 +154,7 @@ def _check_form(symbol: Symbol, name: str) -> None:
     pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity") else _PLAIN
     if not pattern.match(name):
         raise _rename_error(f"`{name}` is not a name", "use ASCII letters, digits and `_`, and no digit first")
-    if any(part in load().words for part in name.split(".")[:1]) and name in load().words:
+    if name in load().words:
         raise _rename_error(f"`{name}` is a reserved word", f"choose another one, e.g. `{name}_`")
     if name in FUNCTIONS:
         raise _rename_error(f"`{name}` is a function of the language", f"choose another one, e.g. `{name}_of`")

@@ -35,6 +35,8 @@ _JUMP_TIME: Final = 0.3
 """The seconds that a jump takes in addition to a walk over the same distance."""
 _GOAL: Final = 0.6
 """A place within this distance of a goal counts as the goal, in metres."""
+_MOST_CACHED: Final = 64
+"""At most this many route fields are cached for each set of shut barriers."""
 _CLOSE_TO_WALL: Final = 1.25
 """A walk past a wall with hardly any room counts as this many times as long."""
 
@@ -118,10 +120,16 @@ class Routes:
         self._fields: dict[object, RouteField] = {}
 
     def field(self, goal: Point) -> RouteField:
-        """Return the routes to ``goal`` from everywhere. They are cached."""
+        """Return the routes to ``goal`` from everywhere. The last ones are cached."""
         if goal not in self._fields:
-            self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
+            self._store(goal, self._field(self.surfaces.near(goal, _GOAL)))
         return self._fields[goal]
+
+    def _store(self, key: object, field: RouteField) -> None:
+        # A goal may move, and then has a field for each of its places.
+        if len(self._fields) >= _MOST_CACHED:
+            del self._fields[next(iter(self._fields))]
+        self._fields[key] = field
 
     def leads(self, start: Point, goal: Point) -> bool:
         """Whether a route leads from the place nearest to ``start`` to ``goal``."""
@@ -142,7 +150,7 @@ class Routes:
             reached = min(
                 self._reachable_places(place), key=lambda candidate: dist(self.surfaces.point(candidate), goal)
             )
-            self._fields[key] = self._field(np.array([reached]))
+            self._store(key, self._field(np.array([reached])))
         return self._fields[key]
 
     def _field(self, goals: NDArray[np.intp]) -> RouteField:
