@@ -64,9 +64,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _JavaScript(Printer):
     """Prints the program of a monitor (:mod:`tltlc.program`) as JavaScript code.
 
-    ``atoms`` are the names of the atoms in the spec. Numeric functions in ``built_in`` are those of
-    ``Math``. All others are in the template of the monitor. Those that have no value for some
-    arguments, such as the division, are methods of the monitor there.
+    ``atoms`` are the names of the atoms in the spec. A numeric function whose name is in ``built_in`` is
+    called as a function of ``Math``: ``Math.abs(x)``. The template of the monitor must define all other
+    functions that the program calls. A function that has no value for some arguments, such as the
+    division, is a method of the monitor: ``this.#divide(x, y)``.
     """
 
     INDENT = "  "

@@ -100,7 +100,7 @@ def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition
 
 
 def depth(expression: Expression | Condition) -> int:
-    """Return how deep operators are nested: 0 for a number, a signal or a param."""
+    """Return how deep operators and ``when`` are nested: 0 for ``x``, 1 for ``x + 1``, 2 for ``abs(x + 1)``."""
     height, level = -1, {id(expression): expression}
     while level:
         height += 1

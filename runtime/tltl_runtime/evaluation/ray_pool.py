@@ -37,9 +37,10 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
 
 
 class RayWorker:
-    """A worker that plays episodes in a process of a Ray cluster (an actor).
+    """A worker that plays episodes in an actor, a process of a Ray cluster.
 
-    ``ray`` is the connected module, and ``setup`` a Ray reference to a :class:`Setup`.
+    ``ray`` is the module :mod:`ray`, after it has connected to the cluster. ``setup`` is a Ray
+    reference to a :class:`Setup`.
     """
 
     def __init__(self, ray: Any, setup: Any) -> None:

@@ -125,7 +125,11 @@ class _EditorOutput:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether to log a record of pygls: not if it is about a message that this server refuses and logs itself."""
+    """Whether to log a record of pygls.
+
+    It is False for what this server handles itself: for errors that it answers to the editor, and for messages that
+    are not well-formed.
+    """
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 

@@ -1,4 +1,4 @@
-"""Phrases about signals, params, atoms and samples for messages and reports."""
+"""Phrases for the messages and reports of ``tltlc diff``: about signals, params, atoms, samples and specs."""
 
 from __future__ import annotations
 

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
-    """Return the automaton ``new`` with the old names of renamed atoms.
+    """Return the automaton ``new`` in which renamed atoms have their old names again.
 
     An added atom counts as renamed if a removed atom has the same expression. The names of params in
-    the expressions may differ.
+    the expressions may differ. Each removed atom gives its name to one added atom at most. Only the
+    names in ``atoms`` change; the formulas keep the new ones.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     removed: dict[object, Atom] = {}

@@ -32,8 +32,8 @@ class Judge:
     ``fspa`` is the automaton of the spec. If a trace is not accepted, the
     :class:`~tltlc.tools.judge.verdict.RejectionCause` in the result names those of ``clauses`` that the
     trace breaks or does not meet. If ``clauses`` is None, no clauses are named. With
-    ``episodes``, a trace is judged as an episode: the samples after the goal, a violation or the
-    limit do not count. With ``details``, each verdict also has
+    ``episodes``, a trace is judged as an episode: the samples after the goal, after a
+    violation, or after the step limit of the spec do not count. With ``details``, each verdict also has
     :class:`~tltlc.tools.judge.verdict.TraceDetails`: how the trace moved through the automaton.
     """
 

@@ -27,8 +27,9 @@ class MiningOptions:
     """Options of a search.
 
     ``min_support`` is the least share of the traces that must satisfy a proposal, in (0, 1].
-    ``max_length`` is the greatest number of atoms in a proposal. A bound counts as one atom, and so
-    does each `and` or `or` in a step of `reach`.
+    ``max_length`` is the greatest length of a proposal: the number of its atoms, where each occurrence
+    counts. A bound, as in `within 3 steps`, counts as one atom more, and so does each `and` or `or`
+    in an event of `reach a then (b and c)`.
     """
 
     min_support: float = 1.0

@@ -41,9 +41,9 @@ def workflow_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -
 
 
 def _file_to_annotate(suite: Suite, case: SuiteCase, report: CaseReport) -> Path:
-    """Return the file to annotate for a case whose error has no location.
+    """Return the file to annotate for a case without an error, or with one that has no location.
 
-    :func:`workflow_commands` lists the choices.
+    :func:`workflow_commands` lists the files from which this function chooses, the best one first.
     """
     if isinstance(case, TraceCase):
         return Path(fileio.split_spec_name(case.spec)[0])

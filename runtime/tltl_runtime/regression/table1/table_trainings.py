@@ -24,7 +24,11 @@ _MINUTES: Final = 60.0
 
 @record
 class Limits:
-    """The limits of a training: ``steps``, over all environments, and ``minutes`` (0: no limit)."""
+    """The limits of a training.
+
+    ``steps`` is the number of decisions in all environments together, and ``minutes`` is the time;
+    0 minutes mean that the time is not limited.
+    """
 
     steps: int
     minutes: float

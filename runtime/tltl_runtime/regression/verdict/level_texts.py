@@ -39,9 +39,12 @@ def level_texts(name_or_path: str, variant: Variant, files: Texts) -> Texts:
 
 
 def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
-    """Return the current text of a level's file called ``name``; None if it cannot be read.
+    """Return the current text of one of a level's files; None if it cannot be read.
 
-    If there is no file of this name any more, return the text of the level's main file.
+    ``name`` is the name of the file in ``Level.files``. If there is no such file any more, the text is
+    that of the level's main file. A line ends with a line feed, however it ends in the file.
+
+    Raises TltlError: TLT0800 there is no such level.
     """
     level_files = game_of(name_or_path).level_files
     candidates = level_files.candidates(name_or_path, variant, name)
@@ -51,7 +54,10 @@ def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
 def baseline_level(reference: Reference) -> Level | None:
     """Load the level on which ``reference`` was recorded, from the texts that the baseline stores.
 
-    None if a text is missing, if two files have the same name, or if the level does not load.
+    The level has no spec of its own. Return None if a text is missing, if two files have the same name,
+    if a name is not a plain file name, or if the level does not load.
+
+    Raises TltlError: TLT0005 there is no place for temporary files.
     """
     played, texts = reference.played, dict(reference.texts)
     # Two overlays of the same name do not fit into one folder. No name may lead out of the folder.

@@ -47,10 +47,12 @@ class TensorLine:
 class TensorWriter:
     """Writes lines of code that compute expressions. Each line assigns a tensor to a new name.
 
-    The code uses the variable ``columns``: ``columns[i]`` has the values of the i-th of ``signals`` in
-    the N environments. It also uses a zero-dimensional tensor for each of ``constants``, which maps
-    the names of these tensors to their numbers. ``params`` are the values of the params in the
-    expressions. Equal right-hand sides are written only once.
+    ``signals`` are the names of the signals, and ``params`` the values of the params in the expressions.
+    Whoever runs the code supplies what it uses: the variable ``columns``, where ``columns[i]`` has the
+    values of the i-th signal in the N environments; functions of torch by their names, such as
+    ``clamp``; and the constants. When all lines are written, the attribute ``constants`` has a number
+    for each name that the code uses for a zero-dimensional tensor. Equal right-hand sides are written
+    only once.
     """
 
     def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:

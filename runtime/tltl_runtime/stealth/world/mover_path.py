@@ -30,10 +30,11 @@ class MoverPath:
         self._begins = [leg[0] for leg in self._legs]
 
     def position_at(self, clock: float) -> Point:
-        """Return the centre of the mover after ``clock`` seconds on its path.
+        """Return the centre of the mover ``clock`` seconds after the start of its cycle.
 
-        These seconds include the pauses: at each point of the path, the mover first rests, and then
-        moves to the next point.
+        At each point of the path, the mover first rests, and then moves to the next point. After the
+        last point, the cycle starts again. The ``offset`` of the mover, with which its cycle is ahead
+        of the episode, is not added here.
         """
         if self._lap <= 0.0:
             return self._first

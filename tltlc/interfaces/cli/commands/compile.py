@@ -101,7 +101,13 @@ def command(
 def _valid_inputs(
     specs: list[str], settings: CompileSettings, names: tuple[str, ...], report: Report
 ) -> Iterator[Input]:
-    """Compile each argument and report its diagnostics; yield the compiled arguments without errors."""
+    """Compile each of ``specs``, the arguments of the command line, and yield those without errors.
+
+    All diagnostics are added to ``report``. If there are ``names``, only specs with these names are
+    compiled.
+
+    Raises click.UsageError: an argument is a project file.
+    """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.inputs import open_input
 

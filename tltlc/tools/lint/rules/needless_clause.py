@@ -16,9 +16,10 @@ from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each clause that every trace satisfies.
+    """Yield a finding for each clause of which it is proved that every trace satisfies it.
 
-    If every trace satisfies the whole spec, yield nothing, because the compiler reports that.
+    A clause that is a conjunction has a finding for each such operand. A spec whose automaton accepts
+    every trace has no findings, because the compiler warns about it.
     """
     for spec in view.specs:
         if spec.fspa.states[0].verdict == "satisfied":
