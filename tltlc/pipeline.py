@@ -128,7 +128,7 @@ class Session:
     def reported(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of all stages, including those that comments silence.
 
-        They include the errors of automata that cannot be built. Errors: as for :attr:`specs`.
+        They include the errors of automata that cannot be built. Raises what :attr:`specs` raises.
         """
         # Raise the errors of parsing and resolving before automata are built.
         built = self._built

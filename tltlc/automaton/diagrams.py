@@ -81,8 +81,8 @@ class Diagrams(Generic[DiagramLeaf]):
     true, and ``low[n]`` where it is false. Variables are ints and are tested in ascending order.
     Leaf ``n`` has the value ``value[n]``, and its ``variable`` is :data:`LEAF`.
 
-    If a budget ``work`` is given, each new inner node costs one step, and so does each pair of
-    nodes that :meth:`apply` combines. If no step is left, the methods raise
+    If a budget ``work`` is given, each new inner node costs one step, and so does each new pair of
+    nodes that :meth:`apply` visits, unless both are leaves. If no step is left, the methods raise
     :class:`~tltlc.automaton.work.OutOfWork`.
     """
 

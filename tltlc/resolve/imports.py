@@ -105,10 +105,10 @@ def library_with(name: str) -> str | None:
 
 @lru_cache(maxsize=1)
 def _names_of_libraries() -> Mapping[str, str]:
-    """Map each name that the standard library declares to the library that declares it.
+    """Map each undotted name that the standard library declares to the library that declares it.
 
-    If several libraries declare a name, the first one in alphabetical order counts. This reads all
-    library files, so call it only for messages.
+    If several libraries declare a name, the first one in alphabetical order counts. This reads the
+    files of all libraries, without their tests, so call it only for messages.
     """
     import re
 

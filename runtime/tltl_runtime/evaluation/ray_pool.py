@@ -39,7 +39,7 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
 class RayWorker:
     """A worker that plays episodes in an actor, a process of a Ray cluster.
 
-    ``ray`` is the module :mod:`ray`, after it has connected to the cluster. ``setup`` is a Ray
+    ``ray`` is the module ``ray``, after it has connected to the cluster. ``setup`` is a Ray
     reference to a :class:`Setup`.
     """
 

@@ -71,7 +71,10 @@ def summary(episode: RecordedEpisode, notation: Notation = "english") -> dict[st
 
 
 def summary_text(values: Mapping[str, Any], figures: GameFigures) -> str:
-    """Return the result of :func:`summary` as text for people; ``figures`` come from :meth:`Game.figures`."""
+    """Return the result of :func:`summary` as text for people.
+
+    ``figures`` come from :meth:`Game.figures <tltl_runtime.game.game.Game.figures>`.
+    """
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [

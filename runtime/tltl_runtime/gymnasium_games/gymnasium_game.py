@@ -53,7 +53,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         return self.level_files.load_with_changes(name, chosen)[0]
 
     def level_hash(self, level: SceneLevel) -> str:
-        """Return the hash of everything in the game file and the scene's files that can change an episode."""
+        """Return the SHA-256 of what can change an episode: files, and the versions of packages.
+
+        :func:`~tltl_runtime.gymnasium_games.scene_hash.scene_hash` lists them.
+        """
         return level.content_hash
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:

@@ -256,7 +256,9 @@ def _from_function(
 ) -> gymnasium.Env[Any, Any]:
     assert game.python is not None
     name = f"`{game.python.text}`"
-    if "render_mode" in options and "render_mode" not in own.options and not _takes(function, "render_mode"):
+    keywords = _keywords(function)
+    takes_mode = keywords is None or "render_mode" in keywords
+    if "render_mode" in options and "render_mode" not in own.options and not takes_mode:
         advice = f"give {name} an argument `render_mode`, and pass it on to the environment"
         raise _no_pictures_error(scene, game.labels["python"], advice)
     _check_options(name, function, 1, options, own)
@@ -315,13 +317,19 @@ def _no_pictures_error(scene: str, label: Label, advice: str) -> TltlError:
     return TltlError([Diagnostic("TLT0731", title, (label,), advice)])
 
 
-def _takes(function: Callable[..., Any], name: str) -> bool:
-    """Whether a function takes a keyword argument; true if its arguments are unknown."""
+def _keywords(function: Callable[..., Any], positional: int = 0) -> list[str] | None:
+    """Return the names of a function's keyword arguments after the first ``positional`` ones; None if it takes any.
+
+    A function of C code may have a signature that Python does not know; it counts as one that takes any.
+    """
     try:
-        parameters = inspect.signature(function).parameters
-    except (TypeError, ValueError):  # a function of C code
-        return True
-    return name in parameters or any(parameter.kind == parameter.VAR_KEYWORD for parameter in parameters.values())
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):
+        return None
+    if any(parameter.kind == parameter.VAR_KEYWORD for parameter in parameters):
+        return None
+    by_name = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    return [parameter.name for parameter in parameters[positional:] if parameter.kind in by_name]
 
 
 def _check_options(
@@ -332,14 +340,9 @@ def _check_options(
     ``what`` is the name of the function in the message. The function gets ``positional`` other
     arguments first, which no option can set.
     """
-    try:
-        parameters = list(inspect.signature(function).parameters.values())
-    except (TypeError, ValueError):  # a function of C code
+    names = _keywords(function, positional)
+    if names is None:
         return
-    if any(parameter.kind == parameter.VAR_KEYWORD for parameter in parameters):
-        return
-    by_name = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-    names = [parameter.name for parameter in parameters[positional:] if parameter.kind in by_name]
     unknown = [key for key in options if key not in names]
     if unknown:
         title = f"{what} takes no option `{unknown[0]}`"

@@ -103,7 +103,8 @@ def scene_episode_bytes(episode: SceneEpisode) -> bytes:
     """Return the bytes of the file of an episode; equal episodes give equal bytes.
 
     Raises:
-        ValueError: the shapes of the arrays do not fit the layout of actions and the automaton.
+        ValueError: an array of the episode has another number of values than its steps, actions,
+            signals, atoms or entities need.
     """
     columns = {
         "time": episode.times,

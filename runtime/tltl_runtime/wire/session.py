@@ -1,4 +1,4 @@
-"""A conversation with a game in another process, from the game's start to its end."""
+"""A conversation with a game in another process, which is started, or runs already."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a game in another process is started or found."""
+"""How a game in another process is started, or where it runs already."""
 
 from __future__ import annotations
 

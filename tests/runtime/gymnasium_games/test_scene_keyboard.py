@@ -337,6 +337,12 @@ def test_a_person_records_demonstrations_of_a_scene(start: Callable[..., Player]
             "length=5):\n    render_mode = None\n    return",
             "give `corridor:make` an argument `render_mode`",
         ),
+        # No option can set an argument that has no keyword.
+        (
+            "def make(scene, length=5, render_mode=None):",
+            "def make(scene, render_mode=None, /, length=5):",
+            "give `corridor:make` an argument `render_mode`",
+        ),
     ],
 )
 def test_games_that_nobody_can_play_are_reported(

@@ -23,7 +23,7 @@ _KINDS: Final = {
 
 
 def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
-    """Return the declarations of a document in order, with the clauses of a spec as its children.
+    """Return the names that a document declares, in order, with the clauses of a spec as its children.
 
     Columns are counted in units of ``encoding``, such as ``utf-16``.
     """

@@ -41,7 +41,8 @@ class Quotient:
 def quotient(expression: Expression) -> Quotient:
     """Return the normal form of an expression without ``when``: a quotient of polynomials.
 
-    The result is cached until the active :func:`step_limit` ends. Raises TooLargeError.
+    The result is cached until the active
+    :func:`~tltlc.resolve.range_proof.work_budget.step_limit` ends. Raises TooLargeError.
     """
     work = current_budget()
     if work is None or not isinstance(expression, Op):

@@ -1,9 +1,10 @@
 """The statistics of a verdict: anytime-valid tests of a pass rate and of means against a baseline.
 
-Both tests may be evaluated after each episode. A test begins with a stake of 1 and bets it, episode
-by episode, against the hypothesis that it tries to refute. The odds are fair if the hypothesis
-holds: the stake is never negative, and its mean does not grow. So the probability that the stake
-ever exceeds 1/e is e at most. If it does, the hypothesis is refuted with error e (J. Ville 1939; H.
+Both tests may be evaluated after each episode. ``error`` is the allowed probability of refuting a
+hypothesis that is true. A test begins with a stake of 1 and bets it, episode by episode, against
+the hypothesis that it tries to refute. The odds are fair if the hypothesis holds: the stake is never
+negative, and its mean does not grow. So the stake then ever exceeds 1 / ``error`` with a probability
+of at most ``error``. If the stake exceeds this value, the hypothesis is refuted (J. Ville 1939; H.
 Robbins, Ann. Math. Stat. 41 (1970), 1397-1409; G. Shafer, J. R. Stat. Soc. A 184 (2021), 407-431).
 """
 

@@ -28,8 +28,9 @@ has certainly changed if both of these hold:
   the baseline by at most the threshold. The p-value of the test is at most e/4, over all
   evaluations (:func:`~tltl_runtime.regression.verdict.confidence.mean_p_value`).
 
-Each end of the interval has the error e/2, and each of the two figures e/4. So the probability that
-a certain verdict is wrong is e at most, whatever the pass rate is.
+Each end of the interval is wrong with a probability of at most e/2, and the test of each of the two
+figures with at most e/4. Whatever the true pass rate is, only one end of the interval can make the
+verdict wrong. So the probability that a certain verdict is wrong is at most e/2 + 2 · e/4 = e.
 """
 
 from __future__ import annotations
@@ -129,9 +130,9 @@ def differing_figures(
 ) -> tuple[str, ...]:
     """Return which of ``progress`` and ``reward`` differ from the baseline by at least their thresholds.
 
-    ``now`` and ``before`` are the episodes now and in the baseline. If they are ``paired``, the means
-    are compared over the seeds that both have, otherwise over all episodes. The differences may be
-    due to chance.
+    ``now`` and ``before`` are the episodes now and in the baseline. If they are ``paired``, both
+    begin with the same seeds in the same order, and the means are compared over these; otherwise
+    over all episodes. The differences may be due to chance.
     """
     return _differing_figures(_differences(now, before, paired=paired), thresholds)
 

@@ -25,8 +25,8 @@ class GatheredIteration:
     """The result of an iteration in all processes.
 
     ``iteration`` has the episodes and steps of all processes, and the losses and times of this
-    process. ``processes`` are the states of all processes, by rank. ``replayed`` counts the
-    replayed decisions of all processes.
+    process. ``processes`` are the states of all processes, by rank. ``replayed`` is how many
+    decisions all processes have replayed since they started, to reach states in which episodes start.
     """
 
     iteration: Iteration
