@@ -8,7 +8,8 @@ import pickle
 import pytest
 
 from tltlc.core.names import ComparisonName, full_name, split_name
-from tltlc.logic.formula import atom
+from tltlc.logic.formula import and_, atom, not_
+from tltlc.logic.text.phrases import phrase
 
 
 @pytest.mark.parametrize(
@@ -21,6 +22,7 @@ from tltlc.logic.formula import atom
         ("at(f(a, b), c)", "at", ("f(a, b)", "c")),
         ("distance(s1) > 3", "distance(s1) > 3", ()),
         ("near(s1) > far(s2)", "near(s1) > far(s2)", ()),
+        ("near(a > 3)", "near", ("a > 3",)),
         ("(a + b)", "(a + b)", ()),
         ("near()", "near()", ()),
         ("near(a", "near(a", ()),
@@ -53,3 +55,15 @@ def test_an_atom_learns_that_it_is_a_comparison() -> None:
     plain = atom("mana > 1")
     assert atom(ComparisonName("mana", ">", "1")) is plain
     assert isinstance(plain.name, ComparisonName)
+
+
+def test_a_pickled_formula_knows_its_comparisons() -> None:
+    pickled = pickle.dumps(not_(atom(ComparisonName("ammo", ">", "1"))))
+    plain = atom("ammo > 1")
+    assert phrase(pickle.loads(pickled)) == "ammo <= 1"
+    assert plain.name == "ammo > 1"
+
+
+def test_a_comparison_may_stand_beside_an_atom_with_the_name_of_its_opposite() -> None:
+    opposite = atom("heat <= 5")
+    assert phrase(and_(not_(atom(ComparisonName("heat", ">", "5"))), not_(opposite))) == "heat <= 5 and not heat <= 5"

@@ -12,8 +12,7 @@ _COMPARISON: Final = re.compile(r"([^<>]+) ([<>]) ([^<>]+)")
 class ComparisonName(str):
     """The name of an atom that compares two numbers, such as ``fuel > 5``: a text that knows its parts.
 
-    ``left`` and ``right`` are the two sides as they are written, and ``operator`` is ``<``, ``<=``,
-    ``>`` or ``>=``.
+    ``left`` and ``right`` are the two sides as they are written, and ``operator`` is ``<`` or ``>``.
     """
 
     __slots__ = ("left", "operator", "right")
@@ -42,18 +41,21 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
     A name that is not a call, such as ``distance(s1) > 3``, is returned whole, with no arguments;
     that of a comparison is a :class:`ComparisonName`.
     """
-    if comparison := _COMPARISON.fullmatch(name):
-        return ComparisonName(*comparison.groups()), ()
     head = _BASE.match(name)
     if head is None:
-        return name, ()
+        return _whole(name), ()
     arguments: list[str] = []
     depth, start = 1, head.end()
     for index in range(start, len(name)):
         depth += {"(": 1, ")": -1}.get(name[index], 0)
         if depth == 0 and index < len(name) - 1:
-            return name, ()
+            return _whole(name), ()
         if depth == 0 or (depth == 1 and name.startswith(", ", index)):
             arguments.append(name[start:index])
             start = index + 2
-    return (name[: head.end() - 1], tuple(arguments)) if depth == 0 and all(arguments) else (name, ())
+    return (name[: head.end() - 1], tuple(arguments)) if depth == 0 and all(arguments) else (_whole(name), ())
+
+
+def _whole(name: str) -> str:
+    comparison = _COMPARISON.fullmatch(name)
+    return ComparisonName(*comparison.groups()) if comparison else name

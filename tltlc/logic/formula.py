@@ -130,7 +130,8 @@ FALSE: Final = _intern("false")
 def atom(name: str) -> Formula:
     """Return the atom called ``name``.
 
-    If this is a :class:`~tltlc.core.names.ComparisonName`, the atom is printed as a comparison.
+    If this is a :class:`~tltlc.core.names.ComparisonName`, the negation of the atom is printed as a
+    comparison.
     """
     node = _intern("atom", (), name)
     if isinstance(name, ComparisonName):
@@ -254,7 +255,7 @@ def unflatten(nodes: FlatNodes) -> list[Formula]:
     """Return a formula for each entry of a list that :func:`flatten` made, in the same order."""
     formulas: list[Formula] = []
     for op, args, name in nodes:
-        formulas.append(_intern(op, tuple(formulas[argument] for argument in args), name))
+        formulas.append(atom(name) if op == "atom" else _intern(op, tuple(formulas[argument] for argument in args)))
     return formulas
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
-from tltlc.core.names import ComparisonName
 from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, FormulaOp
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
@@ -26,6 +25,10 @@ STRENGTH: Final[Mapping[FormulaOp, int]] = {
     **dict.fromkeys(("true", "false", "atom"), 7),
 }
 """How tightly operators bind; a greater number binds more tightly."""
+
+
+_SIGNS: Final = frozenset("<>")
+"""A name with one of these characters, which operators have too, is printed in brackets."""
 
 
 class Spelling(NamedTuple):
@@ -184,7 +187,7 @@ def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> No
 
 def _needs_brackets(node: Formula, least: int, spelling: Spelling) -> bool:
     """Whether a formula needs brackets in a place where operators below the strength ``least`` need them."""
-    if spelling.brackets_around_comparisons and least and isinstance(node.name, ComparisonName):
+    if spelling.brackets_around_comparisons and node.op == "atom" and least and not _SIGNS.isdisjoint(node.name):
         return True  # The grammar reads F a > 0 as F(a > 0), but a person might not.
     if STRENGTH[node.op] >= least:
         return False

@@ -34,7 +34,7 @@ def _opposite(node: Formula) -> Formula | None:
     """Return the negation of a comparison as a comparison; None for any other formula."""
     if node.op != "not" or not isinstance(name := node.args[0].name, ComparisonName):
         return None
-    return atom(ComparisonName(name.left, _OPPOSITE[name.operator], name.right))
+    return atom(f"{name.left} {_OPPOSITE[name.operator]} {name.right}")
 
 
 def bracketed_phrase(state: Formula) -> str:
