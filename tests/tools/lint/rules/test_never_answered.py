@@ -27,6 +27,7 @@ from tltlc.tools.lint.rules import never_answered
         ("require F (at(x) implies at(y))", []),
         ("keep at(z) iff (at(x) implies at(y))", []),
         ("keep at(z) or (at(x) implies at(y))", []),
+        ("keep at(z) implies (at(x) implies at(y))", []),
         ("require (at(x) implies at(y)) until at(z)", []),
         ("require at(z) weak_until (at(x) implies at(y))", []),
         ("keep at(z) and (at(x) implies at(y))", ["at(x) implies at(y)"]),

@@ -15,8 +15,8 @@ from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
-_REQUIRING: Final = ("and", "implies", "G", "X", "N")
-"""The expression holds only if the operands of these operators hold, or the right one of `implies`."""
+_REQUIRING: Final = ("implies", "and", "G", "X", "N")
+"""Implications, and the operators whose operands are all required to hold."""
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -33,21 +33,20 @@ def check(view: FileView) -> Iterator[RuleFinding]:
 
 
 def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
-    """Yield the implications in an expression, outer before inner.
+    """Yield the implications that an expression requires to hold.
 
-    Implications below other operators than those in ``_REQUIRING``, and in the conditions of other
-    implications, are left out: they need not hold for the expression to hold.
+    These are not inside another implication, nor below an operator that ``_REQUIRING`` does not name:
+    there they need not hold for the expression to hold.
     """
     pending = [value]
     while pending:
         part = pending.pop()
         if isinstance(part.tree, (Unary, BinaryExpr)) and part.tree.op not in _REQUIRING:
             continue
-        operands = part.children()
         if isinstance(part.tree, BinaryExpr) and part.tree.op == "implies":
             yield part
-            operands = operands[1:]
-        pending += reversed(operands)
+        else:
+            pending += reversed(part.children())
 
 
 def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
