@@ -50,13 +50,25 @@ def value_reader(space: Space[Any], path: str) -> Reader:
 def value_writer(space: Space[Any]) -> Writer:
     """Return a function that converts a value of ``space`` to a value of JSON.
 
-    The function raises ValueError if a number or an array is not in its part of the space.
+    The function raises ValueError for what is not in the space.
     """
+    write = _writer(space)
+
+    def checked(value: Any) -> Any:
+        try:
+            return write(value)
+        except (LookupError, TypeError, OverflowError) as error:
+            raise ValueError(f"the action is {value!r:.200}, which is not in {space}") from error
+
+    return checked
+
+
+def _writer(space: Space[Any]) -> Writer:
     if isinstance(space, spaces.Dict):
-        writers = {key: value_writer(part) for key, part in space.items()}
+        writers = {key: _writer(part) for key, part in space.items()}
         return lambda value: {key: write(value[key]) for key, write in writers.items()}
     if isinstance(space, spaces.Tuple):
-        parts = [value_writer(part) for part in space]
+        parts = [_writer(part) for part in space]
         return lambda value: [write(item) for write, item in zip(parts, value, strict=True)]
     if isinstance(space, spaces.Discrete):
         return _choice_writer(space)

@@ -187,7 +187,12 @@ def test_what_is_no_value_of_the_space_is_refused(space: Space[Any], value: Any,
 
 @pytest.mark.parametrize(
     ("space", "action"),
-    [(spaces.Discrete(3), 3), (spaces.Discrete(3), 0.5), (PAIR, [0, 11]), (PAIR, [0]), (PAIR, [0, np.nan])],
+    [
+        *((spaces.Discrete(3), action) for action in (3, 0.5, None, np.inf)),
+        *((PAIR, action) for action in ([0, 11], [0], [0, np.nan], [0, 10**400], None)),
+        (spaces.MultiBinary(2), [0, np.inf]),
+        *((spaces.Dict({"a": PAIR}), action) for action in ({}, {"a": None}, np.zeros(2), None)),
+    ],
 )
 def test_an_action_outside_the_space_is_refused(space: Space[Any], action: Any) -> None:
     write: Callable[[Any], Any] = value_writer(space)
