@@ -402,6 +402,7 @@ def test_longer_and_shorter_successes_are_described(
 def test_successes_without_positions_pass_through_no_region(level: StealthLevel, fspa: Fspa) -> None:
     now = [replace(explained, way=(), place=None) for explained in successes(fspa)]
     assert sentences(level, fspa, now, now)[1:] == []
+    assert sentences(level, fspa, now, successes(fspa))[1:] == []
 
 
 def test_a_new_route_of_successes_is_described(level: StealthLevel, fspa: Fspa) -> None:

@@ -173,7 +173,9 @@ def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]
 
 def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
     """Yield a finding for each region through which clearly more or fewer successful episodes pass than before."""
-    new, old = ([episode for episode in episodes if episode.summary.success] for episodes in (now, before))
+    new, old = (
+        [episode for episode in episodes if episode.summary.success and episode.way] for episodes in (now, before)
+    )
     if min(len(new), len(old)) < _MIN_SUCCESSES:
         return
     for region in level.regions:
@@ -193,8 +195,7 @@ def _regions(level: Level, now: Sequence[ExplainedEpisode], before: Sequence[Exp
 def _visits(episode: ExplainedEpisode, region: Region) -> bool:
     (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
     end = [] if episode.place is None else [episode.place[:2]]
-    along = positions_along(episode.way) if episode.way else ()
-    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*along, *end))
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*positions_along(episode.way), *end))
 
 
 def _count_text(count: int, episodes: Sequence[ExplainedEpisode], noun: str) -> str:
