@@ -290,6 +290,18 @@ def test_a_file_of_the_current_folder_may_begin_with_two_dots(tmp_path: Path, mo
     assert location["physicalLocation"]["artifactLocation"]["uri"] == "..a.tltl"
 
 
+def test_a_file_on_another_drive_has_an_absolute_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    def relpath(path: str) -> str:
+        raise ValueError(f"{path} is on another drive")
+
+    monkeypatch.setattr("os.path.relpath", relpath)
+    log = json.loads(
+        render([Diagnostic("TLT0101", "a title", (Label(SourceFile("/a.tltl", "a"), Span(0, 1)),))], "sarif")
+    )
+    (location,) = log["runs"][0]["results"][0]["locations"]
+    assert location["physicalLocation"]["artifactLocation"]["uri"] == "file:///a.tltl"
+
+
 def test_github_commands_are_escaped() -> None:
     source = SourceFile("a:b,c.tltl", "one\nkeep é%\nlast")
     diagnostics = [

@@ -12,7 +12,7 @@ def expressions(declaration: Declaration) -> Iterator[Expr]:
     """Yield the outermost expressions of a declaration, in the order of the text.
 
     These are the ends of ranges, defaults, values and bodies; in a spec, the formulas and values of its
-    clauses, without tags; in a test, the atoms of its steps.
+    clauses, without tags; in a test, the atoms of its steps; in an ``exclusive`` declaration, its atoms.
     """
     match declaration:
         case tree.SignalDecl():

@@ -257,7 +257,7 @@ def declaration_removed(kind: str, name: str, place: Label) -> Diagnostic:
 def parameters_changed(kind: str, name: str, place: Label, why: str) -> Diagnostic:
     """Return TLT0759: uses of a declaration in a library are no longer valid.
 
-    ``why`` is the reason in words: ```close` must now be given, too``.
+    ``why`` is the reason in words, such as "the argument close must now be given, too".
     """
     help_ = "add new parameters after the others, with a default, and leave the others as they are"
     if kind == "signal":

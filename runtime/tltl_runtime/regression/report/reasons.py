@@ -27,7 +27,7 @@ def reasons(
     *,
     are_traces: bool = False,
 ) -> Iterator[str]:
-    """Yield a sentence on the pass rate, then one for each of progress and reward that has changed.
+    """Yield a sentence on the pass rate, then one for each of progress and reward that may have changed.
 
     ``judgement`` is the verdict on the episodes ``now``. ``before`` are the episodes of the baseline.
     If the episodes ``are_traces`` (recorded traces), they have no seeds, and the means over all of them

@@ -120,7 +120,7 @@ class Routes:
         self._fields: dict[object, RouteField] = {}
 
     def field(self, goal: Point) -> RouteField:
-        """Return the routes to ``goal`` from everywhere. The last ones are cached."""
+        """Return the routes to ``goal`` from everywhere. The newest fields are cached."""
         if goal not in self._fields:
             self._store(goal, self._field(self.surfaces.near(goal, _GOAL)))
         return self._fields[goal]

@@ -8,7 +8,7 @@ from math import dist, isinf
 import numpy as np
 import pytest
 
-from tltl_runtime.stealth.expert.routes import Leg, routes_of
+from tltl_runtime.stealth.expert.routes import Leg, Routes, routes_of
 from tltl_runtime.stealth.expert.surfaces import Surfaces
 from tltl_runtime.stealth.levels.file import load_level
 
@@ -60,3 +60,14 @@ def test_without_a_route_the_field_leads_to_the_nearest_place() -> None:
 
 def _length(legs: tuple[Leg, ...]) -> float:
     return sum(dist(start.place, end.place) for start, end in pairwise(legs))
+
+
+def test_a_moving_goal_keeps_a_bounded_number_of_fields(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.stealth.expert.routes._MOST_CACHED", 2)
+    routes = Routes(load_level("navigation"), frozenset())
+    first = routes.field(EXIT)
+    assert routes.field(EXIT) is first
+    for x in (2.0, 2.5):
+        routes.field((x, 8.0, 0.0))
+    assert routes.field(EXIT) is not first
+    assert routes.field(EXIT).seconds.tolist() == first.seconds.tolist()
