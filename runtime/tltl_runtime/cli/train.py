@@ -248,7 +248,9 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
         if run.settings.searches and last.searched is None:
-            yield "it began without a search for demonstrations, because the game names no `cell`: see docs/games.md"
+            from tltl_runtime.cli.support.training_text import no_search_line
+
+            yield no_search_line(last.plan)
         yield f"to go on with a higher limit: {again} --{last.stop} N"
 
 

@@ -63,6 +63,9 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     recordings_have_levels: bool = True
     """Whether a recording contains all that is needed to play it again; if not, :meth:`located` adds the rest."""
 
+    promises_replays: bool = True
+    """Whether equal seeds and actions give equal episodes in every level; if not, a training measures it."""
+
     modules: tuple[str, ...]
     """The modules that a process needs to play.
 
@@ -233,6 +236,24 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
 
         ``player`` is the name of the player in the recordings.
         """
+
+    def player_position(self, env: gymnasium.Env[Any, Any]) -> Point | None:
+        """Return where the player is now in an environment of :meth:`make_env`, in metres.
+
+        None if the player is gone, and by default: the game does not say where the player is.
+        """
+        del env
+        return None
+
+    def level_bounds(self, env: gymnasium.Env[Any, Any]) -> Box | None:
+        """Return the bounds of the level of an environment, in metres; None by default, where they are unknown."""
+        del env
+        return None
+
+    def plays_at_once(self, env: gymnasium.Env[Any, Any]) -> bool:
+        """Return whether several environments like this one can play at the same time; by default True."""
+        del env
+        return True
 
     def has_expert(self, env: EpisodeRecorder[EpisodeT]) -> bool:
         """Return whether a scripted expert can play an environment; by default False."""

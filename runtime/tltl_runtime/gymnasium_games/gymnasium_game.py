@@ -19,6 +19,7 @@ from tltl_runtime.game.geometry import Box, Point
 from tltl_runtime.game.level_name import Variant, parse_variant, split_scene
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice
+from tltl_runtime.gymnasium_games.entity_positions import PLAYER
 from tltl_runtime.gymnasium_games.scene_cause import scene_cause
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_episode_file import (
@@ -41,6 +42,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
 
     level_files = SceneFiles()
     recordings_have_levels = False
+    promises_replays = False
     pictures = ScenePictures()
     films = SceneFilms()
     keyboard = SceneKeyboard()
@@ -115,6 +117,21 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         from tltl_runtime.gymnasium_games.scene_recorder import SceneRecorder
 
         return SceneRecorder(env, player)
+
+    def player_position(self, env: gymnasium.Env[Any, Any]) -> Point | None:
+        """Return the position of the entity ``player``, as ``tltl_positions`` gives it."""
+        positions: Mapping[str, Point] = env.get_wrapper_attr("scene_positions")() or {}
+        return positions.get(PLAYER)
+
+    def level_bounds(self, env: gymnasium.Env[Any, Any]) -> Box | None:
+        """Return the bounds of the outline, as ``tltl_outline`` gives it."""
+        outline = env.get_wrapper_attr("scene_outline")()
+        return None if outline is None else outline.bounds
+
+    def plays_at_once(self, env: gymnasium.Env[Any, Any]) -> bool:
+        """Return whether the game file starts the game; a game that is running plays for one environment."""
+        wire = env.get_wrapper_attr("game_file").wire
+        return wire is None or not wire.connect
 
     def is_same_game(self, level: SceneLevel, other: SceneLevel) -> bool:
         """Return whether two scenes are of game files with the same name."""

@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any, Final
 
-import numpy as np
-
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv
+from tltl_runtime.support.same_values import copied, is_same, other_name
 from tltlc.api import record
 
 STEPS: Final = 200
@@ -98,10 +97,9 @@ def first_difference(first: Sequence[PlayedMoment], second: Sequence[PlayedMomen
     for one, other in zip(first, second, strict=False):
         if one.ended != other.ended:
             return PlayDifference(one.step, "", one.ended, other.ended)
-        for name in (*one.sample, *(name for name in other.sample if name not in one.sample)):
-            values = one.sample.get(name), other.sample.get(name)
-            if not is_same(*values):
-                return PlayDifference(one.step, name, *values)
+        name = other_name(one.sample, other.sample)
+        if name is not None:
+            return PlayDifference(one.step, name, one.sample.get(name), other.sample.get(name))
     return None
 
 
@@ -111,26 +109,5 @@ def first_other_observation(first: Sequence[PlayedMoment], second: Sequence[Play
     return next((one.step for one, other in pairs if not is_same(one.observation, other.observation)), None)
 
 
-def is_same(first: Any, second: Any) -> bool:
-    """Whether two values, or nested containers of values, are equal; NaN equals NaN."""
-    if isinstance(first, Mapping) and isinstance(second, Mapping):
-        return first.keys() == second.keys() and all(is_same(first[key], second[key]) for key in first)
-    if isinstance(first, (tuple, list)) and isinstance(second, (tuple, list)):
-        return len(first) == len(second) and all(map(is_same, first, second))
-    one, other = np.asarray(first), np.asarray(second)
-    if one.shape != other.shape:
-        return False
-    return bool(np.array_equal(one, other, equal_nan=one.dtype.kind in "fc" and other.dtype.kind in "fc"))
-
-
 def _moment(env: SceneEnv, step: int, observation: Any, *, ended: bool) -> PlayedMoment:
-    return PlayedMoment(step, _copied(observation), _copied(env.tltl_signals()), ended)
-
-
-def _copied(value: Any) -> Any:
-    """Return a copy of nested containers of arrays: games may reuse their arrays."""
-    if isinstance(value, Mapping):
-        return {key: _copied(item) for key, item in value.items()}
-    if isinstance(value, (tuple, list)):
-        return [_copied(item) for item in value] if isinstance(value, list) else tuple(map(_copied, value))
-    return value.copy() if isinstance(value, np.ndarray) else value
+    return PlayedMoment(step, copied(observation), copied(env.tltl_signals()), ended)

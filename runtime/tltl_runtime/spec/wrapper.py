@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
@@ -16,13 +17,22 @@ from gymnasium.utils import RecordConstructorArgs
 from numpy.typing import NDArray
 
 from tltl_runtime.spec.task import load_task
-from tltlc.api import Diagnostic, Fspa, MonitorError, RewardOptions, Step, TltlError, monitors
+from tltlc.api import Diagnostic, Fspa, Monitor, MonitorError, RewardOptions, Step, TltlError, monitors, record
 
 SignalsFunction = Callable[[gymnasium.Env[Any, Any]], Mapping[str, SupportsFloat]]
 Observation = dict[str, Any]
 
 _MOST_LISTED: Final = 12
 """A message names at most this many of the signals that a function returned."""
+
+
+@record
+class SpecState:
+    """How far a spec has come in an episode, and the values of the signals there."""
+
+    monitor: Monitor
+    taken: Step | None
+    sample: Mapping[str, SupportsFloat]
 
 
 class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorArgs):
@@ -157,6 +167,23 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         truncated = truncated or (step.done and not terminated)
         info = {**info, **self._step_info(step, before), "env_reward": env_reward}
         return self._with_automaton_keys(observation), step.reward, terminated, truncated, info
+
+    def spec_state(self) -> SpecState:
+        """Return how far the spec has come in this episode, for :meth:`restore_spec_state`."""
+        return SpecState(copy.copy(self._monitor), self.taken, dict(self.sample))
+
+    def restore_spec_state(self, state: SpecState) -> None:
+        """Go back to ``state``, after the wrapped environment has gone back to the same moment.
+
+        The signals are read again, so ``sample`` shows whether the environment is in that moment.
+
+        Raises:
+            MonitorError: TLT0611, a signal of the spec is missing.
+            TypeError: ``signals`` did not return a mapping.
+        """
+        self._monitor = copy.copy(state.monitor)
+        self.taken = state.taken
+        self._sample(f"step {self._monitor.steps}")
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
         """Call ``signals``, store its result in ``sample``, and return it.

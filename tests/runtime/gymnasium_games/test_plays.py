@@ -15,10 +15,10 @@ from tltl_runtime.gymnasium_games.plays import (
     drawn_actions,
     first_difference,
     first_other_observation,
-    is_same,
     play,
 )
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv, make_base_env
+from tltl_runtime.support.same_values import is_same
 
 
 @pytest.fixture(name="env")

@@ -260,12 +260,28 @@ def test_a_game_without_an_expert_is_refused(tltlc: Run, tmp_path: Path, monkeyp
     assert "error[TLT0731]" in result.err
 
 
-def test_a_training_without_a_search_says_so(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+def test_a_training_says_how_it_searches(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     games.write(tmp_path, settings__toml=SEARCHING)
     options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
     result = tltlc("train", "--game", "corridor.game.toml:short", *options)
-    assert "it began without a search for demonstrations, because the game names no `cell`" in result.out
+    _, plan, *lines = result.err.splitlines()
+    assert plan.startswith("searches by replaying actions: the game gives no snapshots; places are values of ")
+    assert lines[0].startswith("searching first for ways to meet the spec, with random actions.")
+    assert any(line.startswith("search: ") and "ways found" in line for line in lines)
+    assert "without a search" not in result.out
+
+
+def test_a_training_without_a_search_says_why(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    random = games.GRID.replace("import gymnasium\n", "import random\n\nimport gymnasium\n").replace(
+        "(0, 1, -1)[action]", "random.choice((0, 1, -1))"
+    )
+    games.write(tmp_path, settings__toml=SEARCHING, corridor__py=random)
+    options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
+    result = tltlc("train", "--game", "corridor.game.toml:short", *options)
+    assert "trains from the start alone, without a search: equal seeds and actions give different plays: " in result.err
+    assert "it began without a search for demonstrations, because equal seeds and actions give " in result.out
 
 
 @pytest.mark.usefixtures("trained")

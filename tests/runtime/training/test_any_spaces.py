@@ -171,14 +171,6 @@ def test_an_observation_that_no_policy_can_have_is_refused_before_anything_start
     assert not (tmp_path / "run").exists()
 
 
-def test_a_search_that_is_asked_for_needs_cells(tmp_path: Path) -> None:
-    assert refusal(line_run(tmp_path / "run", exploration__ways=3)) == (
-        "error[TLT0862]: `exploration.ways` asks for a search, but `line` does not say in which cell the player is\n"
-        "  help: leave the setting out: the training then begins each episode at the start\n"
-    )
-    assert not (tmp_path / "run").exists()
-
-
 def test_a_network_that_is_too_large_is_refused(tmp_path: Path) -> None:
     assert "error[TLT0862]: `network` gives a policy of" in refusal(
         line_run(tmp_path / "run", network__hidden=(16_000, 16_000))

@@ -172,7 +172,8 @@ def line_run(folder: Path, variant: str = "v0", **changes: Any) -> TrainingRun:
     from tltl_runtime.training.files.settings import read_settings
 
     settings = read_settings()
-    defaults = {**SMALL, "exploration.ways": read_settings().exploration.ways}
+    ways = read_settings().exploration.ways if variant == WITH_CELLS else 0
+    defaults = {**SMALL, "exploration.ways": ways}
     for name, value in {**defaults, **{name.replace("__", "."): value for name, value in changes.items()}}.items():
         table, _, key = name.rpartition(".")
         changed = {table: replace(getattr(settings, table), **{key: value})} if table else {key: value}

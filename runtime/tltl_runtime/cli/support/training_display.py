@@ -16,6 +16,7 @@ from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     SEARCHED_AGAIN,
     demonstrations_line,
+    plan_line,
     recording_line,
     report_line,
     search_end,
@@ -23,6 +24,7 @@ from tltl_runtime.cli.support.training_text import (
     search_result_line,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.report import TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.imitation.demonstrations import Attempt
@@ -33,6 +35,9 @@ _SECONDS_BETWEEN_LINES: Final = 10.0
 
 class Display(Protocol):
     """Shows the progress of a training."""
+
+    def show_plan(self, plan: SearchPlan) -> None:
+        """Show how the game is searched for ways to meet the spec, or why it is not."""
 
     def show_search(self, progress: SearchProgress) -> None:
         """Show the progress of the search for ways to meet the spec, which precedes the training."""
@@ -65,6 +70,9 @@ def display(run: TrainingRun, again: str) -> Iterator[Display]:
 
 
 class _NoDisplay:
+    def show_plan(self, plan: SearchPlan) -> None:
+        pass
+
     def show_search(self, progress: SearchProgress) -> None:
         pass
 
@@ -82,6 +90,10 @@ class _LineDisplay:
         self._run, self._again = run, again
         self._next = 0.0
         self._has_searched = self._has_trained = False
+
+    def show_plan(self, plan: SearchPlan) -> None:
+        if text := plan_line(plan):
+            print(text, file=sys.stderr, flush=True)
 
     def show_search(self, progress: SearchProgress) -> None:
         if not self._has_searched and self._has_trained:

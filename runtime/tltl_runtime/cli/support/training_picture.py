@@ -15,6 +15,7 @@ from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     confirmation_line,
     demonstrations_line,
+    plan_line,
     rate,
     recording_line,
     search_end,
@@ -25,6 +26,7 @@ from tltl_runtime.cli.support.training_text import (
 from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.report import EpisodeWindow, TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.files.settings import Stop
@@ -52,12 +54,17 @@ class TrainingDisplay:
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
         self._report: TrainingReport | None = None
+        self._plan = ""
         self._search: SearchProgress | None = None
         self._attempt: Attempt | None = None
         self._confirmation = ""
         self._report_time = time.monotonic()
         self._checkpoint: float | None = None
         self._resumed = (run.folder / CHECKPOINT).exists()
+
+    def show_plan(self, plan: SearchPlan) -> None:
+        """Store how the game is searched, or why it is not."""
+        self._plan = plan_line(plan) or ""
 
     def show_search(self, progress: SearchProgress) -> None:
         """Store the progress of the search for ways to meet the spec."""
@@ -98,7 +105,7 @@ class TrainingDisplay:
         if attempt := self._attempt:
             return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
         if searched is None:
-            return Text("playing the first steps …")
+            return Text("\n\n".join(filter(None, (self._plan, "playing the first steps …"))))
         count = len(searched.lengths)
         table = _grid(bar)
         required = f"of at least {exploration.ways}"
@@ -106,7 +113,8 @@ class TrainingDisplay:
         fraction = min(1.0, searched.steps / exploration.steps)
         most = f"of at most {exploration.steps:,} steps"
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
-        return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
+        lines = filter(None, (self._plan, search_line(searched), search_end(exploration), SEARCH_IS_LOST))
+        return Group(table, Text("\n" + "\n\n".join(lines)))
 
     def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
         """Return the picture after an iteration of the training, in ``room`` lines.

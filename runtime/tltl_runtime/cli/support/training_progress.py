@@ -22,7 +22,13 @@ def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> Trainin
         TltlError: TLT0871, a worker was lost; errors from training.
     """
     with _worker_errors(run, again), display(run, again) as progress:
-        training = train(run, resume=resume, on_search=progress.show_search, on_attempt=progress.show_attempt)
+        training = train(
+            run,
+            resume=resume,
+            on_plan=progress.show_plan,
+            on_search=progress.show_search,
+            on_attempt=progress.show_attempt,
+        )
         with closing(training) as reports:
             for last in reports:
                 progress.show_report(last)

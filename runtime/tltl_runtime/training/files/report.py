@@ -7,6 +7,7 @@ from typing import Literal
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.imitation.demonstrations import ImitationSummary
 from tltlc.api import record
 
@@ -95,6 +96,8 @@ class TrainingReport:
     - ``searched`` is the progress of the searches for demonstrations, None if there was no search.
     - ``replayed`` counts the decisions that were replayed to reach the starts of episodes.
     - ``imitated`` describes the demonstrations that the agent imitates; None if it imitates none.
+    - ``plan`` says how the game is searched for demonstrations, or why not; None if the settings ask
+      for no search.
     """
 
     iteration: Iteration
@@ -110,3 +113,4 @@ class TrainingReport:
     searched: SearchProgress | None
     replayed: int
     imitated: ImitationSummary | None
+    plan: SearchPlan | None = None

@@ -7,16 +7,22 @@ policy to begin with, and run the first search for demonstrations.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.policy import NotFiniteError, Policy
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
+from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.files.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
 from tltl_runtime.training.files.run_file import (
@@ -85,9 +91,16 @@ def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorE
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
-        wrapper=ReplayedStartEnv if spaces.searches else None,
+        wrapper=_wrapper(run, spaces.plan) if spaces.searches else None,
         info={**TLTL_INFO, "cell": np.int64} if spaces.searches else TLTL_INFO,
     )
+
+
+def _wrapper(run: TrainingRun, plan: SearchPlan | None) -> Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]]:
+    """Return the class of the environments of a search: those of games without own cells need a grid."""
+    if plan is None or plan.grid is None:
+        return ReplayedStartEnv
+    return partial(ReturningEnv, game=game_of(run.level), grid=plan.grid, snapshots=plan.snapshots)
 
 
 def load_imitation_data(

@@ -8,9 +8,10 @@ from functools import partial
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.training.exploration.search_plan import SearchObstacle, SearchPlan, search_plan
+from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import TrainingRun
-from tltl_runtime.training.files.settings import read_settings
-from tltlc.api import Diagnostic, TltlError, record
+from tltlc.api import record, replace
 
 
 @record
@@ -18,34 +19,44 @@ class TrainingSpaces:
     """What a training must know about its environment before it begins.
 
     ``layouts`` say how observations and actions become arrays; None if the network uses them
-    without conversion. ``searches`` says whether the training searches for demonstrations. This
-    needs two things: the settings ask for it, and the environment's info says in ``cell`` where the
-    player is.
+    without conversion. ``searches`` says whether the training searches for demonstrations, and
+    ``plan`` how, or why not. It is None if the settings ask for no search.
     """
 
     layouts: SpaceLayouts | None
     searches: bool
+    plan: SearchPlan | None = None
 
 
 def training_spaces(run: TrainingRun) -> TrainingSpaces:
     """Make an environment of the training, examine its spaces and its info, and close it.
 
     Raises:
-        TltlError: TLT0844, policies do not support its spaces; TLT0862, the settings ask for a
-            search, but the info does not say where the player is; the errors of ``make_env``.
+        TltlError: TLT0844, policies do not support its spaces; the errors of ``make_env`` and of the
+            game.
     """
     env = env_function(run)()
     try:
         layouts = space_layouts(env.observation_space, env.action_space, run.sensors)
         _, info = env.reset(seed=run.seed)
+        plan = search_plan(env, game_of(run.level), has_cells="cell" in info) if run.settings.searches else None
     finally:
         env.close()
-    has_cells = "cell" in info
-    if not has_cells and run.settings.searches and run.settings.exploration.ways != read_settings().exploration.ways:
-        title = f"`exploration.ways` asks for a search, but `{run.level}` does not say in which cell the player is"
-        help_ = "leave the setting out: the training then begins each episode at the start"
-        raise TltlError([Diagnostic("TLT0862", title, help=help_)])
-    return TrainingSpaces(layouts, run.settings.searches and has_cells)
+    return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan)
+
+
+def spaces_of(spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> TrainingSpaces:
+    """Return ``spaces`` for a training that resumes from a checkpoint.
+
+    Earlier versions searched no game that does not name its cells itself; such a training goes on
+    without a search.
+    """
+    if checkpoint is None or not spaces.searches or "way_seeds" in checkpoint.processes[0]:
+        return spaces
+    if spaces.plan is None or spaces.plan.cells == "own":
+        return spaces
+    plan = replace(spaces.plan, obstacle=SearchObstacle("earlier"))
+    return replace(spaces, searches=False, plan=plan)
 
 
 def env_function(run: TrainingRun) -> Callable[[], TltlEnv]:

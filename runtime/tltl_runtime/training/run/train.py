@@ -13,6 +13,7 @@ from tltl_runtime.policies.compatibility import check_spaces
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.support.record_json import RecordJsonError
 from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
@@ -38,7 +39,7 @@ from tltl_runtime.training.run.preparation import (
 )
 from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
-from tltl_runtime.training.run.spaces import TrainingSpaces, training_spaces
+from tltl_runtime.training.run.spaces import TrainingSpaces, spaces_of, training_spaces
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.api import replace
@@ -50,6 +51,7 @@ def train(
     resume: bool = False,
     on_search: SearchCallback = lambda searched: None,
     on_attempt: Callable[[Attempt], None] = lambda attempt: None,
+    on_plan: Callable[[SearchPlan], None] = lambda plan: None,
 ) -> Generator[TrainingReport]:
     """Train in ``run.folder``; yield a report after each iteration.
 
@@ -62,9 +64,10 @@ def train(
     the checkpoint; a training that is over yields its last report again.
 
     First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
-    progress. If the training begins with a policy, that policy plays first in the search. With
-    imitation, there is no search. If no demonstrations are given, demonstrations of the expert are
-    recorded first; ``on_attempt`` is called with each attempt.
+    progress. ``on_plan`` is called before, with how the game is searched, or why it is not. If the
+    training begins with a policy, that policy plays first in the search. With imitation, there is
+    no search. If no demonstrations are given, demonstrations of the expert are recorded first;
+    ``on_attempt`` is called with each attempt.
 
     Equal runs give equal results, and so do trainings that resume from equal checkpoints. With
     torchrun, each process trains with its own environments. The reports of all processes are equal,
@@ -75,12 +78,12 @@ def train(
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are
             not numbers; TLT0843, the policy to begin with is of another game; TLT0844, policies do
             not support the observations or actions of the game; TLT0862, the device or a class does
-            not exist, the network is too large for a policy file, or the game has no cells to
-            search; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process trains
-            in the folder; TLT0866, a loss, an action or a weight is not finite; TLT0867, the folder
-            holds a training and ``resume`` is false; TLT0868, the level has changed; TLT0920 and
-            TLT0921, there are no demonstrations to imitate; TLT0922, the demonstrations have
-            changed; TLT0940, the policy to begin with has changed.
+            not exist, or the network is too large for a policy file; TLT0864, the checkpoint cannot
+            be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss, an
+            action or a weight is not finite; TLT0867, the folder holds a training and ``resume`` is
+            false; TLT0868, the level has changed; TLT0920 and TLT0921, there are no demonstrations
+            to imitate; TLT0922, the demonstrations have changed; TLT0940, the policy to begin with
+            has changed.
         WorkerError: a worker process of the environments was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
@@ -95,7 +98,10 @@ def train(
             checkpoint = start_or_resume(run, resume)
         checkpoint = group.broadcast(checkpoint)
         stack.enter_context(threads(1))
-        spaces = spaces or _checked_spaces(run)
+        # All processes search, or none does.
+        spaces = group.broadcast(spaces_of(spaces or _checked_spaces(run), checkpoint))
+        if spaces.plan:
+            on_plan(spaces.plan)
         imitation_data = load_imitation_data(run, group, spaces, on_attempt)
         initial = initial_policy(run, group, checkpoint)
         vector_env = stack.enter_context(closing(make_environments(run, spaces)))
@@ -111,7 +117,7 @@ def train(
         new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
             new_runner.load_actor(initial.weights())
-        training = _Training(run, group, new_runner, checkpoint, searched, on_search)
+        training = _Training(run, group, new_runner, checkpoint, searched, on_search, spaces.plan)
         yield from training.reports()
 
 
@@ -136,7 +142,9 @@ class _Training:
         checkpoint: Checkpoint | None,
         searched: SearchProgress | None,
         on_search: SearchCallback,
+        plan: SearchPlan | None,
     ) -> None:
+        self._plan = plan
         self._run, self._group, self._runner, self._on_search = run, group, runner, on_search
         self._stop = run.settings.stop
         # The card is made now: later changes of the level's file are not part of this training.
@@ -314,6 +322,7 @@ class _Training:
             searched=state.searched,
             replayed=state.replayed,
             imitated=imitation_data.summary if imitation_data else None,
+            plan=self._plan,
         )
 
 
