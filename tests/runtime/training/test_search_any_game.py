@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import socket
+import subprocess
 import sys
 from collections.abc import Iterator
 from functools import partial
@@ -14,6 +17,7 @@ from gymnasium.wrappers import TimeLimit
 
 from tests.runtime.gymnasium_games import maze
 from tests.runtime.training.runs import SMALL, checkpoint_of
+from tests.waiting import until
 from tltl_runtime.cli.support.training_text import no_search_line, plan_line
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import default_spec
@@ -21,6 +25,7 @@ from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.sensors import NO_SENSORS
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.spec.task import load_task
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration import snapshots
 from tltl_runtime.training.exploration.cells import NO_CELL, cell_of, position_grid, signal_grid
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
@@ -106,6 +111,17 @@ def test_signals_have_bins_of_their_ranges_or_of_what_was_seen() -> None:
     assert len({same, *others}) == 5
 
 
+def test_a_spec_of_bools_is_searched_by_the_other_signals_of_the_game() -> None:
+    signals = [Signal("open", "bool", None, None)]
+    play = [{"open": False, "x": x, "key": np.False_, "name": "a", "gone": None} for x in (0, 4)]
+    grid = signal_grid(signals, play)
+    assert (grid.bools, [part.name for part in grid.bins]) == (("open", "key"), ["x"])
+    sample = {"open": False, "x": 1, "key": False}
+    changes: list[dict[str, Any]] = [{}, {"x": 2}, {"key": True}, {"open": True}]
+    assert len({cell_of(grid, None, {**sample, **change}) for change in changes}) == 4
+    assert cell_of(grid, None, {"open": False}) == cell_of(grid, None, {"open": False, "x": None})
+
+
 # --- the plan ---------------------------------------------------------------------------------------
 
 
@@ -115,7 +131,7 @@ def test_signals_have_bins_of_their_ranges_or_of_what_was_seen() -> None:
         (
             "maze",
             "searches by replaying actions: the game gives no snapshots; "
-            "places are values of the spec's signals, because the game says no positions",
+            "places are values of signals, because the game gives no positions",
         ),
         (
             "outlined",
@@ -328,17 +344,48 @@ def test_a_training_of_an_earlier_version_goes_on_without_a_search(game: Path, t
     assert "without a search: it was begun so" in (plan_line(plan) or "")
 
 
-def test_a_game_in_another_process_is_searched(tmp_path: Path) -> None:
-    counter = Path(__file__).parents[1] / "wire" / "games" / "counter.py"
-    words = f'["{sys.executable}", "{counter}"]'
+COUNTER = Path(__file__).parents[1] / "wire" / "games" / "counter.py"
+
+
+def write_counter(folder: Path, start: str) -> str:
+    """Write the game file of the counter, which is started or found by ``start``, and return its scene."""
     scene = '[[scene]]\nname = "long"\nspec = "counter.tltl:there_and_back"\n'
-    (tmp_path / "counter.game.toml").write_text(f"[game]\nprocess = {words}\n{scene}")
-    (tmp_path / "counter.tltl").write_text(
+    (folder / "counter.game.toml").write_text(f"[game]\n{start}\n{scene}")
+    (folder / "counter.tltl").write_text(
         "clock 10 Hz\nsignal position in [0, 10] signal at_goal: bool\n"
         "spec there_and_back { reach position < 1 then at_goal  limit 40 steps }"
     )
-    run = run_of(tmp_path / "run", f"{tmp_path / 'counter.game.toml'}:long", rollout__envs=2)
+    return f"{folder / 'counter.game.toml'}:long"
+
+
+def test_a_game_in_another_process_is_searched(tmp_path: Path) -> None:
+    level = write_counter(tmp_path, f"process = {json.dumps([sys.executable, str(COUNTER)])}")
+    run = run_of(tmp_path / "run", level, rollout__envs=2, stop__steps=64)
     (*_, report), (plan,) = trained(run)
     assert (plan.cells, plan.snapshots, plan.obstacle) == ("positions", True, None)
     assert report.searched is not None
     assert len(report.searched.lengths) >= 3
+
+
+def test_a_game_that_runs_already_is_not_searched(tmp_path: Path) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    level = write_counter(tmp_path, f'connect = "127.0.0.1:{port}"')
+
+    def connected() -> TltlEnv | None:
+        try:
+            return GAME.make_env(level)
+        except TltlError as error:
+            assert "no game listens" in str(error)
+            return None
+
+    with subprocess.Popen([sys.executable, str(COUNTER), "--listen", str(port)]) as process:
+        try:
+            env = until(connected, "the game to listen")
+            assert env is not None
+            plan = search_plan(env, GAME, has_cells=False)
+            env.close()
+        finally:
+            process.kill()
+    assert (plan_line(plan) or "").endswith("the game is running already, and plays for one environment at a time")

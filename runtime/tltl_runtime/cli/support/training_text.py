@@ -63,7 +63,7 @@ def plan_line(plan: SearchPlan) -> str | None:
     if plan.grid is not None and plan.grid.side is not None:
         places = f"places are squares of {plan.grid.side:.3g} in which the player stands"
     else:
-        places = "places are values of the spec's signals, because the game says no positions"
+        places = "places are values of signals, because the game gives no positions"
     return f"searches by {method}; {places}"
 
 

@@ -2,7 +2,8 @@
 
 Two moments of a game are in the same cell if the player is in the same square of a grid. In a game
 that does not say where the player is, they are in the same cell if the signals of the spec have
-nearly the same values. The search keeps the cells of each state of the automaton apart.
+nearly the same values; if these are bools alone, which say little, the game's other signals count,
+too. The search keeps the cells of each state of the automaton apart.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Iterable, Mapping, Sequence
-from math import floor, isfinite
+from math import floor, isfinite, nan
 from typing import Any, Final
 
 import numpy as np
@@ -45,7 +46,7 @@ class SignalBins:
 
 @record
 class CellGrid:
-    """What makes a cell: the position of the player, or the values of the spec's signals.
+    """What makes a cell: the position of the player, or the values of signals.
 
     ``side`` is the side of the squares (cubes, where a position has a z) in which the player stands,
     in the unit of the game's positions. It is None if the game gives no positions; then ``bins`` has
@@ -64,8 +65,8 @@ def cell_of(grid: CellGrid, position: Point | None, sample: Mapping[str, Any]) -
     equal numbers in all processes.
     """
     if grid.side is None:
-        indices = [_index(sample[part.name], part.low, part.width) for part in grid.bins]
-        indices += [int(bool(sample[name])) for name in grid.bools]
+        indices = [_index(sample.get(part.name), part.low, part.width) for part in grid.bins]
+        indices += [int(bool(sample.get(name))) for name in grid.bools]
     elif position is None:
         return NO_CELL
     else:
@@ -91,14 +92,36 @@ def signal_grid(signals: Iterable[Signal], samples: Sequence[Mapping[str, Any]])
     """Return the grid of a game that does not say where the player is.
 
     ``signals`` are those of the spec. A numeric signal has bins over the range that the spec declares;
-    where that is open, over the values in ``samples``, which come from a short play.
+    where that is open, over the values in ``samples``, which come from a short play. If all signals
+    of the spec are bools, the other signals in ``samples`` are used, too.
     """
-    known = tuple(signals)
+    known = list(signals)
+    if all(signal.type == "bool" for signal in known):
+        known += _others(known, samples)
     numeric = [signal for signal in known if signal.type != "bool"]
     least, most = _BINS
     count = min(most, max(least, round(_MOST_CELLS ** (1 / len(numeric))))) if numeric else least
-    bins = [_bins(signal, [float(sample[signal.name]) for sample in samples], count) for signal in numeric]
+    bins = [_bins(signal, [_number(sample.get(signal.name)) for sample in samples], count) for signal in numeric]
     return CellGrid(None, tuple(bins), tuple(signal.name for signal in known if signal.type == "bool"))
+
+
+def _others(known: Sequence[Signal], samples: Sequence[Mapping[str, Any]]) -> list[Signal]:
+    """Return the signals of a game that its spec does not use and whose values are numbers or bools."""
+    names = {signal.name for signal in known}
+    others = [(name, value) for name, value in (samples[0] if samples else {}).items() if name not in names]
+    return [
+        Signal(name, "bool" if isinstance(value, (bool, np.bool_)) else "number", None, None)
+        for name, value in others
+        if isinstance(value, (bool, np.bool_)) or _number(value) == _number(value)
+    ]
+
+
+def _number(value: Any) -> float:
+    """Return a number, and NaN for anything else: only the signals of the spec are known to be numbers."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return nan
 
 
 def _bins(signal: Signal, seen: Sequence[float], count: int) -> SignalBins:
@@ -110,6 +133,6 @@ def _bins(signal: Signal, seen: Sequence[float], count: int) -> SignalBins:
 
 
 def _index(value: Any, low: float, width: float) -> int:
-    """Return the number of the bin of a value; those of values that are not finite are at the ends."""
-    share = (float(value) - low) / width
+    """Return the number of the bin of a value; those of infinite values are at the ends."""
+    share = (_number(value) - low) / width
     return floor(min(max(share, -(2.0**62)), 2.0**62)) if share == share else 0

@@ -66,7 +66,7 @@ class SearchPlan:
     """How a training searches.
 
     ``cells`` says where cells come from: ``info`` of the environment (``own``), the positions of the
-    player, or the signals of the spec. ``grid`` makes them; None if they are ``own``. With
+    player, or signals. ``grid`` makes them; None if they are ``own``. With
     ``snapshots``, the search returns to cells by snapshots of the game; otherwise it replays actions.
     ``obstacle`` says why there is no search; None if there is one.
     """
