@@ -46,6 +46,8 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     Each level is played in the variant that its cases are compared with; by default the first one. Results in an
     existing file are kept if level, policy, spec, seed, versions and code have not changed. Without SUITE, the command
     plays the levels that come with tltlc and writes `shipped.baseline.json`.
+
+    The exit status is 1 if none of the cases can pass with this baseline.
     """
     with cli.Report() as report, name_missing_extra("`tltlc baseline`"), ignore_closed_pipe():
         check_suite_exists(suite)
@@ -65,9 +67,10 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         existed, older = fileio.exists(output), _older_references(output)
         try:
             with RegressionDisplay() as display:
+                can_pass = False
                 for recorded in record_and_write_baseline(loaded, output, workers, display, older, fresh=fresh):
                     display.clear()
-                    _print_reference(loaded, recorded, older, fresh=fresh)
+                    can_pass |= _print_reference(loaded, recorded, older, fresh=fresh)
         except KeyboardInterrupt:
             click.echo(f"stopped: {_stopped_text(output, partial_path(output), existed=existed)}", err=True)
             raise
@@ -75,6 +78,9 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         if output.resolve() != loaded.baseline.resolve():
             words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(output)]
             click.echo(f"to compare with it: {join(words)}", err=True)
+        if not can_pass:
+            click.echo("none of the cases can pass with this baseline, even if nothing changes", err=True)
+            return cli.exits.FINDINGS
         return cli.exits.CLEAN
     return report.status
 
@@ -107,8 +113,10 @@ def _stopped_text(path: Path, partial: Path | None, *, existed: bool) -> str:
     return f"`{path}` was not changed; run the same command again to {'continue' if partial else 'start again'}"
 
 
-def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> None:
+def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Reference, ...], *, fresh: bool) -> bool:
     """Print how often a recorded policy met its spec, and which cases would not pass even if nothing changed.
+
+    Return whether at least one of the cases can pass.
 
     A reference is the recorded episodes with which one or several cases are compared. ``older`` are
     the references that the output file had before.
@@ -123,13 +131,18 @@ def _print_reference(suite: Suite, recorded: RecordedReference, older: tuple[Ref
     else:
         note = f"; before: {_success_count(before)} of {len(before.episodes)}" if before else ""
     click.echo(plain_text(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + note)
+    if recorded.lost:
+        click.echo(plain_text(f"    played again, because {recorded.lost.line}"), err=True)
     if recorded.outdated:
         click.echo(plain_text(f"    {recorded.outdated}"), err=True)
+    can_pass = False
     for case in recorded.cases:
         verdict = verdict_if_unchanged(suite, case, reference) if case.plays_reference else "pass"
         if verdict != "pass":
             advice = _advice(passed / count, case, suite.error / len(suite.cases))
             click.echo(plain_text(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
+        can_pass |= verdict == "pass" and not recorded.outdated
+    return can_pass
 
 
 def _success_count(reference: Reference) -> int:

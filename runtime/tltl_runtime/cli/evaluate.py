@@ -141,11 +141,13 @@ def command(
             EpisodeRequest(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)
         ]
         try:
-            with closing(results(setup, requests, workers, _print_waiting)) as playing:
+            with closing(results(setup, requests, workers, _print_waiting, on_lost=files.add_lost)) as playing:
                 for result in _with_progress(playing, len(requests)):
                     files.add(result)
         finally:
             _print_results(files, json_file, folder, episodes)
+            if lost := files.lost_episodes:
+                report.add([lost.warning])
     return report.status
 
 
@@ -204,7 +206,8 @@ def _print_results(files: EvaluationFiles, json_file: Path | None, folder: Path 
     played = files.episode_counts
     if not any(played.values()):
         return
-    complete = all(count == requested for count in played.values())
+    lost = files.lost_counts
+    complete = all(count + lost[name] == requested for name, count in played.items())
     if not complete:
         counts = " and ".join(f"{count} of {requested} {name}" for name, count in played.items())
         click.echo(f"stopped: {counts} episodes were played", err=True)

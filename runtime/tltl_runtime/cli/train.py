@@ -199,6 +199,8 @@ def command(
         write_record(run, last)
         for line in _end_lines(run, last, again):
             click.echo(line)
+        if last.lost:
+            report.add([last.lost.warning])
         return cli.exits.CLEAN if last.stop == "met" else cli.exits.FINDINGS
     return report.status
 

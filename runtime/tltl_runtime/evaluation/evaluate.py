@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+import logging
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
-from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest, PlayedEpisode, PolicyPlayer, RecordMode, Setup
-from tltl_runtime.evaluation.scheduler import ReplayCommand, play_all
+from tltl_runtime.evaluation.player import (
+    EpisodePlayer,
+    EpisodeRequest,
+    LostEpisode,
+    PlayedEpisode,
+    PolicyPlayer,
+    RecordMode,
+    Setup,
+)
+from tltl_runtime.evaluation.scheduler import ReplayCommand, Result, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import game_of
@@ -19,10 +28,21 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.vector.cores import cores
+from tltl_runtime.wire.lost_episodes import LossLimit, most_lost
 from tltlc.api import Diagnostic, Fspa, TltlError
+
+OnLost = Callable[[LostEpisode], None]
+"""A callback for each episode that was lost with its game."""
+
+_log: Final = logging.getLogger(__name__)
 
 Pool = int | Literal["ray"]
 """Where to play: in this process (1), in this many worker processes (0: one per core), or on a Ray cluster."""
+
+
+def log_lost(lost: LostEpisode) -> None:
+    """Write to this module's logger that an episode was lost, and what happened to its game."""
+    _log.warning("episode %d was lost: %s\n%s", lost.request.index, lost.fault.title, lost.fault.help)
 
 
 def evaluate(
@@ -42,7 +62,8 @@ def evaluate(
     default to those that the policy was trained for. If ``level`` is given, the variant defaults to
     ``v0``. If ``sampled``, actions are sampled; otherwise the likeliest action is taken. The episodes
     depend on ``seed``, but not on ``workers``. Worker processes import the main module, so put the code
-    of a script under ``if __name__ == "__main__"``.
+    of a script under ``if __name__ == "__main__"``. An episode that is lost with its game, which runs in
+    another process, has no summary; the logger of this module reports it.
 
     Raises:
         TltlError: the errors of :func:`set_up`, :func:`results` and ``read_policy``.
@@ -105,8 +126,12 @@ def results(
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
     replay_command: ReplayCommand | None = None,
+    on_lost: OnLost = log_lost,
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes and yield them in order. Closing the iterator ends the workers.
+
+    An episode that is lost with its game, which runs in another process, is not yielded: ``on_lost`` is
+    called with it in its place, and the next episode starts the game again.
 
     While no core of a Ray cluster is free, ``waiting`` is called now and then with the seconds that
     are left to wait. If a worker is lost, the error shows a shell command that plays only the lost
@@ -116,18 +141,18 @@ def results(
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is requested and not installed; TLT0852,
             there is no cluster, or no worker starts there in time; errors while an environment is
             made.
+        WireError: too many episodes were lost with their games; the error is that of the last one.
         ValueError: ``workers`` is below 0.
     """
     if workers != "ray":
         modules = game_of(setup.level).modules
-        yield from local_results(
-            partial(PolicyPlayer, setup), requests, workers, setup.seed, replay_command, modules=modules
-        )
+        make = partial(PolicyPlayer, setup)
+        yield from local_results(make, requests, workers, setup.seed, replay_command, modules=modules, on_lost=on_lost)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
     with ray_workers(setup, len(requests), waiting) as team:
-        yield from play_all(team, requests, setup.seed, replay_command)
+        yield from _without_lost(play_all(team, requests, setup.seed, replay_command), len(requests), on_lost)
 
 
 def local_results(
@@ -138,6 +163,7 @@ def local_results(
     replay_command: ReplayCommand | None = None,
     *,
     modules: Sequence[str] = (),
+    on_lost: OnLost = log_lost,
 ) -> Generator[PlayedEpisode]:
     """Play the requested episodes on this machine and yield them in order, like :func:`results`.
 
@@ -148,12 +174,12 @@ def local_results(
     Raises:
         TltlError: TLT0850, a worker was lost (the message names its episode and the evaluation's
             ``seed``); errors while an episode is played.
+        WireError: too many episodes were lost with their games; the error is that of the last one.
         ValueError: ``workers`` is below 0.
     """
     if workers == 1:
         with closing(make()) as player:
-            for request in requests:
-                yield player.play(request)
+            yield from _without_lost(map(player.play, requests), len(requests), on_lost)
         return
     if workers < 0:
         raise ValueError(f"the number of workers must be at least 0, not {workers}")
@@ -161,4 +187,19 @@ def local_results(
         team = [WorkerProcess(make, modules) for _ in range(min(workers or cores(), len(requests)))]
         for worker in team:
             stack.callback(worker.close)
-        yield from play_all(team, requests, seed, replay_command)
+        yield from _without_lost(play_all(team, requests, seed, replay_command), len(requests), on_lost)
+
+
+def _without_lost(played: Iterable[Result], count: int, on_lost: OnLost) -> Iterator[PlayedEpisode]:
+    """Yield the episodes that were not lost; ``count`` is the number of all, if all are played.
+
+    Raises WireError if too many were lost.
+    """
+    limit = LossLimit(most_lost(count))
+    for result in played:
+        if isinstance(result, LostEpisode):
+            on_lost(result)
+            limit.add_lost(result.fault)
+        else:
+            limit.add_played()
+            yield result

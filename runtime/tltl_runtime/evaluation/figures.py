@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tltl_runtime.evaluation.player import LostEpisode
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.api import record
@@ -46,11 +47,15 @@ class Figures:
 
 @record
 class Evaluation:
-    """The result of an evaluation: the statistics, the groups of failed episodes, and all episodes."""
+    """The result of an evaluation: the statistics, the groups of failed episodes, and all episodes.
+
+    ``lost`` are the episodes that were lost with their games; the statistics are without them.
+    """
 
     figures: Figures
     ended: tuple[FailureGroup, ...]
     episodes: tuple[EpisodeSummary, ...]
+    lost: tuple[LostEpisode, ...] = ()
 
 
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
@@ -72,13 +77,13 @@ def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
     )
 
 
-def evaluation_of(episodes: Sequence[EpisodeSummary]) -> Evaluation:
-    """Return the statistics, the groups of failures and the summaries of ``episodes``.
+def evaluation_of(episodes: Sequence[EpisodeSummary], lost: Sequence[LostEpisode] = ()) -> Evaluation:
+    """Return the statistics, the groups of failures and the summaries of ``episodes``, and those that were ``lost``.
 
     Raises:
         ValueError: there are no episodes.
     """
-    return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes))
+    return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes), tuple(lost))
 
 
 def _failure_groups(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:

@@ -7,7 +7,7 @@ from typing import Any, Final, Literal, Protocol
 
 import gymnasium
 
-from tltl_runtime.evaluation.play import play
+from tltl_runtime.evaluation.play import episode_seed, play
 from tltl_runtime.game.episode import Trajectory, trajectory
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
@@ -16,7 +16,8 @@ from tltl_runtime.policies.blas_threads import blas_threads
 from tltl_runtime.policies.compatibility import check_spaces
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltlc.api import EMPTY, Fspa, RewardOptions, record, replace
+from tltl_runtime.wire.errors import WireError
+from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, record, replace
 
 RecordMode = Literal["none", "failures", "all"]
 
@@ -110,10 +111,23 @@ class PlayedEpisode:
     recording: bytes = b""
 
 
+@record
+class LostEpisode:
+    """A requested episode that was lost with its game, which ran in another process.
+
+    It is neither a success nor a failure. ``seed`` is the seed of the environment's reset, and ``fault``
+    says what happened to the game.
+    """
+
+    request: EpisodeRequest
+    seed: int
+    fault: Diagnostic
+
+
 class EpisodePlayer(Protocol):
     """The interface of an object with which a worker plays episodes, one after the other."""
 
-    def play(self, request: EpisodeRequest) -> PlayedEpisode:
+    def play(self, request: EpisodeRequest) -> PlayedEpisode | LostEpisode:
         """Play the requested episode to its end, and return it."""
 
     def close(self) -> None:
@@ -142,17 +156,27 @@ class PolicyPlayer:
             reward=RewardOptions(),
             params=setup.params,
         )
-        check_spaces(card, self._env.observation_space, self._env.action_space)
         self._recorder: EpisodeRecorder[Any] | None = None
-        if setup.recorded is not None:
-            self._env = self._recorder = self._game.recorder(self._env)
+        try:
+            check_spaces(card, self._env.observation_space, self._env.action_space)
+            if setup.recorded is not None:
+                self._env = self._recorder = self._game.recorder(self._env)
+        except BaseException:
+            self._env.close()
+            raise
 
-    def play(self, request: EpisodeRequest) -> PlayedEpisode:
-        """Play the requested episode to its end, and return it."""
+    def play(self, request: EpisodeRequest) -> PlayedEpisode | LostEpisode:
+        """Play the requested episode to its end, and return it.
+
+        If its game is lost, return a :class:`LostEpisode`; the next episode starts the game again.
+        """
         setup = self._setup
-        # In one thread, equal observations give equal logits on any number of cores.
-        with blas_threads(1):
-            summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled)
+        try:
+            # In one thread, equal observations give equal logits on any number of cores.
+            with blas_threads(1):
+                summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled)
+        except WireError as error:
+            return LostEpisode(request, episode_seed(setup.seed, request.index), error.diagnostics[0])
         if self._recorder is None:
             return PlayedEpisode(request, summary)
         episode = replace(self._recorder.episode, player=setup.player.text(request))

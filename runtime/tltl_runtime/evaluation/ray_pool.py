@@ -7,8 +7,8 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any, Final
 
-from tltl_runtime.evaluation.player import EpisodeRequest, PlayedEpisode, PolicyPlayer, Setup
-from tltl_runtime.evaluation.scheduler import WorkerLostError
+from tltl_runtime.evaluation.player import EpisodeRequest, PolicyPlayer, Setup
+from tltl_runtime.evaluation.scheduler import Result, WorkerLostError
 from tltl_runtime.vector.cluster import cluster, free_cores, wait_for_actors
 
 PATIENCE_S: Final = 120.0
@@ -48,13 +48,13 @@ class RayWorker:
         # No restarts: Ray would silently play the episode again that killed the actor.
         self.actor = ray.remote(num_cpus=1, max_restarts=0)(_EvaluationActor).remote()
 
-    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[Result]:
         """Start to play an episode; return a future of its result.
 
         The future raises the exception that the episode raised, or :class:`WorkerLostError` if the
         worker's process ends.
         """
-        future: Future[PlayedEpisode] = Future()
+        future: Future[Result] = Future()
         playing = self.actor.play.remote(self._setup, request).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
         return future
@@ -63,7 +63,7 @@ class RayWorker:
         """End the process of this worker."""
         self._ray.kill(self.actor)
 
-    def _pass_on(self, done: Future[PlayedEpisode], future: Future[PlayedEpisode]) -> None:
+    def _pass_on(self, done: Future[Result], future: Future[Result]) -> None:
         error = done.exception()
         if error is None:
             future.set_result(done.result())
@@ -85,6 +85,6 @@ class _EvaluationActor:
     def __init__(self) -> None:
         self._player: PolicyPlayer | None = None
 
-    def play(self, setup: Setup, request: EpisodeRequest) -> PlayedEpisode:
+    def play(self, setup: Setup, request: EpisodeRequest) -> Result:
         self._player = self._player or PolicyPlayer(setup)
         return self._player.play(request)

@@ -7,8 +7,11 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Protocol
 
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import CHOICES, EpisodeRequest, PlayedEpisode
+from tltl_runtime.evaluation.player import CHOICES, EpisodeRequest, LostEpisode, PlayedEpisode
 from tltlc.api import Diagnostic, TltlError
+
+Result = PlayedEpisode | LostEpisode
+"""The result of a request: the episode was played, or was lost with its game."""
 
 
 class WorkerLostError(Exception):
@@ -18,7 +21,7 @@ class WorkerLostError(Exception):
 class EpisodeWorker(Protocol):
     """The interface of a worker that plays one episode at a time, for example in another process."""
 
-    def play(self, request: EpisodeRequest) -> Future[PlayedEpisode]:
+    def play(self, request: EpisodeRequest) -> Future[Result]:
         """Start to play the requested episode; return a future of its result.
 
         The future raises the exception that the episode raised, or :class:`WorkerLostError`.
@@ -37,7 +40,7 @@ def play_all(
     requests: Sequence[EpisodeRequest],
     seed: int,
     replay_command: ReplayCommand | None = None,
-) -> Iterator[PlayedEpisode]:
+) -> Iterator[Result]:
     """Give each free worker the next request; yield the episodes in the order of the requests.
 
     If an episode raises an error, or its worker is lost, all episodes that are already played are
@@ -50,8 +53,8 @@ def play_all(
         Exception: the error that an episode raised.
     """
     remaining = iter(enumerate(requests))
-    running: dict[Future[PlayedEpisode], tuple[EpisodeWorker, int]] = {}
-    results: dict[int, PlayedEpisode] = {}
+    running: dict[Future[Result], tuple[EpisodeWorker, int]] = {}
+    results: dict[int, Result] = {}
     for worker, (index, request) in zip(workers, remaining, strict=False):
         running[worker.play(request)] = worker, index
     for index_to_yield in range(len(requests)):

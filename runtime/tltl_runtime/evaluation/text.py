@@ -29,6 +29,7 @@ def report_text(evaluations: Mapping[str, Evaluation]) -> str:
     lines = [
         _row("", list(evaluations)),
         _row("episodes", [str(fig.episodes) for fig in columns]),
+        *_lost_row(evaluations),
         _row("pass rate (95 %)", [_rate(fig) for fig in columns]),
         _row("progress", [f"{share(fig.progress.mean)} ± {_std(fig, fig.progress, 2)}" for fig in columns]),
         _row("reward", [f"{number(fig.reward.mean, 2)} ± {_std(fig, fig.reward, 2)}" for fig in columns]),
@@ -40,6 +41,12 @@ def report_text(evaluations: Mapping[str, Evaluation]) -> str:
             lines += ["", f"{name}: {failed} of {len(evaluation.episodes)} failed"]
             lines += [line for group in evaluation.ended for line in _failures(group)]
     return "\n".join(lines) + "\n"
+
+
+def _lost_row(evaluations: Mapping[str, Evaluation]) -> list[str]:
+    """Return the row with the number of episodes that were lost with their games; no row if none was."""
+    counts = [len(evaluation.lost) for evaluation in evaluations.values()]
+    return [_row("lost", list(map(str, counts)))] if any(counts) else []
 
 
 def _row(name: str, cells: Sequence[str]) -> str:

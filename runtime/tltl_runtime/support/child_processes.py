@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import sys
+import threading
 from collections.abc import Iterable
 from multiprocessing.context import ForkServerContext, SpawnContext
 
@@ -25,3 +27,19 @@ def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(list(preloaded))
     return context
+
+
+def end_with_parent() -> None:
+    """End this process, a worker, as soon as its parent process has ended.
+
+    Without this, a worker whose parent is killed would wait for ever for the next command, or play on
+    with a game that does not answer.
+    """
+    threading.Thread(target=_end_with_parent, name="end with the parent process", daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

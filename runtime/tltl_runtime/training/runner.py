@@ -108,6 +108,7 @@ class Runner(OnPolicyRunner):
                 losses=losses,
                 collect_s=collected - started,
                 learn_s=time.perf_counter() - collected,
+                lost=self.env.pop_lost(),
             )
 
     def _configure_multi_gpu(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from typing import Final
 
-from tltlc.api import record
+from tltlc.api import Diagnostic, record
 
 _NO_MAIN_GUARD: Final = (
     "it ended before it made them: a worker first imports the program, so put the work of the program under",
@@ -48,8 +48,8 @@ class Loss:
     negative, the signal ``-status`` ended the process. It is None for an actor of Ray, and for a
     process that had to be killed. ``silent`` is the number of seconds for which the worker was silent
     before it was killed; None if it was lost in another way. ``traceback`` belongs to the exception
-    that ended the worker; it is empty if there was none. ``starting`` says that the worker had not
-    made its environments yet.
+    that ended the worker, and ``diagnostics`` are those of this exception, if it is a TltlError; both are
+    empty if there was none. ``starting`` says that the worker had not made its environments yet.
     """
 
     worker: int
@@ -57,6 +57,7 @@ class Loss:
     silent: float | None = None
     traceback: str = ""
     starting: bool = False
+    diagnostics: tuple[Diagnostic, ...] = ()
 
     def __str__(self) -> str:
         if self.silent is not None:

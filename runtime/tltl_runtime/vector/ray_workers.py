@@ -16,7 +16,7 @@ from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
 from tltl_runtime.vector.workers import TO_START_S, split_evenly
-from tltlc.api import replace
+from tltlc.api import TltlError, replace
 
 
 class RayWorkers:
@@ -146,7 +146,9 @@ class RayWorkers:
             answer, table = self._ray.get(reference)
         except self._ray.exceptions.RayError as error:
             self._ray.kill(self._actors.pop(worker))
-            return Loss(worker, traceback=str(error))
+            cause = getattr(error, "cause", None)
+            diagnostics = cause.diagnostics if isinstance(cause, TltlError) else ()
+            return Loss(worker, traceback=str(error), diagnostics=diagnostics)
         if table is not None:
             self._rows.table[self.shares[worker]] = table
         return answer

@@ -11,7 +11,9 @@ from typing import Any, Final
 import gymnasium
 from gymnasium.vector import AutoresetMode
 
+from tltl_runtime.support.child_processes import end_with_parent
 from tltl_runtime.vector.shared_memory import Rows, read, write
+from tltlc.api import TltlError
 
 Info = dict[str, Any]
 EnvFunction = Callable[[], gymnasium.Env[Any, Any]]
@@ -28,11 +30,13 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
     environment uses row ``first`` of ``rows``, the second the row after it, and so on.
 
     A command is a pair: the name of a method of :class:`Share`, and its arguments. The answer is a
-    pair, too: ``done`` and the result, or ``failed`` and a traceback. After ``failed``, the worker
-    ends. The first answer needs no command: it is sent when all environments are made.
+    pair, too: ``done`` and the result, or ``failed`` and a pair of a traceback and diagnostics. After
+    ``failed``, the worker ends. The first answer needs no command: it is sent when all environments
+    are made.
     """
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_parent()
     try:
         share = Share(functions.fn, rows, first, autoreset)
         connection.send((DONE, None))
@@ -46,8 +50,9 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
             connection.send((DONE, getattr(share, command)(*arguments)))
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return
-    except Exception:
-        connection.send((FAILED, traceback.format_exc()))
+    except Exception as error:
+        diagnostics = error.diagnostics if isinstance(error, TltlError) else ()
+        connection.send((FAILED, (traceback.format_exc(), diagnostics)))
         raise SystemExit(1) from None
 
 

@@ -16,7 +16,7 @@ from gymnasium.vector.utils import CloudpickleWrapper
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
-from tltlc.api import fileio, replace
+from tltlc.api import Diagnostic, fileio, replace
 
 TO_START_S: Final = 120.0
 """The seconds that a worker has to import its modules and make its environments.
@@ -159,23 +159,25 @@ class Workers:
             if connection.poll():
                 outcome, answer = connection.recv()
                 self._unwatch(worker)
-                return self._end_lost(worker, traceback=answer) if outcome == FAILED else answer
+                return self._end_lost(worker, failure=answer) if outcome == FAILED else answer
         except (EOFError, OSError):
             pass
         return self._end_lost(worker)
 
-    def _end_lost(self, worker: int, *, silent: float | None = None, traceback: str = "") -> Loss:
+    def _end_lost(
+        self, worker: int, *, silent: float | None = None, failure: tuple[str, tuple[Diagnostic, ...]] = ("", ())
+    ) -> Loss:
         """End a lost worker, and return how it was lost.
 
         ``silent`` is the number of seconds for which it was silent; None if it ended by itself.
-        ``traceback`` belongs to the exception that ended it.
+        ``failure`` has the traceback and the diagnostics of the exception that ended it.
         """
         process = self._processes[worker]
         if silent is None:
             process.join(_TO_END_S)
         status = process.exitcode
         self._end(worker)
-        return Loss(worker, status, silent, traceback)
+        return Loss(worker, status, silent, failure[0], diagnostics=failure[1])
 
     def _end(self, worker: int) -> None:
         """Kill a worker if it still runs, and release its process object and its connection."""

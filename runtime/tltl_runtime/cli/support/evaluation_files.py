@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
-from tltl_runtime.evaluation.player import CHOICES, PlayedEpisode, Setup, is_labelled_policy
+from tltl_runtime.evaluation.player import CHOICES, LostEpisode, PlayedEpisode, Setup, is_labelled_policy
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
@@ -20,6 +20,7 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.support.writable_folder import writable_folder
+from tltl_runtime.wire.lost_episodes import LostEpisodes
 from tltlc.api import Diagnostic, TltlError, cli, fileio
 
 _REPORT: Final = "evaluation.json"
@@ -76,6 +77,7 @@ class EvaluationFiles:
         self._game = game_of(setup.level)
         self._level = self._game.load_level(setup.level, setup.variant)
         self._summaries: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
+        self._lost: dict[bool, list[LostEpisode]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
@@ -88,6 +90,17 @@ class EvaluationFiles:
     def episode_counts(self) -> dict[str, int]:
         """The number of played episodes, for ``sampled`` and for ``arg-max`` actions."""
         return {CHOICES[sampled]: len(summaries) for sampled, summaries in self._summaries.items()}
+
+    @property
+    def lost_counts(self) -> dict[str, int]:
+        """The number of episodes that were lost with their games, for ``sampled`` and for ``arg-max`` actions."""
+        return {CHOICES[sampled]: len(lost) for sampled, lost in self._lost.items()}
+
+    @property
+    def lost_episodes(self) -> LostEpisodes | None:
+        """How many episodes were lost with their games, and how the first one was lost; None if none was."""
+        lost = [*self._lost[True], *self._lost[False]]
+        return LostEpisodes(len(lost), lost[0].fault) if lost else None
 
     @property
     def removed_files(self) -> tuple[str, ...]:
@@ -117,6 +130,10 @@ class EvaluationFiles:
                 files[f"{path.name.removesuffix(SUFFIX)}.png"] = pictures.episode(episode)
             fileio.write_files(self._folder, files)
             self._recorded.append(path.name)
+
+    def add_lost(self, lost: LostEpisode) -> None:
+        """Add an episode that was lost with its game."""
+        self._lost[lost.request.sampled].append(lost)
 
     def text(self) -> str:
         """Return the text report."""
@@ -235,7 +252,11 @@ class EvaluationFiles:
         return f"{self._level.name}-{self._level.variant}"
 
     def _evaluations(self) -> dict[bool, Evaluation]:
-        return {sampled: evaluation_of(summaries) for sampled, summaries in self._summaries.items() if summaries}
+        return {
+            sampled: evaluation_of(summaries, self._lost[sampled])
+            for sampled, summaries in self._summaries.items()
+            if summaries
+        }
 
 
 def _check_folder(folder: Path) -> None:
@@ -263,6 +284,7 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
     figures = {name: value for name, value in to_json(evaluation.figures).items() if name != "episodes"}
     return {
         **figures,
+        **({"lost": [_lost_json(lost) for lost in evaluation.lost]} if evaluation.lost else {}),
         "ended": to_json(evaluation.ended),
         "episodes": [_episode_json(episode) for episode in evaluation.episodes],
     }
@@ -271,3 +293,15 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
 def _episode_json(episode: EpisodeSummary) -> dict[str, Any]:
     """Return the entry of an episode in the JSON report."""
     return {key: getattr(episode, key) for key in _EPISODE_KEYS}
+
+
+def _lost_json(lost: LostEpisode) -> dict[str, Any]:
+    """Return the entry of a lost episode in the JSON report: its index and seed, and what happened to the game."""
+    fault = lost.fault
+    return {
+        "index": lost.request.index,
+        "seed": lost.seed,
+        "code": fault.code,
+        "title": fault.title,
+        "help": fault.help,
+    }

@@ -25,6 +25,8 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
     yield f"{plain_text(report.name):<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
         yield from (f"    {plain_text(reason)}" for reason in report.reasons)
+    elif report.lost:
+        yield f"    {plain_text(report.lost)}"
 
 
 def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:

@@ -56,5 +56,6 @@ def _worker_errors(run: TrainingRun, again: str) -> Iterator[None]:
         played = [f"it played {playing}" for playing in error.playing if playing.busy]
         title = f"the training was interrupted: {': '.join(causes)}"
         proceed = "go on from the last checkpoint" if (run.folder / CHECKPOINT).exists() else "start again"
-        help_ = "; ".join([*played, f"to {proceed}: {again}"])
+        own = [f"{diagnostic.help}\n" for diagnostic in error.loss.diagnostics if diagnostic.help]
+        help_ = "".join(own) + "; ".join([*played, f"to {proceed}: {again}"])
         raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error

@@ -29,6 +29,8 @@ def report_line(report: TrainingReport, stop: Stop) -> str:
         ]
     if report.confirmation:
         parts.append(confirmation_line(report.iteration.number, report.confirmation))
+    if report.lost:
+        parts.append(f"{report.lost.count:,} lost")
     if report.iteration.steps:
         parts.append(f"{rate(report):,.0f} steps/s")
     if not report.stop:

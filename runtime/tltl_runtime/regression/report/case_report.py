@@ -63,6 +63,8 @@ class CaseReport:
       except those that only ``descriptions`` mention.
     - ``played`` and ``reference`` identify what was played now and for the baseline.
     - ``episodes`` are the played episodes, or the judged traces as episodes.
+    - ``lost`` is the sentence, one of ``causes``, that says how many episodes were lost with their
+      games; empty if none was.
     - ``traces`` has the names of the traces of a case of recorded traces. ``level`` and ``variant``
       of such a case are empty. For other cases, ``traces`` is None.
 
@@ -95,6 +97,7 @@ class CaseReport:
     """The headline; empty if the first of ``reasons`` is the headline."""
     fault_at: tuple[str, int] | None = None
     """The file and the line, from 1, of the error that keeps the case from being played; None without one."""
+    lost: str = ""
 
     @property
     def headline(self) -> str:
@@ -137,6 +140,7 @@ def report_on(result: JudgedCase) -> CaseReport:
             *statistics[:1],
             *(obstacle.text for obstacle in blocked),
             *statistics[1:],
+            *([result.lost.line] if result.lost else []),
         ),
         chosen_headline=outdated
         or next((obstacle.text for obstacle in blocked), None)
@@ -148,6 +152,7 @@ def report_on(result: JudgedCase) -> CaseReport:
         played=result.prepared.played,
         reference=result.reference.played,
         episodes=tuple(now),
+        lost=result.lost.line if result.lost else "",
     )
 
 

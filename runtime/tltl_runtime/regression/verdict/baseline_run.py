@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.evaluation.player import LostEpisode
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
@@ -22,7 +23,12 @@ from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import OnEpisode, PreparedCase, play_episodes, prepare_case
 from tltl_runtime.regression.verdict.verdict import CaseVerdict, judge
 from tltl_runtime.support.source_hash import sources_hash
+from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.lost_episodes import LostEpisodes
 from tltlc.api import TltlError, fileio, record, replace
+
+_TRIES: Final = 3
+"""So often an episode is played that is lost with its game."""
 
 _ADVICE: Final = "name another place with --output"
 
@@ -32,12 +38,14 @@ class RecordedReference:
     """The recorded episodes of a policy on a level, and the cases that are compared with them.
 
     ``outdated`` is a message if the level's spec has changed since the policy was trained, so that
-    none of the cases can pass. Otherwise it is None.
+    none of the cases can pass. Otherwise it is None. ``lost`` are the episodes that were lost with their
+    games, and played again; None if there are none.
     """
 
     reference: Reference
     cases: tuple[Case, ...]
     outdated: str | None = None
+    lost: LostEpisodes | None = None
 
 
 def record_baseline(
@@ -166,19 +174,32 @@ def _record_references(
             for reference in finished
             if reference.played == longest.played and len(reference.episodes) == longest.case.episodes
         ]
-        reference = matches[0] if matches else _play_reference(longest, pool, on_episode)
+        reference, lost = (matches[0], None) if matches else _play_reference(longest, pool, on_episode)
         outdated = next((prepared.outdated for prepared in group if prepared.outdated), None)
-        yield RecordedReference(reference, tuple(prepared.case for prepared in group), outdated)
+        yield RecordedReference(reference, tuple(prepared.case for prepared in group), outdated, lost)
 
 
-def _play_reference(prepared: PreparedCase, pool: Pool, on_episode: OnEpisode) -> Reference:
-    played: list[ExplainedEpisode] = []
+def _play_reference(prepared: PreparedCase, pool: Pool, on_episode: OnEpisode) -> tuple[Reference, LostEpisodes | None]:
+    """Play the episodes of a reference; return it, and the episodes that were lost with their games.
+
+    A lost episode is played again, because a baseline needs all episodes.
+
+    Raises:
+        WireError: an episode was lost in each of several tries, or too many were lost.
+    """
+    played: dict[int, ExplainedEpisode] = {}
+    lost: list[LostEpisode] = []
     # Read the texts first: an edit during play raises an error, so these are the texts that are played.
     texts = level_texts(prepared.setup.level, prepared.setup.variant, prepared.played.files)
-    for episode in play_episodes(prepared, pool):
-        played.append(episode.explained)
-        on_episode(prepared.case, len(played), episode.explained)
-    return Reference(prepared.played, tuple(played), texts, sources_hash())
+    for _ in range(_TRIES):
+        missing = [index for index in range(prepared.case.episodes) if index not in played]
+        for episode in play_episodes(prepared, pool, lost.append, missing) if missing else ():
+            played[episode.explained.summary.index] = episode.explained
+            on_episode(prepared.case, len(played), episode.explained)
+    if len(played) < prepared.case.episodes:
+        raise WireError([lost[-1].fault])
+    reference = Reference(prepared.played, tuple(played[index] for index in sorted(played)), texts, sources_hash())
+    return reference, LostEpisodes(len(lost), lost[0].fault) if lost else None
 
 
 def _write_partial(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:

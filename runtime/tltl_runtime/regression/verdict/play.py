@@ -9,8 +9,8 @@ from functools import partial
 from shlex import join
 from typing import Final
 
-from tltl_runtime.evaluation.evaluate import Pool, results, set_up
-from tltl_runtime.evaluation.player import EpisodeRequest, Setup
+from tltl_runtime.evaluation.evaluate import OnLost, Pool, log_lost, results, set_up
+from tltl_runtime.evaluation.player import EpisodeRequest, LostEpisode, Setup
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant, is_scene, level_option, split_scene
@@ -24,6 +24,8 @@ from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.verdict.baseline import Identity, Reference
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import read_spec
+from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.lost_episodes import LostEpisodes
 from tltlc.api import Diagnostic, TltlError, fileio, record, replace
 
 OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
@@ -67,13 +69,15 @@ class CaseEpisode:
 class JudgedCase:
     """A case with its verdict and its played episodes, in order.
 
-    ``reference`` has the episodes of the baseline with which it was compared.
+    ``reference`` has the episodes of the baseline with which it was compared. ``lost`` are the episodes
+    that were lost with their games; the verdict is without them. None if there are none.
     """
 
     prepared: PreparedCase
     reference: Reference
     judgement: Judgement
     episodes: tuple[CaseEpisode, ...]
+    lost: LostEpisodes | None = None
 
 
 def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> PreparedCase:
@@ -106,19 +110,31 @@ def prepare_case(case: Case, seed: int, variant: Variant | None = None) -> Prepa
     return PreparedCase(case, setup, played, level, changes, _outdated_message(case, setup, level))
 
 
-def play_episodes(prepared: PreparedCase, pool: Pool) -> Generator[CaseEpisode]:
-    """Play all episodes of a case and yield them in order. Closing the iterator ends the workers.
+def play_episodes(
+    prepared: PreparedCase, pool: Pool, on_lost: OnLost = log_lost, indices: Sequence[int] | None = None
+) -> Generator[CaseEpisode]:
+    """Play the episodes of a case with these indices, by default all, and yield them in order.
+
+    Closing the iterator ends the workers. In place of an episode that is lost with its game, ``on_lost``
+    is called.
 
     Raises:
         TltlError: TLT0905, the level was edited since the setup, or before the last episode ended;
             errors from playing.
     """
-    requests = [EpisodeRequest(index) for index in range(prepared.case.episodes)]
-    with closing(results(prepared.setup, requests, pool, replay_command=partial(_replay_command, prepared))) as playing:
+    requests = [EpisodeRequest(index) for index in (range(prepared.case.episodes) if indices is None else indices)]
+    lost: list[LostEpisode] = []
+
+    def add_lost(episode: LostEpisode) -> None:
+        lost.append(episode)
+        on_lost(episode)
+
+    command = partial(_replay_command, prepared)
+    with closing(results(prepared.setup, requests, pool, replay_command=command, on_lost=add_lost)) as playing:
         for count, result in enumerate(playing):
             # Before `results` raises an error, it yields all finished episodes. Skip those that come after
             # a missing one: counting them would favour fast episodes.
-            if result.summary.index != count:
+            if result.request != requests[count + len(lost)]:
                 continue
             episode = prepared.level.game.episode_from_bytes(result.recording, _PLAYER)
             # Each worker loads the level itself, so check the level of the recording.
@@ -162,21 +178,52 @@ def judge_case(
     probability of a wrong verdict on this case. After each episode, ``on_episode`` is called with
     the number of episodes so far and the last episode.
 
+    Episodes that are lost with their games do not count, and neither do those of the baseline with
+    the same seeds. Too few episodes may then be left for a verdict.
+
     Raises:
         TltlError: the errors of :func:`play_episodes` and :func:`check_unedited`.
+        WireError: too many episodes were lost.
     """
     played: list[CaseEpisode] = []
-    before = summaries_of(reference.episodes)
-    with closing(play_episodes(prepared, pool)) as playing:
+    lost: list[LostEpisode] = []
+    with closing(play_episodes(prepared, pool, lost.append)) as playing:
         for episode in playing:
             played.append(episode)
             on_episode(len(played), episode.explained)
-            now = [case_episode.explained.summary for case_episode in played]
-            judgement = judge(now, before, prepared.case.episodes, prepared.case.thresholds, error)
-            if judgement:
-                check_unedited(prepared)
-                return JudgedCase(_as_played(prepared, played[:_SHOWN]), reference, judgement, tuple(played))
-    raise AssertionError("the last episode settles every verdict")
+            if judged := _judged(prepared, reference, played, lost, error):
+                return judged
+    # If the last episodes were lost, those that were played may settle the verdict only now.
+    if judged := _judged(prepared, reference, played, lost, error):
+        return judged
+    raise WireError([lost[0].fault])
+
+
+def _judged(
+    prepared: PreparedCase,
+    reference: Reference,
+    played: Sequence[CaseEpisode],
+    lost: Sequence[LostEpisode],
+    error: float,
+) -> JudgedCase | None:
+    """Return the case with its verdict; None if more episodes have to be played."""
+    reference = _without(reference, lost)
+    now, before = [episode.explained.summary for episode in played], summaries_of(reference.episodes)
+    judgement = judge(now, before, prepared.case.episodes - len(lost), prepared.case.thresholds, error)
+    if judgement is None:
+        return None
+    check_unedited(prepared)
+    lost_episodes = LostEpisodes(len(lost), lost[0].fault) if lost else None
+    return JudgedCase(_as_played(prepared, played[:_SHOWN]), reference, judgement, tuple(played), lost_episodes)
+
+
+def _without(reference: Reference, lost: Sequence[LostEpisode]) -> Reference:
+    """Return a reference without the episodes that have the seeds of the ``lost`` ones."""
+    if not lost:
+        return reference
+    indices = {episode.request.index for episode in lost}
+    left = tuple(episode for episode in reference.episodes if episode.summary.index not in indices)
+    return replace(reference, episodes=left)
 
 
 def _as_played(prepared: PreparedCase, episodes: Sequence[CaseEpisode]) -> PreparedCase:

@@ -34,6 +34,7 @@ def metrics_line(report: TrainingReport, fspa: Fspa) -> dict[str, Any]:
         "collect_s": round(iteration.collect_s, 4),
         "learn_s": round(iteration.learn_s, 4),
         "episodes": len(iteration.finished),
+        **({"lost": iteration.lost.count} if iteration.lost else {}),
         "window": window.count,
         **(dict.fromkeys(WINDOW_MEANS) if not window.count else means(window)),
         "confirmation": report.confirmation and to_json(report.confirmation),

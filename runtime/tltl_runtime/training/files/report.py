@@ -9,6 +9,7 @@ from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.imitation.demonstrations import ImitationSummary
+from tltl_runtime.wire.lost_episodes import LostEpisodes
 from tltlc.api import record
 
 StopReason = Literal["met", "steps", "minutes"]
@@ -24,7 +25,8 @@ class Iteration:
     ``number`` counts from 1. ``steps`` counts the decisions of all environments. ``finished`` are
     the episodes that ended. ``losses`` are the losses of the algorithm by name, and the loss of
     self-imitation, if there was any, under ``imitation``. ``collect_s`` and ``learn_s`` are the
-    wall-clock seconds of the rollout and of the update.
+    wall-clock seconds of the rollout and of the update. ``lost`` are the episodes that were lost with
+    their games, which are not in ``finished``; None without any.
     """
 
     number: int
@@ -33,6 +35,7 @@ class Iteration:
     losses: dict[str, float]
     collect_s: float
     learn_s: float
+    lost: LostEpisodes | None = None
 
 
 @record
@@ -98,6 +101,8 @@ class TrainingReport:
     - ``imitated`` describes the demonstrations that the agent imitates; None if it imitates none.
     - ``plan`` says how the game is searched for demonstrations, or why not; None if the settings ask
       for no search.
+    - ``lost`` are the episodes that were lost with their games, since the training was started or
+      resumed; None without any.
     """
 
     iteration: Iteration
@@ -114,3 +119,4 @@ class TrainingReport:
     replayed: int
     imitated: ImitationSummary | None
     plan: SearchPlan | None = None
+    lost: LostEpisodes | None = None

@@ -23,6 +23,8 @@ from tltl_runtime.training.exploration.search import end_of
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.imitation.imitation_data import ImitationData
 from tltl_runtime.vector import WorkerVectorEnv
+from tltl_runtime.wire.lost_episodes import LostEpisodes
+from tltl_runtime.wire.surviving_env import FAULTS, LOST
 from tltlc.api import Diagnostic, TltlError
 
 
@@ -47,6 +49,9 @@ class TrainingEnv(VecEnv):
     ``penalty_weight``, in [0, 1] and initially 0, is the share of this difference that is
     subtracted from the reward. ``limit_steps`` is the spec's limit in steps; None if it has no
     limit.
+
+    An episode that is lost with its game (:class:`~tltl_runtime.wire.surviving_env.SurvivingEnv`) is
+    cut off. It is neither a success nor a failure, so it is not among the finished episodes.
 
     Raises:
         TypeError: without ``layouts``, the observation space is not a Dict, or the action space is
@@ -83,9 +88,11 @@ class TrainingEnv(VecEnv):
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self._replayed_before = 0
         self._episodes = EpisodesInProgress(env, curriculum.draw) if curriculum else None
-        observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
-        self._observation = self._tensors(observation)
         self._finished: list[EpisodeSummary] = []
+        self._faults: list[Diagnostic] = []
+        observation, infos = (self._episodes.observation, {}) if self._episodes else env.reset(seed=seed)
+        self._add_faults(infos)
+        self._observation = self._tensors(observation)
         self._limit_steps = limit_steps
         self._episode_count = 0
 
@@ -108,7 +115,8 @@ class TrainingEnv(VecEnv):
         results = self._episodes.step(rows) if self._episodes else self.env.step(self._actions.values(rows))
         observation, reward, terminated, truncated, infos = results
         is_over = terminated | truncated
-        summaries = self._summaries(infos["final_info"], np.flatnonzero(is_over)) if is_over.any() else {}
+        summaries = self._summaries(infos["final_info"], _played(infos, is_over)) if is_over.any() else {}
+        self._add_faults(infos)
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
         for row, episode in summaries.items():
             successes[row] = episode.success
@@ -155,6 +163,15 @@ class TrainingEnv(VecEnv):
         summaries, self._finished = tuple(self._finished), []
         return summaries
 
+    def pop_lost(self) -> LostEpisodes | None:
+        """Return the number of episodes that were lost with their games since the last call; None without any."""
+        faults, self._faults = self._faults, []
+        return LostEpisodes(len(faults), faults[0]) if faults else None
+
+    def _add_faults(self, infos: Mapping[str, Any]) -> None:
+        """Add what happened to the games that were lost, as the infos of resets say it."""
+        self._faults += [fault for faults in infos.get(FAULTS, ()) for fault in faults or ()]
+
     def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
         """Return the summaries of the episodes that ended in these rows, by row."""
         summaries = _summaries(infos, rows, self._episode_count, self._limit_steps)
@@ -175,6 +192,12 @@ class TrainingEnv(VecEnv):
         except ValueError as error:
             help_ = "train again with a smaller `learning_rate` or `max_gradient`"
             raise TltlError([Diagnostic("TLT0866", f"the training has diverged: {error}", help=help_)]) from None
+
+
+def _played(infos: Mapping[str, Any], is_over: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return the rows of the episodes that are over, without those that were lost with their games."""
+    lost = infos["final_info"].get(LOST)
+    return np.flatnonzero(is_over if lost is None else is_over & ~lost)
 
 
 def _plain_shapes(env: WorkerVectorEnv) -> tuple[dict[str, tuple[int, ...]], tuple[int, ...]]:

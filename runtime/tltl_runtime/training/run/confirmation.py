@@ -28,9 +28,10 @@ def confirm(run: TrainingRun, policy: Policy, stream: np.random.SeedSequence) ->
     seed, count, successes = int(stream.generate_state(1)[0]), run.settings.stop.confirmation, 0
     for episode in evaluate(policy, run.level, run.variant, episodes=count, seed=seed):
         if not episode.success:
-            break
+            return Confirmation(successes, count)
         successes += 1
-    return Confirmation(successes, count)
+    # An episode that was lost with its game is neither a success nor a failure.
+    return Confirmation(successes, successes)
 
 
 def _check_level(run: TrainingRun, policy: Policy) -> None:

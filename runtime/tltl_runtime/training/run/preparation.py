@@ -47,6 +47,7 @@ from tltl_runtime.training.run.search_schedule import SearchCallback, search_bef
 from tltl_runtime.training.run.spaces import TrainingSpaces, env_function
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.wire.surviving_env import surviving
 from tltlc.api import Diagnostic, TltlError
 
 
@@ -91,7 +92,7 @@ def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorE
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
-        wrapper=_wrapper(run, spaces.plan) if spaces.searches else None,
+        wrapper=_wrapper(run, spaces.plan) if spaces.searches else surviving,
         info={**TLTL_INFO, "cell": np.int64} if spaces.searches else TLTL_INFO,
     )
 
@@ -100,7 +101,11 @@ def _wrapper(run: TrainingRun, plan: SearchPlan | None) -> Callable[[Callable[[]
     """Return the class of the environments of a search: those of games without own cells need a grid."""
     if plan is None or plan.grid is None:
         return ReplayedStartEnv
-    return partial(ReturningEnv, game=game_of(run.level), grid=plan.grid, snapshots=plan.snapshots)
+    return partial(_returning, game=game_of(run.level), grid=plan.grid, snapshots=plan.snapshots)
+
+
+def _returning(make: Callable[[], TltlEnv], **options: Any) -> gymnasium.Env[Any, Any]:
+    return surviving(lambda: ReturningEnv(make, **options))
 
 
 def load_imitation_data(

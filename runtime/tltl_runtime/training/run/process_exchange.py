@@ -11,6 +11,7 @@ from torch import Tensor
 
 from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.wire.lost_episodes import together
 from tltlc.api import Diagnostic, TltlError, record, replace
 
 ProcessState = Mapping[str, Tensor]
@@ -46,9 +47,9 @@ def gather_iteration(group: ProcessGroup, iteration: Iteration, runner: Runner) 
     # The order in which episodes of different processes ended is unknown, so they are interleaved.
     interleaved = chain.from_iterable(zip_longest(*(process_iteration.finished for process_iteration in iterations)))
     finished = tuple(episode for episode in interleaved if episode)
-    return GatheredIteration(
-        replace(iteration, finished=finished, steps=iteration.steps * group.count), processes, sum(replayed)
-    )
+    lost = together(process_iteration.lost for process_iteration in iterations)
+    iteration = replace(iteration, finished=finished, steps=iteration.steps * group.count, lost=lost)
+    return GatheredIteration(iteration, processes, sum(replayed))
 
 
 def process_state(runner: Runner) -> ProcessState:

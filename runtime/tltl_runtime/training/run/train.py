@@ -42,6 +42,7 @@ from tltl_runtime.training.run.search_schedule import SearchCallback, search_aft
 from tltl_runtime.training.run.spaces import TrainingSpaces, spaces_of, training_spaces
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.wire.lost_episodes import LostEpisodes, together
 from tltlc.api import replace
 
 
@@ -84,7 +85,9 @@ def train(
             false; TLT0868, the level has changed; TLT0920 and TLT0921, there are no demonstrations
             to imitate; TLT0922, the demonstrations have changed; TLT0940, the policy to begin with
             has changed.
-        WorkerError: a worker process of the environments was lost.
+        WorkerError: a worker process of the environments was lost. A game in another process that is
+            lost costs one episode, as :class:`~tltl_runtime.wire.surviving_env.SurvivingEnv` says;
+            only if too many are lost is this a lost worker, too.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
@@ -159,6 +162,7 @@ class _Training:
             self._episodes.load(checkpoint.window, checkpoint.unbroken)
             if group.rank < len(checkpoint.processes):
                 set_generators(checkpoint.processes[group.rank], runner)
+        self._lost: LostEpisodes | None = None
         self._inverse_temperature = self._apply_weights()
         self._state = checkpoint or _state_before(run, runner)
         if searched:
@@ -198,6 +202,7 @@ class _Training:
         exchange = gather_iteration(self._group, iteration, self._runner)
         iteration = exchange.iteration
         self._episodes.add(iteration.finished)
+        self._lost = together((self._lost, iteration.lost))
         before, self._inverse_temperature = self._inverse_temperature, self._apply_weights()
         self._runner.scale_inverse_temperature(self._inverse_temperature / before)
         steps = self._state.steps + iteration.steps
@@ -323,6 +328,7 @@ class _Training:
             replayed=state.replayed,
             imitated=imitation_data.summary if imitation_data else None,
             plan=self._plan,
+            lost=self._lost,
         )
 
 

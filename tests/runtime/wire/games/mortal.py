@@ -1,0 +1,60 @@
+"""The counter, which dies in some episodes: python mortal.py FAULT FILE EPISODE….
+
+FILE counts the episodes over all processes of the game. In the episodes with these numbers, from 1, the
+first step has the FAULT: ``exit``, ``crash``, ``hang`` or ``garbage``. ``all`` stands for all numbers. The
+fault ``reset`` is an error in place of the answer to a reset. With its first fault, the game makes the
+file FILE.fault.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import counter
+import tltl_client  # type: ignore[import-not-found]
+
+
+class Mortal(counter.Counter):
+    """A counter with a fault in some episodes."""
+
+    def __init__(self, fault: str, file: Path, numbers: list[str]) -> None:
+        super().__init__()
+        self.fault, self.file, self.numbers = fault, file, numbers
+        self.is_last = False
+
+    def reset(self, scene: str | None, variant: str, seed: int | None) -> dict[str, Any]:
+        """Count the episode."""
+        # Several games of a vector environment may count at once: each appends a byte.
+        with self.file.open("ab") as file:
+            file.write(b"x")
+            number = file.tell()
+        self.is_last = str(number) in self.numbers or "all" in self.numbers
+        if self.is_last and self.fault == "reset":
+            raise tltl_client.Refusal("no such map")
+        return super().reset(scene, variant, seed)
+
+    def step(self, action: int) -> dict[str, Any]:
+        """Have the fault, if it is time."""
+        if not self.is_last:
+            return super().step(action)
+        print(f"now: {self.fault}", file=sys.stderr, flush=True)
+        self.file.with_suffix(".fault").touch()
+        if self.fault == "exit":
+            # Not `sys.exit`: the client must not tidy up.
+            os._exit(3)
+        if self.fault == "crash":
+            os.kill(os.getpid(), signal.SIGSEGV)
+        if self.fault == "hang":
+            time.sleep(3600)
+        return {"state": {"signals": "none"}}
+
+
+if __name__ == "__main__":
+    tltl_client.play(Mortal(sys.argv[1], Path(sys.argv[2]), sys.argv[3:]))
