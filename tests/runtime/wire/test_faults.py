@@ -29,6 +29,18 @@ def faulty(*words: str, start_s: float = HANG_S, step_s: float = HANG_S) -> Wire
 
 
 @contextmanager
+def little_memory() -> Iterator[None]:
+    """Check that Python never holds much more than a few messages of the greatest size."""
+    tracemalloc.start()
+    try:
+        yield
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 3 * limits.WIRE_MESSAGE.size
+
+
+@contextmanager
 def no_new_children() -> Iterator[None]:
     """Check that the process has no more children at the end than at the beginning."""
     before = children(os.getpid())
@@ -108,7 +120,7 @@ def test_an_error_of_the_game_is_reported() -> None:
     assert (code, title) == ("TLT0793", "the game `faulty` reports: the scene `crypt` cannot be loaded")
 
 
-@pytest.mark.parametrize("fault", ["hang", "drip"])
+@pytest.mark.parametrize("fault", ["hang", "drip", "stop"])
 def test_a_game_that_does_not_answer_is_ended(fault: str) -> None:
     # The game never answers, so the short deadline always passes.
     code, title, help_ = error_of(faulty(fault, step_s=0.2))
@@ -131,14 +143,23 @@ def test_two_answers_to_one_request_are_refused() -> None:
 
 
 def test_a_line_of_a_gigabyte_is_refused_before_it_is_held() -> None:
-    tracemalloc.start()
-    try:
+    with little_memory():
         code, title, _ = error_of(faulty("long line"))
-        _, peak = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
     assert (code, title) == ("TLT0792", "the game `faulty` sent a line of more than 32 MiB")
-    assert peak < 3 * limits.WIRE_MESSAGE.size
+
+
+def test_a_first_line_of_a_gigabyte_is_refused_before_it_is_held() -> None:
+    sentence = r"TLT0792: the game `faulty` sent a first line of more than 1 MiB"
+    with no_new_children(), little_memory(), pytest.raises(WireError, match=sentence):
+        WireEnv(faulty("long hello"))
+
+
+def test_standard_error_without_end_is_read_and_not_held() -> None:
+    # The pipe holds 64 KiB: the game ends only if somebody reads it.
+    with little_memory():
+        code, title, help_ = error_of(faulty("flood"))
+    assert (code, title) == ("TLT0791", "the game `faulty` ended with exit status 4 instead of answering `reset`")
+    assert len(help_) < 2 * limits.WIRE_STDERR.size
 
 
 STARTS = [
@@ -164,9 +185,10 @@ def test_garbage_in_place_of_hello_is_reported() -> None:
         WireEnv(faulty("garbage first"))
 
 
-def test_a_game_that_never_says_hello_is_ended() -> None:
+@pytest.mark.parametrize("fault", ["no hello", "drip hello"])
+def test_a_game_that_never_says_hello_is_ended(fault: str) -> None:
     with no_new_children(), pytest.raises(WireError) as caught:
-        WireEnv(faulty("no hello", start_s=2))
+        WireEnv(faulty(fault, start_s=2))
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.title == "the game `faulty` did not say hello within 2 s, and was ended"
 

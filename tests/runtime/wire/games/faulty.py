@@ -68,6 +68,12 @@ def act(fault: str, connection: socket.socket, file: str) -> None:
     elif fault == "long line":
         for _ in range(1024):
             connection.sendall(b"x" * (1 << 20))
+    elif fault == "stop":
+        os.kill(os.getpid(), signal.SIGSTOP)
+    elif fault == "flood":
+        for _ in range(256):
+            os.write(2, b"x" * (1 << 20))
+        sys.exit(4)
     elif fault == "drip":
         while True:
             connection.sendall(b"x")
@@ -102,6 +108,10 @@ def main(fault: str, file: str = "") -> None:
         Path(file).write_text(f"{os.getpid()} {child.pid} {orphan.stdout}")
     connection = socket.create_connection(("127.0.0.1", int(os.environ["TLTL_PORT"])))
     lines = connection.makefile("rb")
+    if fault == "long hello":
+        act("long line", connection, "")
+    if fault == "drip hello":
+        act("drip", connection, "")
     first = b"Loading...\n" if fault == "garbage first" else json.dumps({"hello": hello}).encode() + b"\n"
     connection.sendall(first)
     at_step = fault.removeprefix("step ")

@@ -2,13 +2,14 @@
 
 FILE counts the episodes over all processes of the game. In the episodes with these numbers, from 1, the
 first step has the FAULT: ``exit``, ``crash``, ``hang`` or ``garbage``. ``all`` stands for all numbers. The
-fault ``reset`` is an error in place of the answer to a reset. With its first fault, the game makes the
-file FILE.fault.
+fault ``reset`` is an error in place of the answer to a reset. With the fault ``chance``, all
+episodes begin by chance, whatever the seed. With its first fault, the game makes the file FILE.fault.
 """
 
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import sys
 import time
@@ -38,6 +39,8 @@ class Mortal(counter.Counter):
         self.is_last = str(number) in self.numbers or "all" in self.numbers
         if self.is_last and self.fault == "reset":
             raise tltl_client.Refusal("no such map")
+        if self.fault == "chance":
+            seed = secrets.randbelow(4)
         return super().reset(scene, variant, seed)
 
     def step(self, action: int) -> dict[str, Any]:

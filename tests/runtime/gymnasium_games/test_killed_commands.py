@@ -1,0 +1,141 @@
+"""Commands on a game in another process that are killed, interrupted or fail: no process is left."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import ROOT
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.gymnasium_games.test_lost_episodes import SETTINGS, _trained, mortal  # noqa: F401
+from tests.waiting import HANG_S, children, until, until_gone
+
+Run = Callable[..., Outcome]
+PLACE = ("--game", "counter.game.toml:short")
+TRAIN = ("train", *PLACE, "--config", "settings.toml", "-o", "run")
+EVALUATE = ("evaluate", "policy.safetensors", *PLACE)
+
+
+@pytest.fixture(name="folder")
+def _folder(tmp_path: Path, trained: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "game"
+    folder.mkdir()
+    shutil.copy(trained, folder / "policy.safetensors")
+    (folder / "settings.toml").write_text(SETTINGS.format(steps=400, workers=2))
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def family(pid: int) -> Iterator[int]:
+    """Yield the ids of a process and of all processes that descend from it."""
+    yield pid
+    for child in children(pid):
+        yield from family(child)
+
+
+def is_supervisor(pid: int) -> bool:
+    return b"supervisor.py" in Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "number"),
+    [
+        ((*EVALUATE, "--workers", "1"), signal.SIGKILL),
+        ((*EVALUATE, "--workers", "1"), signal.SIGTERM),
+        ((*EVALUATE, "--workers", "1"), signal.SIGINT),
+        ((*EVALUATE, "--workers", "2"), signal.SIGKILL),
+        ((*EVALUATE, "--workers", "2"), signal.SIGTERM),
+        ((*EVALUATE, "--workers", "2"), signal.SIGINT),
+        (TRAIN, signal.SIGKILL),
+        (TRAIN, signal.SIGTERM),
+        (TRAIN, signal.SIGINT),
+    ],
+    ids=lambda value: f"{value[0]} {value[-1]}" if isinstance(value, tuple) else signal.Signals(value).name,
+)
+def test_no_process_is_left_after_a_signal(folder: Path, words: tuple[str, ...], number: int) -> None:
+    # A training looks at the spaces in the first episode. Then each game hangs, for the deadline of the test.
+    mortal(folder, "hang", *range(2, 20), step_s=3600)
+    path = os.pathsep.join([str(ROOT), str(ROOT / "runtime")])
+    with subprocess.Popen(
+        [sys.executable, "-m", "tltlc", *words],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": path},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        hangs = folder.with_name("episodes.fault")
+        until(lambda: hangs.exists() or process.poll() is not None, "the game to hang")
+        pids = [*family(process.pid)]
+        supervisors = [pid for pid in pids if is_supervisor(pid)]
+        assert supervisors and all(children(pid) for pid in supervisors)
+        # A terminal sends Ctrl-C to all processes of its group.
+        os.killpg(process.pid, number) if number == signal.SIGINT else process.send_signal(number)
+        _, errors = process.communicate(timeout=HANG_S)
+    assert process.returncode in (-number, 128 + number), errors
+    assert "Traceback" not in errors
+    until_gone(pids)
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_no_process_is_left_if_a_signal_function_raises(
+    tltlc: Run,  # noqa: F811
+    folder: Path,
+    workers: str,
+) -> None:
+    game = mortal(folder, "exit")
+    (folder / "rules.py").write_text(
+        "def signals(env):\n    return {'at_goal': env.unwrapped.tltl_signals()['gaol']}\n"
+    )
+    game.write_text(game.read_text().replace("[game]\n", '[game]\nsignals = "rules:signals"\n', 1))
+    before = children(os.getpid())
+    result = tltlc(*EVALUATE, "--workers", workers, "--episodes", "4")
+    assert result.status in (1, 2)
+    assert "error[TLT0781]: `rules:signals`, called after the reset, raises KeyError: 'gaol'" in result.err
+    until_gone(set(children(os.getpid())) - set(before) if workers == "1" else ())
+
+
+@pytest.mark.parametrize("words", [EVALUATE, TRAIN], ids=lambda value: value[0])
+def test_a_scene_that_the_game_cannot_load_is_an_error(
+    tltlc: Run,  # noqa: F811
+    folder: Path,
+    words: tuple[str, ...],
+) -> None:
+    mortal(folder, "reset", "all")
+    before = set(children(os.getpid()))
+    result = tltlc(*words)
+    assert result.status in (1, 2)
+    assert "the game `counter.game.toml` reports: no such map" in result.err
+    assert result.err.count("error[") == 1
+    assert set(children(os.getpid())) <= before
+
+
+def test_a_game_that_is_not_deterministic_is_measured_and_played(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    mortal(folder, "chance")
+    before = set(children(os.getpid()))
+    result = tltlc("check", *PLACE)
+    # Ten episodes and more would have to begin alike by chance.
+    assert result.status == 0
+    assert "warning[TLT0783]: equal seeds and actions give different plays in `short:v0`" in result.err
+    assert "equal seeds and actions give equal plays: no" in result.err
+    assert tltlc(*EVALUATE, "--episodes", "4").status == 0
+    assert tltlc(*TRAIN, "--steps", "80").status in (0, 1)
+    assert set(children(os.getpid())) <= before
+
+
+@pytest.mark.parametrize(("fault", "code"), [("exit", "TLT0791"), ("garbage", "TLT0792"), ("reset", "TLT0793")])
+def test_a_check_ends_with_the_first_error(tltlc: Run, folder: Path, fault: str, code: str) -> None:  # noqa: F811
+    mortal(folder, fault, 2)
+    before = set(children(os.getpid()))
+    result = tltlc("check", *PLACE)
+    assert result.status in (1, 2)
+    assert f"error[{code}]: the game `counter.game.toml` " in result.err
+    assert set(children(os.getpid())) <= before
