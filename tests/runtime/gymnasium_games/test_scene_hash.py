@@ -69,6 +69,38 @@ def test_imported_files_are_found_without_running_them(tmp_path: Path) -> None:
     assert contents["walls.py"] == b"\n"
 
 
+@pytest.mark.parametrize(
+    ("text", "followed"),
+    [
+        ("from maps import *", {"maps/small.py", "maps/large.py"}),
+        ("from maps import rooms", set()),
+        ("import importlib\nimportlib.import_module('.small', 'maps')", {"maps/small.py"}),
+        ("from maps.rooms import load", {"maps/rooms/__init__.py", "maps/rooms/crypt.py", "maps/large.py"}),
+        ("from importlib import import_module\nimport_module(name, package='maps')", set()),
+        ("from maps import *\nimport_module('...x', __package__)", {"maps/small.py", "maps/large.py"}),
+    ],
+)
+def test_modules_that_are_offered_or_relative_are_followed(tmp_path: Path, text: str, followed: set[str]) -> None:
+    files = {
+        "game.py": text,
+        "maps/__init__.py": "__all__ = ['small', 'no name', 'nothing']\n__all__ += ['large']\n",
+        "maps/small.py": "",
+        "maps/large.py": "",
+        "maps/unused.py": "",
+        "maps/rooms/__init__.py": "import_module('.crypt', __package__), import_module('..large', package=__package__)",
+        "maps/rooms/crypt.py": "",
+    }
+    for name, content in files.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(content)
+    always = {"game.py"} | ({"maps/__init__.py"} if "from maps" in text or "maps')" in text else set())
+    found = set(python_files(tmp_path, ["game"]))
+    if text == "from maps import rooms":
+        followed = {"maps/rooms/__init__.py", "maps/rooms/crypt.py", "maps/large.py"}
+    assert found == always | followed
+
+
 def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:
     game = read_game_file(games.write(tmp_path, **FILES))
     (tmp_path / "map.txt").unlink()
