@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,6 +62,7 @@ def command(
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.game.capability_error import no_expert_error
+    from tltl_runtime.game.recorder import closing_on_error
     from tltl_runtime.game.registry import game_of
 
     with cli.Report() as report:
@@ -70,7 +72,7 @@ def command(
         if film:
             films_of(loaded)
         player = "careless expert" if careless else "expert"
-        env = game.recorder(game.make_env(file, variant or "v0", spec), player)
+        env = closing_on_error(game.make_env(file, variant or "v0", spec), partial(game.recorder, player=player))
         played = succeeded = 0
         try:
             if not game.has_expert(env):

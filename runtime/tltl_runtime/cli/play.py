@@ -70,10 +70,14 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
 def _play(
     path: str, variant: str | None, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch
 ) -> None:
+    from tltl_runtime.game.recorder import closing_on_error
+
     game = game_of(path)
     level = game.load_level(path, variant or "v0")
     mode = keyboard_of(level).render_mode
-    env = game.recorder(game.make_env(path, variant or "v0", spec, render_mode=mode), "keyboard")
+    env = closing_on_error(
+        game.make_env(path, variant or "v0", spec, render_mode=mode), partial(game.recorder, player="keyboard")
+    )
     try:
         play_at_keyboard(env, level, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
     finally:

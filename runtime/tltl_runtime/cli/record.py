@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -80,6 +81,7 @@ def command(
     """
     with cli.Report() as report, ignore_closed_pipe():
         from tltl_runtime.game.capability_error import no_expert_error
+        from tltl_runtime.game.recorder import closing_on_error
         from tltl_runtime.game.registry import game_of
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
 
@@ -87,7 +89,7 @@ def command(
         game = game_of(file)
         loaded = game.load_level(file, variant)
         mode = keyboard_of(loaded).render_mode if by == "keyboard" else None
-        env = game.recorder(game.make_env(file, variant, spec, render_mode=mode), by)
+        env = closing_on_error(game.make_env(file, variant, spec, render_mode=mode), partial(game.recorder, player=by))
         demonstrations: Demonstrations | None = None
         try:
             if by == "expert" and not game.has_expert(env):

@@ -150,6 +150,9 @@ def _read(game: str | None, path: str) -> RecordedEpisode:
     from tltl_runtime.game.registry import game_of_recording
 
     recorded = game_of_recording(path)
+    if game is not None and recorded.recordings_have_levels:
+        message = f"--game is for recordings of scenes of game files, and `{path}` contains its level: leave it out"
+        raise click.UsageError(message, click.get_current_context())
     episode: RecordedEpisode = recorded.read_episode(Path(path))
     return episode if game is None else recorded.located(episode, *split_level(game))
 

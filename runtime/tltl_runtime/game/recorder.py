@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 import gymnasium
@@ -25,6 +26,17 @@ class EpisodeRecorder(gymnasium.Wrapper[Any, Any, Any, Any], Generic[EpisodeT]):
     def episode(self) -> EpisodeT:
         """A copy of the episode so far; raises RuntimeError before the first reset."""
         raise NotImplementedError
+
+
+def closing_on_error(
+    env: gymnasium.Env[Any, Any], wrap: Callable[[gymnasium.Env[Any, Any]], EpisodeRecorder[EpisodeT]]
+) -> EpisodeRecorder[EpisodeT]:
+    """Return ``wrap(env)``; close the environment if this raises an error, because nobody else could."""
+    try:
+        return wrap(env)
+    except BaseException:
+        env.close()
+        raise
 
 
 def judging_wrapper(env: gymnasium.Env[Any, Any]) -> TltlEnv:

@@ -269,7 +269,7 @@ class _Reader:
             is_inside, exists = True, False
         if not is_inside:
             title = f"`{name}` is outside the folder of the game file"
-            help_ = "move it into this folder, or allow it with --allow-outside"
+            help_ = "move it into this folder, or the game file into a folder that contains both"
             table.log.append(Diagnostic("TLT0803", title, (table.label_of(key),), help_))
             return None
         if not exists:

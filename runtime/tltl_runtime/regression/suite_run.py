@@ -34,8 +34,8 @@ _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 
 _EDITED: Final = "TLT0905"
-WORKER_ERRORS: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
-"""The codes of errors of worker processes. They stop the run, because the case is not at fault."""
+_WORKER_ERRORS: Final = frozenset({"TLT0850", "TLT0852"})
+_NOT_INSTALLED: Final = "TLT0730"
 
 _LOST_PROCESS: Final = "TLT0007"
 """The code of the error of a process that judges traces and ends too early; it is no fault of the case."""
@@ -88,6 +88,18 @@ class FinishedCase:
     @property
     def _unpassed_case(self) -> PreparedCase | None:
         return None if self.report.verdict == "pass" else self.prepared
+
+
+def is_error_of_workers(error: TltlError) -> bool:
+    """Whether an error is one of worker processes. It stops the run, because the case is not at fault.
+
+    A package that is not installed counts, too, unless the message points to the game file that needs
+    it: other games may not need it.
+    """
+    return any(
+        diagnostic.code in _WORKER_ERRORS or (diagnostic.code == _NOT_INSTALLED and not diagnostic.labels)
+        for diagnostic in error.diagnostics
+    )
 
 
 def check_references(suite: Suite, cases: Sequence[SuiteCase], references: tuple[Reference, ...]) -> None:
@@ -232,10 +244,10 @@ def _judge(
     try:
         result = judge_case(prepared, reference, error, pool, lambda count, last: on_episode(case, count, last))
     except TltlError as fault:
-        codes = {diagnostic.code for diagnostic in fault.diagnostics}
-        if codes & WORKER_ERRORS:
+        if is_error_of_workers(fault):
             raise
-        report = report_on_edited if _EDITED in codes else report_on_broken
+        is_edited = any(diagnostic.code == _EDITED for diagnostic in fault.diagnostics)
+        report = report_on_edited if is_edited else report_on_broken
         return FinishedCase(report(case, fault), is_cached=False)
     except RuntimeError as problem:
         level_fault = prepared.level.game.level_fault(problem)

@@ -21,14 +21,14 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.retrain.retrain import configure_retraining, is_stored, make_room, retraining_result
 from tltl_runtime.regression.suite.suite import SHIPPED, Suite
-from tltl_runtime.regression.suite_run import WORKER_ERRORS, FinishedCase
+from tltl_runtime.regression.suite_run import FinishedCase, is_error_of_workers
 from tltl_runtime.regression.verdict.baseline import baseline_command
 from tltl_runtime.training.files.record import finished_record, write_record
 from tltl_runtime.training.files.run_file import RUN, TrainingRun
 from tltlc.api import TltlError, cli, record, replace
 
-_FATAL_ERRORS: Final = WORKER_ERRORS | {"TLT0005"}
-"""The codes of errors that end all retraining: errors of worker processes, and unwritable files."""
+_UNWRITABLE: Final = "TLT0005"
+"""The code of the error about a file that cannot be written. It ends all retraining."""
 
 
 @record
@@ -92,7 +92,7 @@ def _case_errors(name: str) -> Iterator[None]:
         with level_faults():
             yield
     except TltlError as error:
-        if _FATAL_ERRORS & {diagnostic.code for diagnostic in error.diagnostics}:
+        if is_error_of_workers(error) or any(diagnostic.code == _UNWRITABLE for diagnostic in error.diagnostics):
             raise
         click.echo(f"{plain_text(name)}: its training gave no result", err=True)
         cli.show(error.diagnostics, "text", sys.stderr)

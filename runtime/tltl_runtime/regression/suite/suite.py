@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from os.path import normpath
 from pathlib import Path
 from typing import Final
@@ -14,6 +15,7 @@ from typing import Final
 from tltl_runtime.game.level_name import (
     GAME_FILE,
     Variant,
+    is_scene,
     level_stem,
     parse_variant,
     split_level,
@@ -226,11 +228,20 @@ def _case(
                 Diagnostic("TLT0805", title, (table.label_of("overlay"),), suggestion(overlay, overlay_names))
             )
     base = variant or variant_names[0]
-    name = name or f"{level_stem(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
+    name = name or f"{_level_name(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
     played = Variant(base, overlays)
     return Case(
         name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place
     ), table.label
+
+
+def _level_name(level: str) -> str:
+    """Return the name of a level in the name of a case; for a game file without a scene, that of its first scene."""
+    if is_scene(level):
+        # A game file that cannot be read makes the case fail later.
+        with suppress(TltlError):
+            return game_of(level).level_files.level_name(level)
+    return level_stem(level)
 
 
 def _variants(table: CheckedTable, level: str, known_variants: dict[str, tuple[str, ...]]) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from pathlib import Path
 from typing import Final
@@ -49,6 +50,25 @@ def current_text(name_or_path: str, variant: Variant, name: str) -> str | None:
     level_files = game_of(name_or_path).level_files
     candidates = level_files.candidates(name_or_path, variant, name)
     return _text(next(filter(fileio.is_file, candidates), level_files.path(name_or_path)))
+
+
+def is_unchanged(name_or_path: str, variant: Variant, name: str, sha256: str) -> bool:
+    """Whether one of a level's files still has the content with this SHA-256; ``name`` is as for :func:`current_text`.
+
+    Games hash the text of their files, or the bytes, with or without other line ends: a file that is not
+    UTF-8, or begins with a byte order mark, has bytes that its text does not have.
+    """
+    text = current_text(name_or_path, variant, name)
+    if text is not None and text_sha256(text) == sha256:
+        return True
+    path = next(filter(fileio.is_file, game_of(name_or_path).level_files.candidates(name_or_path, variant, name)), None)
+    if path is None:
+        return False
+    try:
+        data = fileio.read_bytes(path, str(path), fileio.limits.SCENE_FILE.size)
+    except TltlError:
+        return False
+    return sha256 in (hashlib.sha256(data).hexdigest(), hashlib.sha256(data.replace(b"\r\n", b"\n")).hexdigest())
 
 
 def baseline_level(reference: Reference) -> Level | None:

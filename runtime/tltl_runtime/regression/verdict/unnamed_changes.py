@@ -14,8 +14,8 @@ from tltl_runtime.game.registry import game_of
 from tltl_runtime.regression.suite.dependencies import dependencies
 from tltl_runtime.regression.suite.suite import Case, Suite, SuiteCase
 from tltl_runtime.regression.suite.trace_case import TraceCase
-from tltl_runtime.regression.verdict.baseline import Reference, text_sha256
-from tltl_runtime.regression.verdict.level_texts import current_text
+from tltl_runtime.regression.verdict.baseline import Reference
+from tltl_runtime.regression.verdict.level_texts import is_unchanged
 from tltlc.api import TltlError
 
 
@@ -46,10 +46,9 @@ def _changed_files(suite: Suite, case: Case, references: Sequence[Reference]) ->
     paths = dependencies(suite, case)
     for name, sha256 in files:
         parts = Path(name).parts
-        if any(path.parts[-len(parts) :] == parts for path in paths):
-            text = current_text(case.level, case.variant, name)
-            if text is None or text_sha256(text) != sha256:
-                yield name
+        is_used = any(path.parts[-len(parts) :] == parts for path in paths)
+        if is_used and not is_unchanged(case.level, case.variant, name, sha256):
+            yield name
 
 
 def _identity(reference: Reference) -> tuple[str, str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.recorder import EpisodeRecorder, closing_on_error
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.values import unsquashed
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -73,8 +75,9 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], report
     ``make`` returns a new environment. ``report`` is called with each attempt. Raises the errors of
     :func:`~tltl_runtime.training.imitation.demonstrations.expert_attempts`.
     """
-    env = make()
-    env = env.get_wrapper_attr("level").game.recorder(env, PLAYER)
+    judged = make()
+    recorder = judged.get_wrapper_attr("level").game.recorder
+    env: EpisodeRecorder[Any] = closing_on_error(judged, partial(recorder, player=PLAYER))
     try:
         demonstrations = Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
         for attempt in expert_attempts(env, demonstrations, number):

@@ -1,0 +1,151 @@
+"""Suites and recordings of scenes: what costs one case alone, and what stays open."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import gymnasium
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.gymnasium_games import games
+from tests.runtime.regression.handmade import reference
+from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+from tltl_runtime.gymnasium_games.scene_env import SceneEnv
+from tltl_runtime.regression.suite.suite import read_suite
+from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
+from tltlc.api import TltlError
+
+Run = Callable[..., Outcome]
+SETTINGS = """\
+rollout = { envs = 2, steps = 32, workers = 1 }
+network.hidden = [8]
+exploration.ways = 0
+stop.confirmation = 2
+"""
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the corridor, and a policy for it that was trained for a few steps."""
+    from tltlc.interfaces.cli.main import main
+
+    folder = tmp_path_factory.mktemp("corridor")
+    game = games.write(folder, settings__toml=SETTINGS)
+    options = ("--config", folder / "settings.toml", "--steps", "64", "--out", folder / "run")
+    with pytest.raises(SystemExit):
+        main(["train", "--game", f"{game}:short", *map(str, options)])
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def _here(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+
+
+def case(game: str, name: str = "", scene: str = "short") -> str:
+    named = f'name = "{name}"\n' if name else ""
+    scene_key = f'scene = "{scene}"\n' if scene else ""
+    return f'[[case]]\n{named}game = "{game}"\n{scene_key}policy = "run"\nepisodes = 25\n'
+
+
+def test_a_package_that_one_game_lacks_costs_its_case_alone(
+    tltlc: Run,  # noqa: F811
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    other = games.GAME.replace("corridor:", "other:")
+    games.write(folder, other__game__toml=other, other__py=games.GRID)
+    (folder / "two.toml").write_text(case("other.game.toml", "other") + case("corridor.game.toml", "own"))
+    assert tltlc("baseline", "two.toml", "--workers", "1").status in (0, 1)
+    (folder / "other.py").write_text(f"import no_such_package\n{games.GRID}")
+    monkeypatch.delitem(sys.modules, "other")
+    result = tltlc("regress", "two.toml", "--workers", "1", "--json", "two.json")
+    assert result.status == 1, result.err
+    first, second = json.loads((folder / "two.json").read_text())["cases"]
+    assert first["verdict"] == "fail" and second["pass_rate"] is not None
+    assert "TLT0730, the module `no_such_package` is not installed" in " ".join(first["reasons"])
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [(b"\xe9t\xe9 \x80", b"\xe9t\xe9 \x81"), (b"\xef\xbb\xbf###\r\n", b"\xef\xbb\xbf##\r\n"), (b"\0\r\n", b"\0\r\r")],
+    ids=["not UTF-8", "byte order mark", "binary"],
+)
+def test_a_file_counts_as_changed_only_if_its_bytes_have_changed(folder: Path, before: bytes, after: bytes) -> None:
+    (folder / "map.txt").write_bytes(before)
+    games.write(folder, corridor__game__toml=games.GAME.replace('"short"', '"short"\nfiles = ["map.txt"]'))
+    (folder / "maps.toml").write_text(case("corridor.game.toml"))
+    suite = read_suite(folder / "maps.toml")
+    files = GAME.load_level("corridor.game.toml:short").files
+    references = (reference(level="short", files=files, place="corridor.game.toml:short"),)
+    assert "map.txt" in dict(files)
+    assert unnamed_changes(suite, suite.cases, references) == {}
+    (folder / "map.txt").write_bytes(after)
+    assert unnamed_changes(suite, suite.cases, references) == {"map.txt": ("short:v0",)}
+
+
+def test_a_case_without_a_scene_has_the_name_of_the_first_scene(folder: Path) -> None:
+    (folder / "first.toml").write_text(case("corridor.game.toml", scene=""))
+    assert [each.name for each in read_suite(folder / "first.toml").cases] == ["short:v0"]
+
+
+def test_a_baseline_with_which_no_case_can_pass_says_so(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    strict = "thresholds = { pass_rate = 0.999 }\n"
+    (folder / "strict.toml").write_text(case("corridor.game.toml") + strict)
+    result = tltlc("baseline", "strict.toml", "--workers", "1")
+    assert result.status == 1
+    assert result.err.endswith("none of the cases can pass with this baseline, even if nothing changes\n")
+    assert (folder / "strict.baseline.json").exists()
+
+
+class Unrecordable(SceneEnv):
+    """A scene whose actions cannot be recorded; it counts how often it is closed."""
+
+    closed = 0
+
+    def __init__(self, env: gymnasium.Env, *rest: object) -> None:  # type: ignore[type-arg]
+        super().__init__(env, *rest)  # type: ignore[arg-type]
+        self.action_space = gymnasium.spaces.Text(8)
+
+    def close(self) -> None:
+        Unrecordable.closed += 1
+        super().close()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("play", "corridor.game.toml:short"),
+        ("record", "corridor.game.toml:short"),
+        ("record", "corridor.game.toml:short", "--by", "keyboard"),
+        ("demonstrate", "corridor.game.toml:short"),
+    ],
+    ids=" ".join,
+)
+def test_an_environment_that_cannot_be_recorded_is_closed(
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+) -> None:
+    monkeypatch.setattr("tltl_runtime.gymnasium_games.scene_env.SceneEnv", Unrecordable)
+    monkeypatch.setattr(Unrecordable, "closed", 0)
+    result = tltlc(*arguments)
+    assert "error[TLT0844]" in result.err
+    assert result.status in (1, 2) and Unrecordable.closed == 1
+
+
+def test_a_policy_that_does_not_fit_closes_the_environment(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tltl_runtime.evaluation.evaluate import set_up
+    from tltl_runtime.evaluation.player import PolicyPlayer
+    from tltl_runtime.policies.file import read_policy
+
+    setup = set_up(read_policy(folder / "run" / "policy.safetensors"), "corridor.game.toml:short", "v0", None, 0, "all")
+    monkeypatch.setattr("tltl_runtime.gymnasium_games.scene_env.SceneEnv", Unrecordable)
+    monkeypatch.setattr(Unrecordable, "closed", 0)
+    with pytest.raises(TltlError, match="TLT084"):
+        PolicyPlayer(setup)
+    assert Unrecordable.closed == 1
