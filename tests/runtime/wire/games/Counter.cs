@@ -1,0 +1,123 @@
+// The game of the conformance script in C#; `tests/runtime/wire/conversation.py` describes it.
+//
+// Usage: Counter.exe [--listen PORT]
+
+using System;
+using System.Collections.Generic;
+using Tltl;
+
+/// <summary>Counts up to the goal, and in the variant `trap` never down to 0.</summary>
+internal sealed class Counter : IGame, ISnapshots, IScreenshots
+{
+    private struct Place
+    {
+        public int Goal, Position, Moves;
+        public bool HasTrap;
+    }
+
+    private readonly List<Place> _snapshots = new List<Place>();
+    private Place _now = new Place {Goal = 5, Position = 1};
+
+    public Message Hello
+    {
+        get
+        {
+            return new Message
+            {
+                {"name", "counter"},
+                {"clock_hz", 10},
+                {"signals", new Message
+                {
+                    {"position", new Message {{"range", new[] {0, 10}}}},
+                    {"moves", new Message {{"range", new object[] {0, null}}}},
+                    {"at_goal", new Message {{"type", "bool"}}},
+                }},
+                {"params", new Message {{"goal", 10}}},
+                {"actions", new Message {{"type", "discrete"}, {"n", 3}}},
+                {"observation", new Message
+                {
+                    {"type", "box"}, {"low", 0}, {"high", 10}, {"shape", new[] {1}}, {"dtype", "float32"},
+                }},
+                {"scenes", new[] {"short", "long"}},
+                {"capabilities", new[] {"seed", "positions"}},
+            };
+        }
+    }
+
+    /// <summary>Begins at 1 + seed mod 4.</summary>
+    public State Reset(string scene, string variant, long? seed)
+    {
+        scene = scene ?? "short";
+        if (scene != "short" && scene != "long") throw new Refusal("there is no scene `" + scene + "`");
+        if (variant != "v0" && variant != "trap") throw new Refusal("there is no variant `" + variant + "`");
+        _now = new Place
+        {
+            Goal = scene == "short" ? 5 : 10,
+            HasTrap = variant == "trap",
+            Position = 1 + (int)((seed ?? 0) % 4),
+        };
+        return Now();
+    }
+
+    /// <summary>Moves left (0), stays (1) or moves right (2).</summary>
+    public State Step(object action)
+    {
+        _now.Position = Math.Min(Math.Max(_now.Position + TltlClient.Int(action) - 1, 0), 10);
+        _now.Moves++;
+        return Now();
+    }
+
+    /// <summary>Keeps the state; the ids are 1, 2, 3 and so on.</summary>
+    public object Snapshot()
+    {
+        _snapshots.Add(_now);
+        return _snapshots.Count;
+    }
+
+    public State Restore(object id)
+    {
+        int number = TltlClient.Int(id);
+        if (number < 1 || number > _snapshots.Count) throw new Refusal("there is no snapshot " + number);
+        _now = _snapshots[number - 1];
+        return Now();
+    }
+
+    /// <summary>Draws a row of 11 black pixels; that of the player is white.</summary>
+    public object Screenshot()
+    {
+        var pixels = new byte[33];
+        for (int i = 0; i < 3; i++) pixels[3 * _now.Position + i] = 255;
+        return TltlClient.Array(pixels, "uint8", 1, 11, 3);
+    }
+
+    private State Now()
+    {
+        bool atGoal = _now.Position >= _now.Goal;
+        bool isTrapped = _now.HasTrap && _now.Position == 0;
+        return new State(
+            signals: new Message {{"position", _now.Position}, {"moves", _now.Moves}, {"at_goal", atGoal}},
+            observation: new[] {_now.Position},
+            ended: atGoal || isTrapped,
+            cause: atGoal ? "goal" : isTrapped ? "trap" : null,
+            positions: new Message {{"player", new[] {_now.Position, 0}}});
+    }
+
+    private static int Main(string[] words)
+    {
+        var game = new Counter();
+        if (words.Length < 2 || words[0] != "--listen") return TltlClient.Play(game);
+        try
+        {
+            while (true)
+            {
+                int status = TltlClient.Play(game, TltlClient.Listen(TltlClient.GameHello(game), int.Parse(words[1])));
+                if (status != 0) return status;
+            }
+        }
+        catch (Disconnected error)
+        {
+            Console.Error.WriteLine(error.Message);
+            return 1;
+        }
+    }
+}

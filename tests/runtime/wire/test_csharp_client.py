@@ -1,0 +1,346 @@
+"""The client in C#: it passes the conversation with Mono, keeps every number, and compiles in a game of Unity."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from math import isinf
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.runtime.wire import conversation
+from tests.runtime.wire.test_env import connected, free_port
+from tests.runtime.wire.test_faults import GAMES
+from tests.waiting import HANG_S
+from tltl_runtime.wire.clients import tltl_client
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.wire_game import WireGame
+
+CLIENT = Path(tltl_client.__file__).with_name("TltlClient.cs")
+STRICT = ("-langversion:6", "-warn:4", "-warnaserror")
+
+pytestmark = pytest.mark.skipif(
+    not (shutil.which("mcs") and shutil.which("mono")), reason="there is no Mono here: no client in C# is run"
+)
+
+UNITY = """
+namespace UnityEngine
+{
+    public class Object { }
+    public class MonoBehaviour : Object { }
+    public static class Time { public static float fixedDeltaTime = 0.02f, timeScale = 1f; }
+    public static class Physics { public static bool autoSimulation; public static void Simulate(float step) { } }
+    public static class QualitySettings { public static int vSyncCount; }
+    public static class Application { public static void Quit(int status) { } }
+}
+"""
+"""A stand-in for the parts of Unity's library that the example uses."""
+
+DRIVER = """
+using System.Collections.Generic;
+
+internal sealed class Driver
+{
+    private static int Main(string[] words)
+    {
+        var german = System.Globalization.CultureInfo.GetCultureInfo("de-DE");
+        System.Threading.Thread.CurrentThread.CurrentCulture = german;
+        if (1.5.ToString() != "1,5") return 3;
+        if (words.Length > 0) return Record(words[0]);
+        System.Console.InputEncoding = System.Console.OutputEncoding = new System.Text.UTF8Encoding(false);
+        for (string line; (line = System.Console.In.ReadLine()) != null;)
+        {
+            string answer;
+            try { answer = "right " + Tltl.Json.Text(Tltl.Json.Parse(line)); }
+            catch (System.FormatException error) { answer = "wrong " + error.Message; }
+            System.Console.Out.Write(answer + "\\n");
+            System.Console.Out.Flush();
+        }
+        return 0;
+    }
+
+    private static int Record(string folder)
+    {
+        using (var recorder = new Tltl.Recorder(folder, new[] {"near(a, b)", "seen"}, 60))
+        {
+            foreach (bool last in new[] {true, false})
+            {
+                System.Console.Out.Write(recorder.Begin() + "\\n");
+                for (int step = 0; step < 4; step++)
+                {
+                    recorder.Sample(new Tltl.Message
+                    {
+                        {"near(a, b)", step / 3.0}, {"seen", last && step == 3}, {"unused", 1},
+                    });
+                }
+            }
+        }
+        using (var other = new Tltl.Recorder(folder, new[] {"x"}))
+        {
+            foreach (object value in new object[] {double.NaN, float.PositiveInfinity, "1", null})
+            {
+                try { other.Sample(new Tltl.Message {{"x", value}}); return 4; }
+                catch (System.ArgumentException error) { System.Console.Out.Write(error.Message + "\\n"); }
+            }
+            try { other.Sample(new Tltl.Message {{"y", 1}}); return 5; }
+            catch (KeyNotFoundException error) { System.Console.Out.Write(error.Message + "\\n"); }
+        }
+        object[] values = {
+            0.1f, 1.5m, ulong.MaxValue, System.DayOfWeek.Friday, new[,] {{1, 2}, {3, 4}}, new byte[] {7}, 'x', -0.0,
+            new Dictionary<string, double> {{"y", 1e-300}}, 1234567890123457.0 * double.Epsilon,
+        };
+        System.Console.Out.Write(Tltl.Json.Text(values) + "\\n");
+        object[] wrong = {double.NaN, new[] {float.NegativeInfinity}, new System.DateTime(), new Driver()};
+        foreach (object value in wrong)
+        {
+            try { Tltl.Json.Text(value); return 6; }
+            catch (System.ArgumentException error) { System.Console.Out.Write(error.Message + "\\n"); }
+        }
+        return 0;
+    }
+}
+"""
+"""Echoes lines of JSON, or tries the recorder, where a decimal point is a comma."""
+
+
+def build(folder: Path, *sources: Path, target: str = "exe") -> Path:
+    """Compile sources with the client, and return the path of the program."""
+    program = folder / f"game.{target}"
+    kind = "library" if target == "dll" else target
+    command = ["mcs", *STRICT, f"-target:{kind}", f"-out:{program}", str(CLIENT), *map(str, sources)]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return program
+
+
+def examples() -> tuple[str, str]:
+    """Return the two programs in the head comment of the client: a game without an engine, and one for Unity."""
+    head = CLIENT.read_text(encoding="utf-8").partition("\nnamespace")[0]
+    blocks = [
+        re.sub(r"^// {0,5}", "", block, flags=re.M) for block in re.findall(r"(?:^//(?:     .*)?\n)+", head, re.M)
+    ]
+    plain, unity = (block for block in blocks if "using Tltl;" in block)
+    return plain, unity
+
+
+@pytest.fixture(scope="module")
+def counter(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Return the path of the game of the conversation."""
+    return str(build(tmp_path_factory.mktemp("counter"), GAMES / "Counter.cs"))
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Return the path of the program ``DRIVER``."""
+    folder = tmp_path_factory.mktemp("driver")
+    (folder / "Driver.cs").write_text(DRIVER, encoding="utf-8")
+    return str(build(folder, folder / "Driver.cs"))
+
+
+@pytest.fixture(scope="module")
+def echo(driver: str) -> Iterator[Callable[[str], str]]:
+    """Return a function that lets the client read and write a line of JSON."""
+    with subprocess.Popen(
+        ["mono", driver], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
+    ) as process:
+        assert process.stdin is not None and process.stdout is not None
+        lines, answers = process.stdin, process.stdout
+
+        def ask(line: str) -> str:
+            lines.write(line + "\n")
+            lines.flush()
+            return answers.readline().rstrip("\n")
+
+        yield ask
+        lines.close()
+
+
+def test_the_client_passes_the_conversation(counter: str) -> None:
+    lines: list[str] = []
+    assert conversation.check(["mono", counter], lines.append), "\n".join(lines)
+    assert len(lines) == len(conversation.EXCHANGES) + len(conversation.REFUSALS) + 10
+
+
+def test_without_tltlc_the_game_says_why_it_ends(counter: str) -> None:
+    variables = {key: value for key, value in os.environ.items() if not key.startswith("TLTL_")}
+    for port, reason in (
+        ("", "tltlc must start this game: the variable TLTL_PORT is not set"),
+        ("5e3", "cannot connect to tltlc at port 5e3: that is no port"),
+    ):
+        result = subprocess.run(
+            ["mono", counter],
+            capture_output=True,
+            text=True,
+            env={**variables, "TLTL_PORT": port},
+            timeout=HANG_S,
+            check=False,
+        )
+        assert (result.returncode, result.stderr) == (1, reason + "\n")
+
+
+def test_a_running_game_is_played_again_and_again(counter: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTL_TOKEN", "open sesame")
+    port = free_port()
+    words = ["mono", counter, "--listen", str(port)]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            for token in ("open sesame", "open barley", "open sesame"):
+                monkeypatch.setenv("TLTL_TOKEN", token)
+                if token == "open barley":
+                    with pytest.raises(WireError, match="TLT0793: the game `counter` reports: the token is wrong"):
+                        connected(port)
+                    continue
+                env = connected(port)
+                env.reset(seed=0)
+                assert env.step(2)[0].tolist() == [2]
+                env.close()
+        finally:
+            process.kill()
+
+
+def test_two_running_games_cannot_share_a_port(counter: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        words = ["mono", counter, "--listen", str(port)]
+        second = subprocess.run(words, stderr=subprocess.PIPE, text=True, timeout=HANG_S, check=False)
+    assert second.returncode == 1 and f"cannot listen on port {port}" in second.stderr
+
+
+def test_the_game_in_the_head_comment_is_played(tmp_path: Path) -> None:
+    source = tmp_path / "Walk.cs"
+    source.write_text(examples()[0], encoding="utf-8")
+    program = build(tmp_path, source)
+    env = WireEnv(WireGame("walk", tmp_path, ("mono", program.name), start_s=HANG_S, step_s=HANG_S))
+    env.reset(seed=3)
+    assert [env.step(2)[2] for _ in range(2)] == [False, True]
+    assert env.tltl_cause() == "goal" and env.tltl_signals() == {"position": 5, "at_goal": True}
+    with pytest.raises(WireError, match="there is no variant `v9`"):
+        env.reset(options={"variant": "v9"})
+    env.close()
+
+
+def test_the_component_in_the_head_comment_compiles(tmp_path: Path) -> None:
+    """Unity is not here; a stand-in for its library is."""
+    (tmp_path / "Unity.cs").write_text(UNITY, encoding="utf-8")
+    (tmp_path / "Game.cs").write_text(examples()[1], encoding="utf-8")
+    # In Unity, nobody calls these methods but the engine, which the compiler cannot know.
+    build(tmp_path, tmp_path / "Game.cs", tmp_path / "Unity.cs", target="dll")
+
+
+TEXTS = st.text(st.characters(exclude_categories=()))
+# Mono reads numbers that are too small to have all their digits with an error of one bit.
+NUMBERS = st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False, allow_infinity=False, allow_subnormal=False)
+VALUES = st.recursive(
+    st.none() | st.booleans() | NUMBERS | TEXTS,
+    lambda parts: st.lists(parts) | st.dictionaries(TEXTS, parts),
+)
+
+
+@given(VALUES, st.booleans())
+def test_a_message_keeps_its_values(echo: Callable[[str], str], value: Any, is_ascii: bool) -> None:
+    line = json.dumps(value, ensure_ascii=is_ascii)
+    if not is_ascii and any("\ud800" <= char <= "\udfff" for char in line):
+        line = json.dumps(value)  # UTF-8 has no lone surrogates.
+    kind, _, answer = echo(line).partition(" ")
+    assert kind == "right" and same(json.loads(answer), value)
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values of JSON are equal; numbers by value, and bools are no numbers."""
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same, one, other))
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+    return bool(one == other) and isinstance(one, bool) == isinstance(other, bool)
+
+
+def refuse(name: str) -> None:
+    raise ValueError(name)
+
+
+def finite(text: str) -> float:
+    if isinf(value := float(text)):
+        raise ValueError(text)
+    return value
+
+
+@given(VALUES.map(json.dumps), st.data())
+def test_a_broken_line_is_refused(echo: Callable[[str], str], line: str, data: st.DataObject) -> None:
+    at = data.draw(st.integers(0, len(line)))
+    more = data.draw(st.text(st.sampled_from('{}[]",:-+.eE0123456789tfnul\\u \t\x01N'), max_size=2))
+    text = line[:at] + more + line[at + data.draw(st.integers(0, 2)) :]
+    try:
+        value = json.loads(text, parse_constant=refuse, parse_float=finite, parse_int=lambda word: whole(word))
+    except ValueError:
+        assert echo(text).startswith("wrong the line is not JSON at character ")
+        return
+    kind, _, answer = echo(text).partition(" ")
+    assert kind == "right" and same(json.loads(answer), value)
+
+
+def whole(word: str) -> float:
+    """Return a whole number as the client has it: exactly if it fits into 64 bits."""
+    number = int(word)
+    return number if -(2**63) <= number < 2**63 else finite(word)
+
+
+@pytest.mark.parametrize(
+    "text", ["", " ", "nul", "[" * 5000, '{"a":' * 5000, "1e999", "NaN", "-", "[1,]", '"\\ud8"', "\0"]
+)
+def test_a_hostile_line_is_refused(echo: Callable[[str], str], text: str) -> None:
+    assert echo(text).startswith("wrong the line is not JSON at character ")
+
+
+def test_a_recorded_trace_is_judged(driver: str, tmp_path: Path) -> None:
+    folder = tmp_path / "traces"
+    output = subprocess.run(["mono", driver, str(folder)], capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert output.returncode == 0, output.stderr
+    first, second, *rest = output.stdout.splitlines()
+    assert [first, second] == [str(folder / f"trace-000{number}.csv") for number in (1, 2)]
+    values = rest.pop(5)
+    assert json.loads(values)[-1] == 1234567890123457 * 5e-324
+    assert values.startswith('[0.10000000149011612,1.5,18446744073709551615,5,[[1,2],[3,4]],[7],"x",0,{"y":1E-300},')
+    assert rest == [
+        "the signal x is NaN, and numbers must be finite",
+        "the signal x is Infinity, and numbers must be finite",
+        "the signal x is no number and no bool",
+        "the signal x is no number and no bool",
+        "the signal x is missing",
+        "the number NaN is not finite",
+        "the number -Infinity is not finite",
+        "a message cannot contain a System.DateTime",
+        "a message cannot contain a Driver",
+    ]
+    recorder = tltl_client.Recorder(tmp_path / "python", ["near(a, b)", "seen"], clock_hz=60)
+    path = recorder.begin()
+    for step in range(4):
+        recorder.sample({"near(a, b)": step / 3, "seen": step == 3})
+    recorder.end()
+    names, *rows = path.read_text(encoding="utf-8").splitlines()
+    other_names, *other_rows = Path(first).read_text(encoding="utf-8").splitlines()
+    assert names == other_names == 'time,"near(a, b)",seen'
+    assert [cells(row) for row in rows] == [cells(row) for row in other_rows]
+    spec = tmp_path / "see.tltl"
+    spec.write_text(
+        "clock 60 Hz\nsignal near(a, b): number in [0, 1]\nsignal seen: bool\nspec see = F seen\n", encoding="utf-8"
+    )
+    (folder / "trace-0003.csv").unlink()  # It has a header only: all of its samples were refused.
+    words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder)]
+    result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert "1 of 2 accepted" in result.stdout, result.stderr
+
+
+def cells(row: str) -> list[float | str]:
+    """Return the cells of a row, with numbers as floats."""
+    return [cell if cell in ("true", "false") else float(cell) for cell in row.split(",")]
