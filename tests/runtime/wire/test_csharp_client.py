@@ -40,7 +40,12 @@ namespace UnityEngine
     public class Object { }
     public class MonoBehaviour : Object { }
     public static class Time { public static float fixedDeltaTime = 0.02f, timeScale = 1f; }
-    public static class Physics { public static bool autoSimulation; public static void Simulate(float step) { } }
+    public enum SimulationMode { FixedUpdate, Update, Script }
+    public static class Physics
+    {
+        public static SimulationMode simulationMode;
+        public static void Simulate(float step) { }
+    }
     public static class QualitySettings { public static int vSyncCount; }
     public static class Application { public static void Quit(int status) { } }
 }
@@ -170,6 +175,30 @@ def test_the_client_passes_the_conversation(counter: str) -> None:
     lines: list[str] = []
     assert conversation.check(["mono", counter], lines.append), "\n".join(lines)
     assert len(lines) == len(conversation.EXCHANGES) + len(conversation.REFUSALS) + 10
+
+
+def test_a_request_that_makes_no_sense_is_refused(counter: str) -> None:
+    requests: list[tuple[Any, str]] = [
+        ({"step": {}}, "the request `step` has no `action`"),
+        ({"step": 3}, "the request `step` has no `action`"),
+        ({"step": {"action": "left"}}, 'expected a whole number, received "left"'),
+        ({"step": {"action": [1]}}, "expected a whole number, received [1]"),
+        ({"step": {"action": 1.5}}, "expected a whole number, received 1.5"),
+        ({"step": {"action": 2**40}}, "1099511627776 is too large"),
+        ({"step": {"action": 1, "repeat": None}}, ""),
+        ({"reset": {"seed": True}}, "expected a whole number, received true"),
+        ({"reset": {"seed": 2.0, "scene": 3}}, ""),
+        ({"restore": {}}, "the request `restore` has no `id`"),
+        ({}, "this game does not know the request ``"),
+    ]
+    with conversation.Game(["mono", counter]) as game:
+        conversation.hello(game)
+        for request, reason in requests:
+            answer = game.ask(request)
+            assert answer == {"error": {"message": reason}} if reason else "state" in answer, request
+        game.send([1])
+        game.disconnect()
+        assert game.status() == 1 and game.stderr() == "tltlc sent a line that is no object of JSON"
 
 
 def test_without_tltlc_the_game_says_why_it_ends(counter: str) -> None:

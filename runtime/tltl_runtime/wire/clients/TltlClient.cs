@@ -80,8 +80,10 @@
 //
 //         private void Start()
 //         {
-//             Time.timeScale = 0;                         // Unity calls FixedUpdate no more,
-//             Physics.autoSimulation = false;             // and moves nothing by itself
+//             // Unity calls FixedUpdate no more, and moves nothing by itself. (Before Unity 2022.2:
+//             // Physics.autoSimulation = false.)
+//             Time.timeScale = 0;
+//             Physics.simulationMode = SimulationMode.Script;
 //             QualitySettings.vSyncCount = 0;
 //             try { _client = new Client(TltlClient.GameHello(this)); }
 //             catch (Disconnected error) { Quit(error.Message); }
