@@ -1,0 +1,86 @@
+-- The game of the conformance script in Lua; `tests/runtime/wire/conversation.py` describes it.
+--
+-- Usage: lua counter.lua [--listen PORT]
+
+local folder = (arg[0]:match("^(.*)/") or ".")
+package.path = folder .. "/../../../../runtime/tltl_runtime/wire/clients/?.lua;" .. package.path
+
+local tltl_client = require("tltl_client")
+
+local GOALS = {short = 5, long = 10}
+
+local game = {
+  goal = 5,
+  has_trap = false,
+  position = 1,
+  moves = 0,
+  snapshots = {},
+  hello = {
+    name = "counter",
+    clock_hz = 10,
+    signals = {position = {range = {0, 10}}, moves = {range = {0, tltl_client.null}}, at_goal = {type = "bool"}},
+    params = {goal = 10},
+    actions = {type = "discrete", n = 3},
+    observation = {type = "box", low = 0, high = 10, shape = {1}, dtype = "float32"},
+    scenes = {"short", "long"},
+    capabilities = {"seed", "positions"},
+  },
+}
+
+-- Begin at 1 + seed mod 4.
+function game:reset(scene, variant, seed)
+  if scene and not GOALS[scene] then error(tltl_client.Refusal("there is no scene `" .. scene .. "`")) end
+  if variant ~= "v0" and variant ~= "trap" then
+    error(tltl_client.Refusal("there is no variant `" .. variant .. "`"))
+  end
+  self.goal, self.has_trap = GOALS[scene or "short"], variant == "trap"
+  self.position, self.moves = 1 + (seed or 0) % 4, 0
+  return self:state()
+end
+
+-- Move left (0), stay (1) or move right (2).
+function game:step(action)
+  self.position = math.min(math.max(self.position + action - 1, 0), 10)
+  self.moves = self.moves + 1
+  return self:state()
+end
+
+-- Keep the state; the ids are 1, 2, 3 and so on.
+function game:snapshot()
+  self.snapshots[#self.snapshots + 1] =
+    {goal = self.goal, has_trap = self.has_trap, position = self.position, moves = self.moves}
+  return #self.snapshots
+end
+
+-- Return to a snapshot.
+function game:restore(id)
+  local kept = self.snapshots[id]
+  if not kept then error(tltl_client.Refusal("there is no snapshot " .. tostring(id))) end
+  for name, value in pairs(kept) do self[name] = value end
+  return self:state()
+end
+
+-- Draw a row of 11 black pixels; that of the player is white.
+function game:screenshot()
+  local pixels = string.rep("\0\0\0", self.position) .. "\255\255\255" .. string.rep("\0\0\0", 10 - self.position)
+  return tltl_client.array(pixels, "uint8", {1, 11, 3})
+end
+
+-- Return the message about the state.
+function game:state()
+  local at_goal, is_trapped = self.position >= self.goal, self.has_trap and self.position == 0
+  return tltl_client.state({
+    signals = {position = self.position, moves = self.moves, at_goal = at_goal},
+    observation = {self.position},
+    ended = at_goal or is_trapped,
+    cause = at_goal and "goal" or is_trapped and "trap" or nil,
+    positions = {player = {self.position, 0}},
+  })
+end
+
+if arg[1] == "--listen" then
+  while true do
+    tltl_client.play(game, tltl_client.listen(tltl_client.game_hello(game), tonumber(arg[2])))
+  end
+end
+tltl_client.play(game)
