@@ -66,5 +66,8 @@ def test_limits_and_deadlines_are_those_of_the_code() -> None:
     assert f"| `start_s` | {START_S:g} s |" in text and f"| `step_s` | {STEP_S:g} s |" in text
 
 
-def test_the_client_is_where_the_page_says() -> None:
-    assert Path(tltl_client.__file__).relative_to(ROOT).as_posix() in PAGE
+def test_each_client_has_a_row() -> None:
+    folder = Path(tltl_client.__file__).parent
+    assert f"`{folder.relative_to(ROOT).as_posix()}/`" in PAGE
+    for path in folder.glob("*[Cc]lient*.*"):
+        assert f"| `{path.name}` |" in PAGE
