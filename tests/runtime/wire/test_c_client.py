@@ -58,7 +58,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Build:
 
 
 def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    env = {"PATH": os.environ["PATH"], **variables}
+    env = {name: value for name, value in os.environ.items() if not name.startswith("TLTL_")} | variables
     return subprocess.run(words, capture_output=True, text=True, env=env, timeout=HANG_S, check=False)
 
 

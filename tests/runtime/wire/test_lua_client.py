@@ -43,7 +43,7 @@ with_lua = pytest.mark.parametrize("lua", list(_usable("string")))
 
 
 def run(*words: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    env = {"PATH": os.environ["PATH"], **variables}
+    env = {name: value for name, value in os.environ.items() if not name.startswith("TLTL_")} | variables
     return subprocess.run(words, capture_output=True, text=True, env=env, timeout=HANG_S, check=False)
 
 
@@ -163,3 +163,22 @@ def test_a_recorder_refuses_numbers_that_are_not_finite(lua: str, tmp_path: Path
 def test_a_recorder_names_a_folder_that_is_missing(lua: str, tmp_path: Path) -> None:
     result = run(lua, RECORD, str(tmp_path / "none"))
     assert result.returncode == 1 and "is the folder there?" in result.stderr
+
+
+with_love = pytest.mark.skipif(shutil.which("love") is None, reason="love is not installed")
+LOVE_GAME = str(GAMES / "love")
+
+
+@with_love
+def test_a_game_in_love_passes_the_conversation() -> None:
+    lines: list[str] = []
+    assert conversation.check(["love", LOVE_GAME], lines.append), "\n".join(lines)
+
+
+@with_love
+def test_in_love_traces_are_in_the_folder_of_what_players_save(tmp_path: Path) -> None:
+    folder = tmp_path / "love" / "tltl-counter" / "plays" / "traces"
+    for number in (2, 4):
+        result = run("love", LOVE_GAME, "record.lua", "plays/traces", XDG_DATA_HOME=str(tmp_path))
+        assert result.stdout == f"{folder / f'trace-{number:04d}.csv'}\n", result.stderr
+        check_traces(folder, tmp_path, number - 1)

@@ -717,7 +717,7 @@ function Recorder:finish()
 end
 
 function Recorder:_write(cells)
-  local written, reason = self._file:write(concat(cells, ","), "\n")
+  local written, reason = self._file:write(concat(cells, ",") .. "\n")
   if written then written, reason = self._file:flush() end
   if not written then error("cannot write the trace: " .. tostring(reason), 0) end
 end
