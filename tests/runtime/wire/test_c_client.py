@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.runtime.wire import conversation, request_lines
+from tests.runtime.wire import conversation, examples, request_lines
+from tests.runtime.wire.german_locale import make_german_locale
 from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.recorded_traces import check_traces
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
 from tltl_runtime.wire import clients
+from tltl_runtime.wire.answers import screenshot, snapshot_id
+from tltl_runtime.wire.hello import DeclaredSignal, hello_from
+from tltl_runtime.wire.values import array_from
 
 CLIENTS = Path(clients.__file__).parent
 COMPILERS = {"c99": ("gcc", "-std=c99", "-x", "c"), "c++11": ("g++", "-std=c++11", "-x", "c++")}
@@ -74,6 +80,17 @@ def test_the_client_passes_the_conversation(language: str, build: Build, tmp_pat
     assert result.stderr == "tltlc must start this game: the variable TLTL_PORT is not set\n"
     result = run(program, TLTL_PORT="1")
     assert result.returncode == 1 and result.stderr.startswith("cannot connect to tltlc at port 1: ")
+
+
+@with_compilers
+def test_the_examples_work(language: str, build: Build, tmp_path: Path) -> None:
+    source, page = tmp_path / "example.c", tmp_path / "page.c"
+    code = examples.code_of_comment(CLIENTS / "tltl_client.h", "//", "#define", "    return tltl_play")
+    source.write_text(code + "}\n", encoding="utf-8")
+    examples.check_example([build(language, source, "-Wno-unused-parameter")])
+    page.write_text(examples.code_of_page("c"), encoding="utf-8")
+    subprocess.run([build(language, page)], cwd=tmp_path, timeout=HANG_S, check=True)
+    examples.check_traces_of_page(tmp_path / "traces")
 
 
 @with_compilers
@@ -182,8 +199,7 @@ def test_numbers_keep_their_values(language: str, build: Build, tmp_path: Path) 
 def test_numbers_are_read_and_written_alike_where_the_locale_has_a_comma(
     language: str, build: Build, tmp_path: Path
 ) -> None:
-    words = ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")]
-    if not shutil.which(words[0]) or subprocess.run(words, capture_output=True, timeout=HANG_S, check=False).returncode:
+    if not make_german_locale(tmp_path):
         pytest.skip("localedef cannot make the locale de_DE.UTF-8")
     program = build(language, "read_lines.c", *CHECKED)
     numbers = [0.5, -1.25e-300, 1 / 3, 3]
@@ -202,6 +218,42 @@ def test_long_lines_and_numbers_are_refused(language: str, build: Build, tmp_pat
     rows = [row.split("\t")[:2] for row in run(program, str(path)).stdout.splitlines()]
     too_long = ["0", "tltlc sent a line of more than 1000 bytes"]
     assert rows == [["0", "tltlc sent a number that is too long"], too_long, too_long, ["1", b"close".hex()]]
+
+
+@with_compilers
+def test_answers_of_all_kinds_arrive(language: str, build: Build) -> None:
+    result = run(build(language, "answers.c", *CHECKED))
+    assert result.returncode == 0, result.stderr
+    *messages, odd, large, huge = result.stdout.splitlines()
+    hello, state, plain, snapshot, picture, refusal = map(json.loads, messages)
+    assert hello["hello"]["token"] == 'a"b\\c\x01ä'
+    declared = hello_from(hello)
+    assert declared.signals['near(a, "b")'] == DeclaredSignal("number", -inf, 1)
+    assert declared.signals["free"] == DeclaredSignal("number", -inf, inf)
+    assert declared.actions.shape == (2, 3) and declared.name == "game"
+    assert state["state"]["signals"] == {'near(a, "b")': 0.1, "seen": True}
+    assert array_from(state["state"]["observation"], "observation").tolist() == [[1], [-2], [0]]
+    assert state["state"]["positions"] == {"player": [1, -2.5, 1e-9], "guard": [0, 3]}
+    assert (state["state"]["ended"], state["state"]["cause"]) == (True, "line\nend")
+    assert plain["state"] == {
+        "signals": {'near(a, "b")': -1e300, "seen": False},
+        "observation": {"map": [1, 2], "speed": 0.5},
+        "ended": False,
+        "cause": None,
+    }
+    assert snapshot_id(snapshot) == 2**53 + 1
+    assert screenshot(picture).tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
+    assert refusal["error"]["message"] == "ä" * 255
+    assert odd == "the signal seen is nan, and numbers must be finite"
+    assert large == "the picture is too large to be sent, or has no channels" == huge
+
+
+@with_compilers
+def test_memory_that_ends_is_an_error(language: str, build: Build) -> None:
+    program = build(language, "answers.c", *CHECKED)
+    for allocations in range(12):
+        result = run(program, str(allocations))
+        assert (result.returncode, result.stderr) == (0, ""), allocations
 
 
 @with_compilers

@@ -13,12 +13,15 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.wire import conversation, request_lines
+from tests.runtime.wire import conversation, examples, request_lines
+from tests.runtime.wire.german_locale import make_german_locale
 from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.recorded_traces import check_traces
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
+from tltl_runtime.wire import clients
 
+CLIENTS = Path(clients.__file__).parent
 INTERPRETERS = ("lua5.1", "lua5.2", "lua5.3", "lua5.4", "luajit")
 COUNTER, RECORD, READ_LINES = (str(GAMES / name) for name in ("counter.lua", "record.lua", "read_lines.lua"))
 
@@ -55,6 +58,19 @@ def test_the_client_passes_the_conversation(lua: str) -> None:
 
 
 @with_sockets
+def test_the_examples_work(lua: str, tmp_path: Path) -> None:
+    game, page = tmp_path / "game.lua", tmp_path / "page.lua"
+    path = f'package.path = "{CLIENTS}/?.lua;" .. package.path\n'
+    code = examples.code_of_comment(CLIENTS / "tltl_client.lua", "--", "local tltl_client", "tltl_client.play(game)")
+    game.write_text(path + code, encoding="utf-8")
+    examples.check_example([lua, str(game)])
+    page.write_text(path + examples.code_of_page("lua"), encoding="utf-8")
+    (tmp_path / "traces").mkdir()
+    subprocess.run([lua, str(page)], cwd=tmp_path, timeout=HANG_S, check=True)
+    examples.check_traces_of_page(tmp_path / "traces")
+
+
+@with_sockets
 def test_a_game_that_listens_refuses_a_wrong_token_and_is_played_twice(lua: str) -> None:
     check_listening([lua, COUNTER])
 
@@ -69,9 +85,8 @@ def test_without_tltlc_the_game_says_why_it_ends(lua: str) -> None:
 @with_sockets
 def test_an_error_in_the_game_names_its_place(lua: str, tmp_path: Path) -> None:
     game = tmp_path / "game.lua"
-    client = Path(GAMES).parents[3] / "runtime" / "tltl_runtime" / "wire" / "clients"
     game.write_text(
-        f'package.path = "{client}/?.lua;" .. package.path\n'
+        f'package.path = "{CLIENTS}/?.lua;" .. package.path\n'
         'require("tltl_client").play({hello = {signals = {}, actions = {type = "discrete", n = 1}},\n'
         "  reset = function() return nil + 1 end})\n",
         encoding="utf-8",
@@ -128,6 +143,16 @@ def test_numbers_keep_their_values(lua: str, tmp_path: Path) -> None:
     assert [repr(float(text)) for text in texts] == [repr(float(number)) for number in numbers]
     assert texts[-3:] == ["9007199254740991", "0", "-1"]
     assert max(map(len, texts)) <= len("-2.2250738585072014e-308")
+
+
+@with_lua
+def test_numbers_are_read_and_written_alike_where_the_locale_has_a_comma(lua: str, tmp_path: Path) -> None:
+    if not make_german_locale(tmp_path):
+        pytest.skip("localedef cannot make the locale de_DE.UTF-8")
+    path = tmp_path / "lines"
+    path.write_text("0.5\n-1.25e-300\n0.3333333333333333\n3\n", encoding="utf-8")
+    result = run(lua, READ_LINES, str(path), "de_DE.UTF-8", LOCPATH=str(tmp_path))
+    assert result.stdout == "10.5\n1-1.25e-300\n10.3333333333333333\n13\n", result.stderr
 
 
 @with_lua
