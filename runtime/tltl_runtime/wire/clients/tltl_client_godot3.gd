@@ -73,7 +73,9 @@ var _body = {}  # the content of the last request
 var _whole_actions = false
 var _action = null
 var _ticks_left = 0  # of the step that is being played
-var _keys = {}  # the text of each key in a message, by name
+var _names = {}  # the text that stands before the value of a signal or an entity, by name
+var _true = {}  # the text of a signal that is true, by name
+var _false = {}
 var _places = {}  # the last position of each entity, by name
 var _place_texts = {}
 var _not_finite = ""  # what was wrong with a number of the message that is being written
@@ -365,7 +367,7 @@ func _end(status: int) -> void:
 func _state_text(message: Dictionary) -> String:
 	var text = '{"state":{"ended":true' if message["ended"] else '{"state":{"ended":false'
 	var cause = message.get("cause")
-	text += ',"cause":null' if cause == null else ',"cause":' + _key(cause)
+	text += ',"cause":null' if cause == null else ',"cause":' + _quoted(cause)
 	var observation = message.get("observation")
 	if observation is PoolRealArray:
 		# Its bytes follow the eight bytes of a header.
@@ -381,32 +383,56 @@ func _state_text(message: Dictionary) -> String:
 	var parts = ""
 	for name in signals:
 		var value = signals[name]
+		if not (name in _names):
+			_learn(name)
 		if value is bool:
-			parts += "," + _key(name) + (":true" if value else ":false")
+			parts += _true[name] if value else _false[name]
 		elif value is float:
-			parts += "," + _key(name) + ":" + Digits.text(value)
-			if is_nan(value) or is_inf(value):
-				_not_finite = "the signal %s is %s" % [name, value]
+			parts += _names[name]
+			if value >= 0.5 and value < 1e15:
+				parts += "%.16f" % value  # As Digits.text does.
+			else:
+				if is_nan(value) or is_inf(value):
+					_not_finite = "the signal %s is %s" % [name, value]
+				parts += Digits.text(value)
 		else:
-			parts += "," + _key(name) + ":" + _text(value)
+			parts += _names[name]
+			parts += _text(value)
 	return text + ',"signals":{' + parts.substr(1, parts.length()) + "}}}"
 
 
+# Makes the texts of a signal, or of an entity.
+func _learn(name: String) -> void:
+	_names[name] = "," + _quoted(name) + ":"
+	_true[name] = _names[name] + "true"
+	_false[name] = _names[name] + "false"
+
+
+# Positions have six decimals: these are the engine's own texts of numbers, which are the fastest.
 func _positions_text(positions: Dictionary) -> String:
 	var parts = ""
 	for name in positions:
 		var place = positions[name]
 		if typeof(_places.get(name)) != typeof(place) or _places[name] != place:
+			if not _names.has(name):
+				_learn(name)
 			_places[name] = place
 			if place is Vector3:
-				_place_texts[name] = ",%s:[%s,%s,%s]" % [_key(name), Digits.text(place.x), Digits.text(-place.z), Digits.text(place.y)]
+				_check_finite(name, place.x + place.y + place.z)
+				_place_texts[name] = "%s[%s,%s,%s]" % [_names[name], place.x, -place.z, place.y]
 			elif place is Vector2:
-				_place_texts[name] = ",%s:[%s,%s]" % [_key(name), Digits.text(place.x), Digits.text(-place.y)]
+				_check_finite(name, place.x + place.y)
+				_place_texts[name] = "%s[%s,%s]" % [_names[name], place.x, -place.y]
 			else:
-				_place_texts[name] = ",%s:%s" % [_key(name), _text(place)]
+				_place_texts[name] = _names[name] + _text(place)
 				_places.erase(name)  # A list may change.
 		parts += _place_texts[name]
 	return parts.substr(1, parts.length())
+
+
+func _check_finite(name: String, sum: float) -> void:
+	if is_nan(sum) or is_inf(sum):
+		_not_finite = "the position of %s is not finite" % name
 
 
 # Returns a value as JSON.  Unlike the engine's, this text has all digits of a number.
@@ -427,19 +453,12 @@ func _text(value) -> String:
 		TYPE_DICTIONARY:
 			var members = PoolStringArray()
 			for key in value:
-				members.append(_key(key) + ":" + _text(value[key]))
+				members.append(_quoted(key) + ":" + _text(value[key]))
 			return "{" + members.join(",") + "}"
 	var items = PoolStringArray()
 	for item in value:
 		items.append(_text(item))
 	return "[" + items.join(",") + "]"
-
-
-# Returns the text of a name, which is made only once.
-func _key(name: String) -> String:
-	if not _keys.has(name):
-		_keys[name] = _quoted(name)
-	return _keys[name]
 
 
 static func _quoted(text: String) -> String:

@@ -1,0 +1,281 @@
+# Monitor of the specification `ride`, written by tltlc.
+#
+# Board the ferry, and walk to the beacon.
+#
+#     F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen
+#
+# For Godot 3.  `step` allocates nothing, except for a notice.  In a game:
+#
+#     const Monitor = preload("ride_monitor.gd")
+#     var monitor = Monitor.new()
+#     var sample = Monitor.Sample.new()
+#
+#     sample.clear()  # at each step: then set its members
+#     if monitor.step(sample):
+#         print(monitor.progress, monitor.reward)
+#     else:
+#         push_error(monitor.message())
+
+extends Reference
+
+## What the verdict would be if the trace ended here: for good, so far, not yet, never.
+enum Verdict { SATISFIED, HOLDING, PENDING, VIOLATED }
+
+## Why a sample was refused: a signal is missing, or not a finite number; an atom divides by zero,
+## takes a root or power that does not exist, or is too large to compute; exclusive atoms hold at
+## once; a param is not in its range.
+enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PARAM }
+
+## Names as the spec has them, and the members of a sample, in the same order as the signals.
+const SIGNALS: Array = ["distance(ferry)", "distance(beacon)", "fallen"]
+const FIELDS: Array = ["distance_ferry", "distance_beacon", "fallen"]
+const ATOMS: Array = ["at(ferry, 0.8)", "at(beacon, 1)", "fallen"]
+
+## For each state: what remains to be satisfied, the verdict, whether it is accepting, whether an
+## episode ends on entry.
+const LABELS: Array = [
+	"F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen",
+	"F at(beacon, 1) & G !fallen",
+	"false",
+	"G !fallen",
+]
+const VERDICTS: Array = [
+	Verdict.PENDING,
+	Verdict.PENDING,
+	Verdict.VIOLATED,
+	Verdict.HOLDING,
+]
+const ACCEPTING: Array = [false, false, false, true]
+const ENDS: Array = [false, false, true, true]
+
+
+## A sample, in SI units.  A number that is not finite counts as missing.
+class Sample:
+	var distance_ferry: float = INF  ## distance(ferry): In [0, 25] m.
+	var distance_beacon: float = INF  ## distance(beacon): In [0, 25] m.
+	var fallen: bool = false  ## The player is in the chasm.
+
+	## Makes all numbers missing, so that a forgotten one is detected; bools are false.
+	func clear() -> void:
+		distance_ferry = INF
+		distance_beacon = INF
+		fallen = false
+
+
+var state: int = 0
+var verdict: int = Verdict.PENDING
+var accepting: bool = false  ## whether the trace so far is accepted
+var done: bool = false  ## an episode ends here, or ended before
+var progress: float = 0.0  ## the best so far, between 0 and 1
+var reward: float = 0.0  ## of the last step; 0 after the end of the episode
+var robustness: float = 0.0  ## of the edge taken, between -1 and 1
+## The place in ATOMS of the atom that bounds the nearest edge that would have improved the distance
+## to acceptance; -1 if the automaton moved or no edge improves it.
+var limiting: int = -1
+var steps: int = 0
+## What was wrong with the last sample.
+var problem: int = Problem.NONE
+## The number of the signal, atom, group or param that has the problem.
+var which: int = 0
+## Texts about values outside their range; the nearest value inside was used. Each signal and atom
+## is reported once.
+var notices: Array = []
+
+var _noticed: Dictionary = {}
+
+
+## Goes back to the state before the first sample.
+func reset() -> void:
+	state = 0
+	verdict = Verdict.PENDING
+	accepting = false
+	done = false
+	progress = 0.0
+	reward = 0.0
+	robustness = 0.0
+	limiting = -1
+	steps = 0
+	problem = Problem.NONE
+	which = 0
+
+
+## Takes one sample.  Returns false, and leaves the state unchanged, if a signal is missing or not
+## finite, an atom has no value, or exclusive atoms hold at once: see `problem` and `message`.
+func step(sample: Sample) -> bool:
+	problem = Problem.NONE
+
+	var distance_ferry: float = sample.distance_ferry
+	if not (distance_ferry >= 0.0 and distance_ferry <= 25.0):
+		distance_ferry = _read(0, distance_ferry, 0.0, 25.0)
+	var distance_beacon: float = sample.distance_beacon
+	if not (distance_beacon >= 0.0 and distance_beacon <= 25.0):
+		distance_beacon = _read(1, distance_beacon, 0.0, 25.0)
+	var fallen: float = 1.0 if sample.fallen else 0.0
+	if problem != Problem.NONE:
+		return false
+
+	# fallen: The player is in the chasm.
+	var fallen_atom: float = 2.0 * fallen - 1.0
+
+	var reached: float = 0.0
+	if state == 0:
+		# F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen
+		# at(ferry, 0.8): Within `near` of `x`: 1 at `x` itself, -1 as far away as possible.
+		var at_ferry_0_8: float = 0.0
+		if distance_ferry < 0.8:
+			at_ferry_0_8 = 1.0 - distance_ferry / 0.8
+		else:
+			at_ferry_0_8 = (0.8 - distance_ferry) / 24.2
+		if fallen_atom > 0.0:
+			# fallen
+			state = 2
+			robustness = fallen_atom
+			reached = 0.0
+			limiting = -1
+		elif at_ferry_0_8 <= 0.0 and fallen_atom <= 0.0:
+			# !at(ferry, 0.8) & !fallen
+			state = 0
+			robustness = -fallen_atom if -fallen_atom < -at_ferry_0_8 else -at_ferry_0_8
+			var nearest: float = -fallen_atom if -fallen_atom < at_ferry_0_8 else at_ferry_0_8
+			if at_ferry_0_8 == nearest:
+				limiting = 0
+			else:
+				limiting = 2
+			reached = (1.0 + nearest) / 2.0
+		else:
+			# at(ferry, 0.8) & !fallen
+			state = 1
+			robustness = -fallen_atom if -fallen_atom < at_ferry_0_8 else at_ferry_0_8
+			reached = 0.5
+			limiting = -1
+	elif state == 1:
+		# F at(beacon, 1) & G !fallen
+		# at(beacon, 1)
+		var at_beacon_1: float = 0.0
+		if distance_beacon < 1.0:
+			at_beacon_1 = 1.0 - distance_beacon / 1.0
+		else:
+			at_beacon_1 = (1.0 - distance_beacon) / 24.0
+		if fallen_atom > 0.0:
+			# fallen
+			state = 2
+			robustness = fallen_atom
+			reached = 0.0
+			limiting = -1
+		elif at_beacon_1 <= 0.0 and fallen_atom <= 0.0:
+			# !at(beacon, 1) & !fallen
+			state = 1
+			robustness = -fallen_atom if -fallen_atom < -at_beacon_1 else -at_beacon_1
+			var nearest: float = -fallen_atom if -fallen_atom < at_beacon_1 else at_beacon_1
+			if at_beacon_1 == nearest:
+				limiting = 1
+			else:
+				limiting = 2
+			reached = 0.5 + (1.0 + nearest) / 2.0
+		else:
+			# at(beacon, 1) & !fallen
+			state = 3
+			robustness = -fallen_atom if -fallen_atom < at_beacon_1 else at_beacon_1
+			reached = 1.0
+			limiting = -1
+	elif state == 2:
+		# false
+		# true
+		state = 2
+		robustness = 1.0
+		reached = 0.0
+		limiting = -1
+	elif state == 3:
+		# G !fallen
+		if fallen_atom > 0.0:
+			# fallen
+			state = 2
+			robustness = fallen_atom
+			reached = 0.0
+			limiting = -1
+		else:
+			# !fallen
+			state = 3
+			robustness = -fallen_atom
+			reached = 1.0
+			limiting = -1
+
+	robustness += 0.0
+	verdict = VERDICTS[state]
+	accepting = ACCEPTING[state]
+	steps += 1
+	var before: float = progress
+	if reached > progress:
+		progress = reached
+	if done:
+		reward = 0.0
+	else:
+		reward = progress - before - 0.005
+		if verdict == Verdict.VIOLATED:
+			reward = reward - (200.0 - float(steps)) / 200.0
+		done = ENDS[state] or steps >= 200
+	return true
+
+
+## What remains to be satisfied.
+func label() -> String:
+	return LABELS[state]
+
+
+## The name of the limiting atom, "" for none.
+func limiting_atom() -> String:
+	return "" if limiting < 0 else ATOMS[limiting]
+
+
+## Why the last sample was refused.
+func message() -> String:
+	match problem:
+		Problem.NONE:
+			return ""
+		Problem.NOT_FINITE:
+			return "step %d: no finite number for the signal `%s`" % [steps + 1, SIGNALS[which]]
+	var reason: String = "is too large to compute"
+	if problem == Problem.BY_ZERO:
+		reason = "divides by zero"
+	elif problem == Problem.NO_ROOT:
+		reason = "takes a root or power that does not exist"
+	return "step %d: the atom `%s` %s" % [steps + 1, ATOMS[which], reason]
+
+
+# --- helpers ---
+
+
+func _refuse(reason: int, place: int) -> bool:
+	problem = reason
+	which = place
+	return false
+
+
+# The nearest value inside a range; the first time is reported.  `place` is the number of a signal,
+# or the number of signals plus the number of an atom.
+func _clamped(place: int, value: float, low: float, high: float) -> float:
+	var nearest: float = low if value < low else high
+	if not _noticed.has(place):
+		_noticed[place] = true
+		var count: int = SIGNALS.size()
+		var name: String = SIGNALS[place] if place < count else ATOMS[place - count]
+		var kind: String = "signal" if place < count else "atom"
+		var texts: Array = [steps + 1, kind, name, value, low, high, nearest]
+		notices.append("step %d: the %s `%s` is %s, outside [%s, %s]: it counts as %s" % texts)
+	return nearest
+
+
+# Brings a signal into its range, or records that it is not a finite number.
+func _read(place: int, value: float, low: float, high: float) -> float:
+	if problem != Problem.NONE:
+		return 0.0
+	if not _is_number(value):
+		problem = Problem.NOT_FINITE
+		which = place
+		return 0.0
+	return _clamped(place, value, low, high)
+
+
+# Whether a value is finite, and not NAN.
+func _is_number(value: float) -> bool:
+	return not (is_nan(value) or is_inf(value))

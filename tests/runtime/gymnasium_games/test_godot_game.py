@@ -1,0 +1,123 @@
+"""The example of Godot: its scenes, the monitor inside the game, its snapshots, and its trained agents."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tltl_runtime.gymnasium_games.game_file import read_game_file
+from tltl_runtime.gymnasium_games.scene_env import make_scene_env
+from tltl_runtime.spec.task import load_task
+from tltl_runtime.wire.clients import tltl_client
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.wire_game import WireGame
+
+Run = Callable[..., Outcome]
+FOLDER = ROOT / "examples" / "godot_game"
+GAME_FILE = FOLDER / "keep.game.toml"
+PROJECT = FOLDER / "project"
+CLIENT = Path(tltl_client.__file__).with_name("tltl_client_godot3.gd")
+SPECS = {"courtyard": "fetch", "pier": "ride"}
+SCENES = [(scene.name, variant) for scene in read_game_file(GAME_FILE).scenes for variant in scene.variants]
+
+needs_engine = pytest.mark.skipif(shutil.which("godot3-server") is None, reason="needs the program godot3-server")
+
+
+def game(*words: str) -> WireGame:
+    """Return the game, started with more words on its command line."""
+    wire = read_game_file(GAME_FILE).wire
+    assert wire is not None
+    return WireGame("keep", FOLDER, process=(*wire.process, *words))
+
+
+def actions(seed: int) -> Iterator[list[int]]:
+    """Yield random actions, each held for some steps."""
+    random = Random(seed)
+    while True:
+        action = [random.randrange(3), random.randrange(3)]
+        for _ in range(random.randrange(1, 12)):
+            yield action
+
+
+def test_the_game_has_a_copy_of_the_client() -> None:
+    assert (PROJECT / CLIENT.name).read_bytes() == CLIENT.read_bytes()
+
+
+@pytest.mark.parametrize("spec", SPECS.values())
+def test_the_monitors_inside_the_game_are_those_of_the_specs(tltlc: Run, tmp_path: Path, spec: str) -> None:  # noqa: F811
+    result = tltlc("compile", f"{FOLDER / 'keep.tltl'}:{spec}", "--target", "gdscript3", "-o", tmp_path)
+    assert result.status == 0, result.err
+    name = f"{spec}_monitor.gd"
+    assert (PROJECT / name).read_text(encoding="utf-8") == (tmp_path / name).read_text(encoding="utf-8")
+
+
+@needs_engine
+@pytest.mark.parametrize(("scene", "variant"), SCENES)
+def test_a_scene_can_be_played_and_says_where_things_are(scene: str, variant: str) -> None:
+    env = make_scene_env(GAME_FILE, scene, variant)
+    observation, _ = env.reset(seed=3)
+    assert env.observation_space.contains(observation)
+    positions = env.get_wrapper_attr("tltl_positions")()
+    assert {"player", "ferry", "beacon"} <= positions.keys()
+    assert ("guard_1" in positions) == (scene == "courtyard")
+    env.close()
+
+
+@needs_engine
+@pytest.mark.parametrize("scene", SPECS)
+def test_the_monitor_inside_says_the_same_as_the_one_outside_at_each_step(scene: str, tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    env = WireEnv(game(f"log={log}"), scene=scene)
+    monitor = load_task(f"{FOLDER / 'keep.tltl'}:{SPECS[scene]}", {}, None).monitor()
+    expected: list[tuple[Any, ...]] = []
+    moves = actions(5)
+    for seed in range(12):
+        env.reset(seed=seed)
+        monitor.reset()
+        expected.append(("begin", scene))
+        ended = False
+        for _ in range(60):
+            if ended:
+                break
+            _, _, ended, _, _ = env.step(next(moves))
+            step = monitor.step(env.tltl_signals())
+            expected.append((step.state, step.progress, step.reward, step.robustness, step.verdict))
+    env.close()
+    lines = [line.split(",") for line in log.read_text(encoding="utf-8").splitlines()]
+    inside: list[tuple[Any, ...]] = [
+        ("begin", line[1]) if line[0] == "begin" else (int(line[0]), *map(float, line[1:4]), line[4]) for line in lines
+    ]
+    assert inside == expected
+    assert len({line[4] for line in inside if line[0] != "begin"}) > 1
+
+
+@needs_engine
+def test_a_snapshot_brings_back_the_whole_game() -> None:
+    env = WireEnv(game(), scene="courtyard")
+    env.reset(seed=4)
+    moves = actions(1)
+    for _ in range(25):
+        env.step(next(moves))
+    data = env.tltl_snapshot()
+    later = [next(moves) for _ in range(30)]
+    first = [_outcome(env, action) for action in later]
+    env.reset(seed=9, options={"scene": "pier"})
+    env.step([2, 2])
+    env.tltl_restore(data)
+    assert [_outcome(env, action) for action in later] == first
+    env.close()
+
+
+def _outcome(env: WireEnv, action: list[int]) -> tuple[Any, ...]:
+    """Return what a step gives, or nothing once the episode has ended."""
+    try:
+        observation, _, ended, _, _ = env.step(action)
+    except Exception as error:  # noqa: BLE001
+        return (type(error).__name__,)
+    return observation.tolist(), ended, dict(env.tltl_signals()), dict(env.tltl_positions())
