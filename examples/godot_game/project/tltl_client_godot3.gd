@@ -45,9 +45,13 @@
 #     # func close():         called at the end
 #
 # A method returns `Tltl.refusal("there is no scene `crypt`")` where a request cannot be met.
-# Run the game as fast as the machine allows, and without a window:
+# `seed_` is null if the game does not declare the capability `seed`. Run the game as fast as the machine
+# allows, and without a window; 60 is the number of physics frames in a second of the project:
 #
 #     godot3-server --path project --fixed-fps 60 --disable-render-loop
+#
+# If a person may play the game, too, call `begin` only if OS.has_environment("TLTL_PORT"), and record
+# the play with a `Recorder`.
 #
 # A game that needs no physics of the engine has a method `step(action)`, which plays one tick and
 # returns the state; `tltl.play(self)` then answers all requests. A game that is started first, and
@@ -61,7 +65,7 @@ extends Reference
 
 const PROTOCOL = 1
 const LONGEST_LINE = 33554432
-const KINDS = ["reset", "step", "snapshot", "restore", "screenshot", "close"]
+const KINDS = ["step", "reset", "snapshot", "restore", "screenshot", "close"]
 
 # Why the connection has ended or could not be made; empty if tltlc has closed it.
 var problem = ""
@@ -286,8 +290,8 @@ func _request() -> String:
 		var body = message["error"]
 		_fail(str(body.get("message") if body is Dictionary else body))
 		return ""
-	for kind in message:
-		if kind in KINDS:
+	for kind in KINDS:
+		if message.has(kind):
 			_body = message[kind]
 			return kind
 	return "" if message.empty() else message.keys()[0]

@@ -118,6 +118,6 @@ def _outcome(env: WireEnv, action: list[int]) -> tuple[Any, ...]:
     """Return what a step gives, or nothing once the episode has ended."""
     try:
         observation, _, ended, _, _ = env.step(action)
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         return (type(error).__name__,)
     return observation.tolist(), ended, dict(env.tltl_signals()), dict(env.tltl_positions())

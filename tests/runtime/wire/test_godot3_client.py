@@ -61,6 +61,32 @@ def test_the_client_passes_the_conversation(project: Path, words: tuple[str, ...
     assert len(lines) == EXCHANGES
 
 
+def test_the_game_in_the_comment_can_be_played(project: Path) -> None:
+    lines = CLIENT.read_text(encoding="utf-8").splitlines()
+    first = lines.index("#     extends Spatial")
+    last = lines.index("#     # Optional methods:")
+    script = "\n".join(line.removeprefix("#").removeprefix("     ") for line in lines[first:last])
+    (project / "ice.gd").write_text(script, encoding="utf-8")
+    (project / "ice.tscn").write_text(
+        '[gd_scene load_steps=2 format=2]\n[ext_resource path="res://ice.gd" type="Script" id=1]\n'
+        '[node name="Ice" type="Spatial"]\nscript = ExtResource( 1 )\n'
+        '[node name="Player" type="KinematicBody" parent="."]\n',
+        encoding="utf-8",
+    )
+    words = [*command(project), "ice.tscn"]
+    words[words.index("10")] = "60"
+    env = WireEnv(WireGame("ice", project, process=tuple(words)))
+    env.reset(seed=2)
+    ended, steps = False, 0
+    while not ended:
+        observation, _, ended, _, _ = env.step(2)
+        steps += 1
+        assert observation.tolist() == pytest.approx([2 + steps / 3, 20], abs=1e-3)
+    assert steps == 25
+    assert env.get_wrapper_attr("tltl_cause")() == "goal"
+    env.close()
+
+
 def test_without_tltlc_the_game_says_why_it_ends(project: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("TLTL_")}
     result = subprocess.run(
