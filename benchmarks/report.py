@@ -16,6 +16,7 @@ from benchmarks import (
     expert_report,
     game,
     game_report,
+    godot,
     infinite,
     judge,
     mine,
@@ -68,6 +69,7 @@ def render(store: Store) -> str:
         engine_report.section(store),
         _batch(store.section(batch.SECTION)),
         game_report.speed_section(store.section(game.SECTION)),
+        godot.section(store.section(godot.SECTION)),
         game_report.safety_section(store.section(safety.SECTION)),
         expert_report.section(store.section(expert.SECTION)),
         training_report.section(store.section(training.SECTION)),
@@ -164,6 +166,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from engine_report.goals(store)
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
+    yield from godot.goals(store.section(godot.SECTION))
     yield from expert_report.goals(store)
     yield from training_report.goals(store.section(training.SECTION))
     yield from verdicts_report.goals(store.section(verdicts.SECTION))
