@@ -3,7 +3,7 @@
 # Fetch the key, open the door with it, board the ferry, and walk to the beacon; do not meet the
 # guard.
 #
-#     F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 0.8) & X F at(beacon, 1)))) & G !caught & G
+#     F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1)))) & G !caught & G
 #     !fallen
 #
 # For Godot 3.  `step` allocates nothing, except for a notice.  In a game:
@@ -48,7 +48,7 @@ const FIELDS: Array = [
 const ATOMS: Array = [
 	"at(key, 0.8)",
 	"at(door, 1.2)",
-	"at(ferry, 0.8)",
+	"at(ferry, 1.2)",
 	"at(beacon, 1)",
 	"caught",
 	"fallen",
@@ -57,10 +57,10 @@ const ATOMS: Array = [
 ## For each state: what remains to be satisfied, the verdict, whether it is accepting, whether an
 ## episode ends on entry.
 const LABELS: Array = [
-	"F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 0.8) & X F at(beacon, 1)))) & G(!caught & !fallen)",
-	"F(at(door, 1.2) & X F(at(ferry, 0.8) & X F at(beacon, 1))) & G(!caught & !fallen)",
+	"F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1)))) & G(!caught & !fallen)",
+	"F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1))) & G(!caught & !fallen)",
 	"false",
-	"F(at(ferry, 0.8) & X F at(beacon, 1)) & G(!caught & !fallen)",
+	"F(at(ferry, 1.2) & X F at(beacon, 1)) & G(!caught & !fallen)",
 	"F at(beacon, 1) & G(!caught & !fallen)",
 	"G(!caught & !fallen)",
 ]
@@ -161,7 +161,7 @@ func step(sample: Sample) -> bool:
 
 	var reached: float = 0.0
 	if state == 0:
-		# F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 0.8) & X F at(beacon, 1)))) & G(!caught &
+		# F(at(key, 0.8) & X F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1)))) & G(!caught &
 		# !fallen)
 		# at(key, 0.8): Within `near` of `x`: 1 at `x` itself, -1 as far away as possible.
 		var at_key_0_8: float = 0.0
@@ -194,7 +194,7 @@ func step(sample: Sample) -> bool:
 			reached = 0.25
 			limiting = -1
 	elif state == 1:
-		# F(at(door, 1.2) & X F(at(ferry, 0.8) & X F at(beacon, 1))) & G(!caught & !fallen)
+		# F(at(door, 1.2) & X F(at(ferry, 1.2) & X F at(beacon, 1))) & G(!caught & !fallen)
 		# at(door, 1.2)
 		var at_door_1_2: float = 0.0
 		if distance_door < 1.2:
@@ -233,25 +233,25 @@ func step(sample: Sample) -> bool:
 		reached = 0.0
 		limiting = -1
 	elif state == 3:
-		# F(at(ferry, 0.8) & X F at(beacon, 1)) & G(!caught & !fallen)
-		# at(ferry, 0.8)
-		var at_ferry_0_8: float = 0.0
-		if distance_ferry < 0.8:
-			at_ferry_0_8 = 1.0 - distance_ferry / 0.8
+		# F(at(ferry, 1.2) & X F at(beacon, 1)) & G(!caught & !fallen)
+		# at(ferry, 1.2)
+		var at_ferry_1_2: float = 0.0
+		if distance_ferry < 1.2:
+			at_ferry_1_2 = 1.0 - distance_ferry / 1.2
 		else:
-			at_ferry_0_8 = (0.8 - distance_ferry) / 24.2
+			at_ferry_1_2 = (1.2 - distance_ferry) / 23.8
 		if caught_atom > 0.0 or fallen_atom > 0.0:
 			# caught | fallen
 			state = 2
 			robustness = fallen_atom if fallen_atom > caught_atom else caught_atom
 			reached = 0.0
 			limiting = -1
-		elif at_ferry_0_8 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
-			# !at(ferry, 0.8) & !caught & !fallen
+		elif at_ferry_1_2 <= 0.0 and caught_atom <= 0.0 and fallen_atom <= 0.0:
+			# !at(ferry, 1.2) & !caught & !fallen
 			state = 3
-			robustness = _min((-caught_atom if -caught_atom < -at_ferry_0_8 else -at_ferry_0_8), -fallen_atom)
-			var nearest: float = _min((-caught_atom if -caught_atom < at_ferry_0_8 else at_ferry_0_8), -fallen_atom)
-			if at_ferry_0_8 == nearest:
+			robustness = _min((-caught_atom if -caught_atom < -at_ferry_1_2 else -at_ferry_1_2), -fallen_atom)
+			var nearest: float = _min((-caught_atom if -caught_atom < at_ferry_1_2 else at_ferry_1_2), -fallen_atom)
+			if at_ferry_1_2 == nearest:
 				limiting = 2
 			elif -caught_atom == nearest:
 				limiting = 4
@@ -259,9 +259,9 @@ func step(sample: Sample) -> bool:
 				limiting = 5
 			reached = 0.5 + (1.0 + nearest) / 4.0
 		else:
-			# at(ferry, 0.8) & !caught & !fallen
+			# at(ferry, 1.2) & !caught & !fallen
 			state = 4
-			robustness = _min((-caught_atom if -caught_atom < at_ferry_0_8 else at_ferry_0_8), -fallen_atom)
+			robustness = _min((-caught_atom if -caught_atom < at_ferry_1_2 else at_ferry_1_2), -fallen_atom)
 			reached = 0.75
 			limiting = -1
 	elif state == 4:

@@ -76,7 +76,6 @@ func begin_by_hand() -> void:
 	randomize()
 	reset("courtyard", "v0", randi())
 	recorder.begin()
-	recorder.sample(level.signals())
 
 
 func reset(scene, variant, seed_) -> Dictionary:

@@ -19,8 +19,8 @@ const FARTHEST = 25.0
 const HIDDEN = Vector3(5, 0, 5)
 
 # The middle of the ferry's deck moves between these places, and the guard walks between the others.
-export var ferry_west = Vector3(5.05, 0, 0)
-export var ferry_east = Vector3(7.95, 0, 0)
+export var ferry_west = Vector3(5.55, 0, 0)
+export var ferry_east = Vector3(7.45, 0, 0)
 export var guard_from = Vector3(-3, 0, -3.5)
 export var guard_to = Vector3(-3, 0, 3.5)
 export var start = Vector3(-6, 0, 3)
@@ -148,7 +148,7 @@ func update_bodies() -> void:
 
 func on_ferry() -> bool:
 	var offset = player.translation - ferry.translation
-	return abs(offset.x) < 1.1 and abs(offset.z) < 1.3 and abs(offset.y) < 0.3
+	return abs(offset.x) < 1.6 and abs(offset.z) < 1.3 and abs(offset.y) < 0.3
 
 
 func is_over() -> bool:

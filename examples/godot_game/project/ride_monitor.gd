@@ -2,7 +2,7 @@
 #
 # Board the ferry, and walk to the beacon.
 #
-#     F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen
+#     F(at(ferry, 1.2) & X F at(beacon, 1)) & G !fallen
 #
 # For Godot 3.  `step` allocates nothing, except for a notice.  In a game:
 #
@@ -29,12 +29,12 @@ enum Problem { NONE, NOT_FINITE, BY_ZERO, NO_ROOT, TOO_LARGE, TOGETHER, WRONG_PA
 ## Names as the spec has them, and the members of a sample, in the same order as the signals.
 const SIGNALS: Array = ["distance(ferry)", "distance(beacon)", "fallen"]
 const FIELDS: Array = ["distance_ferry", "distance_beacon", "fallen"]
-const ATOMS: Array = ["at(ferry, 0.8)", "at(beacon, 1)", "fallen"]
+const ATOMS: Array = ["at(ferry, 1.2)", "at(beacon, 1)", "fallen"]
 
 ## For each state: what remains to be satisfied, the verdict, whether it is accepting, whether an
 ## episode ends on entry.
 const LABELS: Array = [
-	"F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen",
+	"F(at(ferry, 1.2) & X F at(beacon, 1)) & G !fallen",
 	"F at(beacon, 1) & G !fallen",
 	"false",
 	"G !fallen",
@@ -119,33 +119,33 @@ func step(sample: Sample) -> bool:
 
 	var reached: float = 0.0
 	if state == 0:
-		# F(at(ferry, 0.8) & X F at(beacon, 1)) & G !fallen
-		# at(ferry, 0.8): Within `near` of `x`: 1 at `x` itself, -1 as far away as possible.
-		var at_ferry_0_8: float = 0.0
-		if distance_ferry < 0.8:
-			at_ferry_0_8 = 1.0 - distance_ferry / 0.8
+		# F(at(ferry, 1.2) & X F at(beacon, 1)) & G !fallen
+		# at(ferry, 1.2): Within `near` of `x`: 1 at `x` itself, -1 as far away as possible.
+		var at_ferry_1_2: float = 0.0
+		if distance_ferry < 1.2:
+			at_ferry_1_2 = 1.0 - distance_ferry / 1.2
 		else:
-			at_ferry_0_8 = (0.8 - distance_ferry) / 24.2
+			at_ferry_1_2 = (1.2 - distance_ferry) / 23.8
 		if fallen_atom > 0.0:
 			# fallen
 			state = 2
 			robustness = fallen_atom
 			reached = 0.0
 			limiting = -1
-		elif at_ferry_0_8 <= 0.0 and fallen_atom <= 0.0:
-			# !at(ferry, 0.8) & !fallen
+		elif at_ferry_1_2 <= 0.0 and fallen_atom <= 0.0:
+			# !at(ferry, 1.2) & !fallen
 			state = 0
-			robustness = -fallen_atom if -fallen_atom < -at_ferry_0_8 else -at_ferry_0_8
-			var nearest: float = -fallen_atom if -fallen_atom < at_ferry_0_8 else at_ferry_0_8
-			if at_ferry_0_8 == nearest:
+			robustness = -fallen_atom if -fallen_atom < -at_ferry_1_2 else -at_ferry_1_2
+			var nearest: float = -fallen_atom if -fallen_atom < at_ferry_1_2 else at_ferry_1_2
+			if at_ferry_1_2 == nearest:
 				limiting = 0
 			else:
 				limiting = 2
 			reached = (1.0 + nearest) / 2.0
 		else:
-			# at(ferry, 0.8) & !fallen
+			# at(ferry, 1.2) & !fallen
 			state = 1
-			robustness = -fallen_atom if -fallen_atom < at_ferry_0_8 else at_ferry_0_8
+			robustness = -fallen_atom if -fallen_atom < at_ferry_1_2 else at_ferry_1_2
 			reached = 0.5
 			limiting = -1
 	elif state == 1:
