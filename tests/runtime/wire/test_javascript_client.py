@@ -1,0 +1,209 @@
+"""The client in JavaScript: it passes the conversation in Node and in a page, and records traces that tltlc reads."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import Final
+
+import pytest
+
+from tests.runtime.wire import conversation
+from tests.runtime.wire.test_faults import GAMES
+from tests.waiting import HANG_S, until
+from tltl_runtime.wire import clients
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.wire_game import WireGame
+
+CLIENT: Final = Path(clients.__file__).with_name("tltl_client.js")
+NODE: Final = shutil.which("node") or ""
+BROWSER: Final = shutil.which("chromium-headless-shell") or shutil.which("chromium") or ""
+
+pytestmark = pytest.mark.skipif(not NODE, reason="needs Node: apt-get install nodejs")
+needs_browser = pytest.mark.skipif(not BROWSER, reason="needs Chromium: apt-get install chromium-headless-shell")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Return a folder with the counter game and the client, as a studio has them."""
+    game = tmp_path / "game"
+    shutil.copytree(GAMES / "javascript", game)
+    shutil.copy(CLIENT, game)
+    return game
+
+
+def node(folder: Path, script: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run a module in Node, with only these environment variables."""
+    (folder / "script.js").write_text(script, encoding="utf-8")
+    return subprocess.run(
+        [NODE, "script.js"], cwd=folder, capture_output=True, text=True, env=variables, timeout=HANG_S, check=False
+    )
+
+
+def wire_game(folder: Path, *words: str) -> WireGame:
+    return WireGame("counter", folder, words, start_s=HANG_S, step_s=HANG_S)
+
+
+def page_command(folder: Path, page: str) -> list[str]:
+    """Return a command that opens the game in a page; it changes to the folder first, as tltlc does."""
+    start = "import os, sys; os.chdir(sys.argv[1]); os.execvp(sys.argv[2], sys.argv[2:])"
+    return [sys.executable, "-c", start, str(folder), NODE, "tltl_client.js", page, BROWSER]
+
+
+def processes_with(text: str) -> list[int]:
+    """Return the ids of the processes whose command contains a text, on Linux."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            command = (entry / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if text.encode() in command and int(entry.name) != os.getpid():
+            found.append(int(entry.name))
+    return found
+
+
+def test_the_client_passes_the_conversation_in_node(folder: Path) -> None:
+    lines: list[str] = []
+    assert conversation.check([NODE, str(folder / "counter.js")], lines.append), "\n".join(lines)
+    assert len(lines) == len(conversation.EXCHANGES) + len(conversation.REFUSALS) + 10
+
+
+@needs_browser
+def test_the_client_passes_the_conversation_in_a_page(folder: Path) -> None:
+    pytest.importorskip("websockets")
+    # Its name is in the address of the page, and so in the command of the browser.
+    page = "counter_of_this_test.html"
+    (folder / "index.html").rename(folder / page)
+    lines: list[str] = []
+    assert conversation.check(page_command(folder, page), lines.append), "\n".join(lines)
+    assert len(lines) == len(conversation.EXCHANGES) + len(conversation.REFUSALS) + 10
+    until(lambda: not processes_with(page), "the end of all browsers")
+
+
+def test_without_tltlc_the_game_says_why_it_ends(folder: Path) -> None:
+    result = subprocess.run(
+        [NODE, "counter.js"], cwd=folder, capture_output=True, text=True, env={}, timeout=HANG_S, check=False
+    )
+    assert result.returncode == 1
+    assert result.stderr == "tltlc must start this game: the variable TLTL_PORT is not set\n"
+
+
+def test_a_game_that_listens_plays_one_tltlc_after_the_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    variables = {**os.environ, "TLTL_TOKEN": "open sesame"}
+    words = [NODE, "counter.js", "--listen", str(port)]
+    with subprocess.Popen(words, cwd=folder, env=variables) as process:
+        game = WireGame("counter", folder, connect=f"127.0.0.1:{port}", start_s=HANG_S, step_s=HANG_S)
+        monkeypatch.setenv("TLTL_TOKEN", "guessed")
+        with pytest.raises(WireError, match="the token is wrong"):
+            until(lambda: opened(game), "the game to listen")
+        monkeypatch.setenv("TLTL_TOKEN", "open sesame")
+        for _ in range(2):
+            env = until(lambda: opened(game), "the game to listen again")
+            assert env is not None
+            env.reset(seed=3)
+            assert env.step(2)[2]
+            env.close()
+        process.terminate()
+
+
+def opened(game: WireGame) -> WireEnv | None:
+    """Return the game, or None if nobody listens at its port yet."""
+    try:
+        return WireEnv(game)
+    except WireError as error:
+        if "refused" in str(error):
+            return None
+        raise
+
+
+NOT_FINITE = """
+import { play, state } from "./tltl_client.js";
+const hello = { signals: { x: {} }, actions: { type: "discrete", n: 2 } };
+await play({ hello, reset: () => state({ signals: { x: 1 } }), step: () => state({ signals: { x: 0 / 0 } }) });
+"""
+
+
+def test_a_number_that_is_not_finite_is_an_error_in_the_game(folder: Path) -> None:
+    (folder / "broken.js").write_text(NOT_FINITE, encoding="utf-8")
+    env = WireEnv(wire_game(folder, NODE, "broken.js"))
+    env.reset()
+    with pytest.raises(WireError) as caught:
+        env.step(1)
+    assert "x is NaN, and numbers must be finite" in (caught.value.diagnostics[0].help or "")
+
+
+@needs_browser
+def test_an_error_in_a_page_is_shown(folder: Path) -> None:
+    pytest.importorskip("websockets")
+    (folder / "counter.js").write_text(NOT_FINITE, encoding="utf-8")
+    env = WireEnv(wire_game(folder, NODE, "tltl_client.js", "index.html", BROWSER))
+    env.reset()
+    with pytest.raises(WireError) as caught:
+        env.step(1)
+    assert "x is NaN, and numbers must be finite" in (caught.value.diagnostics[0].help or "")
+
+
+RECORD = """
+import { Recorder } from "./tltl_client.js";
+const recorder = new Recorder("traces", ["near(a, b)", "seen"], { clockHz: 60 });
+for (const last of [true, false]) {
+  console.log(recorder.begin());
+  for (let step = 0; step < 4; step++) {
+    recorder.sample({ "near(a, b)": step / 3, seen: last && step === 3, unused: 1 });
+  }
+}
+recorder.end();
+"""
+
+
+def test_a_recorded_trace_is_judged(folder: Path) -> None:
+    result = node(folder, RECORD)
+    assert result.stdout.split() == ["traces/trace-0001.csv", "traces/trace-0002.csv"], result.stderr
+    assert (folder / "traces" / "trace-0002.csv").read_text(encoding="utf-8").splitlines()[:3] == [
+        'time,"near(a, b)",seen',
+        "0,0,false",
+        "0.016666666666666666,0.3333333333333333,false",
+    ]
+    spec = folder / "see.tltl"
+    spec.write_text(
+        "clock 60 Hz\nsignal near(a, b): number in [0, 1]\nsignal seen: bool\nspec see = F seen\n", encoding="utf-8"
+    )
+    words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder / "traces")]
+    judged = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert "1 of 2 accepted" in judged.stdout, judged.stderr
+
+
+def test_a_recorder_overwrites_no_trace(folder: Path) -> None:
+    traces = folder / "traces"
+    traces.mkdir()
+    (traces / "trace-0001.csv").write_text("kept", encoding="utf-8")
+    script = 'import { Recorder } from "./tltl_client.js"; new Recorder("traces", ["x"]).sample({ x: 1e-7 });'
+    assert node(folder, script).returncode == 0
+    assert (traces / "trace-0001.csv").read_text(encoding="utf-8") == "kept"
+    assert (traces / "trace-0002.csv").read_text(encoding="utf-8") == "x\n1e-7\n"
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("0 / 0", "the signal x is NaN, and numbers must be finite"),
+        ("-1 / 0", "the signal x is -Infinity, and numbers must be finite"),
+        ("undefined", "the signal x has no value: undefined"),
+        ("'1'", "the signal x has no value: 1"),
+    ],
+)
+def test_a_recorder_refuses_what_is_no_finite_number(folder: Path, value: str, message: str) -> None:
+    script = f"""
+import {{ Recorder }} from "./tltl_client.js";
+try {{ new Recorder("traces", ["x"]).sample({{ x: {value} }}); }} catch (error) {{ console.log(error.message); }}
+"""
+    assert node(folder, script).stdout == f"{message}\n"
+    assert not (folder / "traces").exists()
