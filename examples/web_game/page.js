@@ -1,0 +1,104 @@
+// The game in a page: tltlc plays it if it has opened the page, and otherwise a person does, with the arrow keys.
+
+import { CLOCK_HZ, Courier, SIZE, isWall } from "./courier.js";
+import { Monitor } from "./deliver_monitor.mjs";
+import { Recorder, array, isStartedByTltlc, play } from "./tltl_client.js";
+
+const KEYS = { ArrowLeft: 1, ArrowRight: 2, ArrowUp: 3, ArrowDown: 4 };
+const element = (id) => document.getElementById(id);
+const canvas = element("map");
+const context = canvas.getContext("2d", { willReadFrequently: true });
+const cell = canvas.width / SIZE[0];
+
+/** Draw the game; things are `share` of their way from where they were `before` to where they are. */
+function draw(now, before = now, share = 1) {
+  context.fillStyle = "#dfe7d8";
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.fillStyle = "#5b6770";
+  for (let x = 0; x < SIZE[0]; x++) {
+    for (let y = 0; y < SIZE[1]; y++) {
+      if (isWall(now.scene, [x, y])) context.fillRect(x * cell, canvas.height - (y + 1) * cell, cell, cell);
+    }
+  }
+  const between = (name) => now[name].map((value, axis) => before[name][axis] + share * (value - before[name][axis]));
+  dot(now.door, "#8a5a2b", 0.45);
+  dot(between("dog"), "#b3261e", 0.4);
+  dot(between("courier"), "#1f5fa8", 0.4);
+  dot(now.carrying ? between("courier") : now.parcel, "#e0a100", 0.2);
+}
+
+function dot([x, y], colour, radius) {
+  context.fillStyle = colour;
+  context.beginPath();
+  context.arc(x * cell, canvas.height - y * cell, radius * cell, 0, 2 * Math.PI);
+  context.fill();
+}
+
+/** The game that can also show what the page draws. */
+class DrawnCourier extends Courier {
+  screenshot() {
+    draw(this.now);
+    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+    return array(data, "uint8", [canvas.height, canvas.width, 4]);
+  }
+}
+
+/** The page's own loop: a tick each quarter of a second, and pictures as often as the screen can show them. */
+function playByHand() {
+  const game = new Courier();
+  const monitor = new Monitor();
+  const recorder = new Recorder("courier", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
+  const held = [];
+  let action = 0;
+  let before, state, start;
+
+  function begin() {
+    state = game.reset("yard", "v0", Math.floor(Math.random() * 2 ** 31));
+    before = structuredClone(game.now);
+    monitor.reset();
+    recorder.begin();
+    start = performance.now();
+  }
+
+  function tick() {
+    before = structuredClone(game.now);
+    state = game.step(held.at(-1) ?? action);
+    action = 0;
+    recorder.sample(state.signals);
+    const result = monitor.step(state.signals);
+    element("progress").value = result.progress;
+    element("text").textContent = `Still to do: ${result.label}`;
+    if (result.done || state.ended) {
+      element("text").textContent = result.accepting ? "Delivered! Press a key." : "That went wrong. Press a key.";
+      element("save").disabled = false;
+      state.ended = true;
+    }
+  }
+
+  addEventListener("keydown", (event) => {
+    if (!(event.key in KEYS)) return;
+    event.preventDefault();
+    if (state.ended) begin();
+    else if (!event.repeat) held.push((action = KEYS[event.key]));
+  });
+  addEventListener("keyup", (event) => {
+    const index = held.indexOf(KEYS[event.key]);
+    if (index >= 0) held.splice(index, 1);
+  });
+  element("save").addEventListener("click", () => recorder.download());
+
+  function frame(time) {
+    const share = Math.max((time - start) * CLOCK_HZ / 1000, 0);
+    if (share >= 1 && !state.ended) {
+      tick();
+      start = time;
+    }
+    draw(game.now, before, Math.min(share, 1));
+    requestAnimationFrame(frame);
+  }
+  begin();
+  requestAnimationFrame(frame);
+}
+
+if (isStartedByTltlc()) await play(new DrawnCourier());
+else playByHand();
