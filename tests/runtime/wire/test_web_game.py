@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import shutil
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ import pytest
 
 import tltlc as compiler
 from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tests.runtime.regression.page import chromium
 from tests.runtime.wire.test_javascript_client import BROWSER, CLIENT, NODE, needs_browser
 from tests.waiting import HANG_S
 from tltl_runtime import TltlEnv
@@ -53,6 +57,25 @@ class JudgedCourier extends Courier {
 }
 await play(new JudgedCourier());
 """
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serve a folder; give the address."""
+    handler = partial(QuietHandler, directory=str(folder))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+        thread.join()
+
+
+class QuietHandler(SimpleHTTPRequestHandler):
+    """Serves files, and logs nothing."""
+
+    def log_message(self, *_: object) -> None:
+        """Log nothing."""
 
 
 @contextmanager
@@ -151,6 +174,28 @@ def test_the_monitor_inside_agrees_with_the_one_outside(tmp_path: Path) -> None:
     assert {"holding", "violated"} <= verdicts
 
 
+@pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
+def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    with served(FOLDER) as address, chromium.browser() as browser:
+        page = browser.new_page()
+        page.set_default_timeout(chromium.HANG_MS)
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(f"{address}/index.html")
+        page.keyboard.down("ArrowRight")
+        page.wait_for_function("document.getElementById('progress').value > 0")
+        page.wait_for_function("!document.getElementById('save').disabled")
+        page.keyboard.up("ArrowRight")
+        with page.expect_download() as download:
+            page.click("#save")
+        trace = tmp_path / download.value.suggested_filename
+        download.value.save_as(trace)
+        assert errors == []
+    assert trace.name == "courier-trace-0001.csv"
+    result = tltlc("monitor", f"{SPEC}:deliver", trace)
+    assert result.out.splitlines()[-1].startswith("not accepted"), result.err
+
+
 def _careful_action(game: WireEnv) -> int:
     """Return the action that leads nearer to what comes next, and not to the dog; stay if there is none.
 
@@ -166,3 +211,13 @@ def _careful_action(game: WireEnv) -> int:
             best, chosen = signals[target], action
         game.tltl_restore(kept)
     return chosen
+
+
+def test_the_trained_agent_delivers(tltlc: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:  # noqa: F811
+    monkeypatch.chdir(FOLDER)
+    result = tltlc("regress", "suite.toml", "--out", tmp_path, "--workers", "1")
+    assert result.status in (0, 1), result.err
+    lines = [line.split() for line in result.out.splitlines() if line.startswith("yard")]
+    verdicts = {words[0]: words[1] for words in lines}
+    assert verdicts["yard:v0"] == "pass"
+    assert "fail" in (verdicts["yard:fast_dog"], verdicts["yard:new_address"])

@@ -134,13 +134,12 @@ export async function play(game, client = null) {
       }
     }
   } catch (error) {
-    problem = error.message || (error instanceof Disconnected ? "" : String(error));
+    problem = error instanceof Disconnected ? error.message : String(error);
     if (!(error instanceof Disconnected)) throw error;
     if (problem && !given("end")) fail(problem);
   } finally {
-    client?.close();
+    client?.close(problem);
     await game.close?.();
-    await tellOpener(problem);
   }
 }
 
@@ -202,10 +201,9 @@ export class Client {
    * Throws Disconnected if tltlc has closed the connection, or refuses this game.
    */
   async request() {
-    const text = await this.#connection.receive();
-    if (text === null) throw new Disconnected("");
-    const message = JSON.parse(text);
-    if (Object.hasOwn(message, "error")) throw new Disconnected(String(message.error?.message ?? message.error));
+    const message = await this.#connection.receive();
+    if (message === null) throw new Disconnected("");
+    if (Object.hasOwn(message, "error")) throw new Disconnected(errorText(message));
     for (const kind of KINDS) {
       if (Object.hasOwn(message, kind)) return [kind, message[kind] ?? {}];
     }
@@ -228,9 +226,9 @@ export class Client {
     this.#connection.send(JSON.stringify(message));
   }
 
-  /** Close the connection. */
-  close() {
-    this.#connection.close();
+  /** Close the connection. If the game has failed, `problem` says why. */
+  close(problem = "") {
+    this.#connection.close(problem);
   }
 }
 
@@ -253,13 +251,8 @@ export async function listen(hello, port, { token = given("token") } = {}) {
 }
 
 /** Return why the game refuses the first message of tltlc; empty if it accepts the message. */
-function refusal(text, token) {
-  let hello;
-  try {
-    hello = JSON.parse(text)?.hello;
-  } catch {
-    // It is no JSON.
-  }
+function refusal(message, token) {
+  const hello = message?.hello;
   if (typeof hello !== "object" || hello === null) return "the first line must be a `hello`";
   if (hello.tltl !== PROTOCOL) return `this game speaks version ${PROTOCOL} of the protocol`;
   if (token && hello.token !== token) {
@@ -379,9 +372,17 @@ class Inbox {
   #waiting = null;
   #hasEnded = false;
 
+  /** Add a message, and return it; what is no object counts as an empty one. */
   add(text) {
-    if (this.#waiting) this.#resolve(text);
-    else this.#messages.push(text);
+    let message = {};
+    try {
+      message = Object(JSON.parse(text));
+    } catch {
+      // It is no JSON.
+    }
+    if (this.#waiting) this.#resolve(message);
+    else this.#messages.push(message);
+    return message;
   }
 
   end() {
@@ -395,10 +396,10 @@ class Inbox {
     return this.#hasEnded ? null : new Promise((resolve) => (this.#waiting = resolve));
   }
 
-  #resolve(text) {
+  #resolve(message) {
     const resolve = this.#waiting;
     this.#waiting = null;
-    resolve(text);
+    resolve(message);
   }
 }
 
@@ -443,15 +444,22 @@ class LineConnection {
   }
 }
 
-/** Messages over WebSocket, from a page. */
+/** Messages over WebSocket, from a page. The program that opened the page is told when they end. */
 class WebConnection {
   #socket;
   #inbox = new Inbox();
 
   constructor(socket) {
     this.#socket = socket;
-    socket.onmessage = (event) => this.#inbox.add(event.data);
-    socket.onclose = () => this.#inbox.end();
+    let problem = "";
+    socket.onmessage = (event) => {
+      const message = this.#inbox.add(event.data);
+      if (Object.hasOwn(message, "error")) problem = errorText(message);
+    };
+    socket.onclose = () => {
+      this.#inbox.end();
+      tellOpener(problem);
+    };
   }
 
   receive() {
@@ -462,7 +470,8 @@ class WebConnection {
     if (this.#socket.readyState === WebSocket.OPEN) this.#socket.send(text);
   }
 
-  close() {
+  close(problem) {
+    tellOpener(problem);
     this.#socket.close();
   }
 }
@@ -482,7 +491,11 @@ function connectWebSocket(port) {
   return new Promise((resolve, reject) => {
     const socket = new WebSocket(`ws://127.0.0.1:${Number(port)}`);
     socket.onopen = () => resolve(new WebConnection(socket));
-    socket.onerror = () => reject(new Disconnected(`cannot connect to tltlc at port ${port}`));
+    socket.onerror = () => {
+      const problem = `cannot connect to tltlc at port ${port}`;
+      tellOpener(problem);
+      reject(new Disconnected(problem));
+    };
   });
 }
 
@@ -519,10 +532,14 @@ function fail(message) {
   if (IS_NODE) process.exitCode = 1;
 }
 
-/** Tell the program that opened this page that the game has ended. */
-async function tellOpener(problem) {
+/** Tell the program that opened this page, if one did, that the game has ended; it hears only the first call. */
+function tellOpener(problem) {
   const path = given("end");
-  if (path) await fetch(`/${path}`, { method: "POST", body: problem });
+  if (path) fetch(`/${path}`, { method: "POST", body: problem }).catch(() => {});
+}
+
+function errorText(message) {
+  return String(message.error?.message ?? message.error);
 }
 
 // --- values ----------------------------------------------------------------------------------------------------------
