@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
 import click
 
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.interfaces.cli import plugins
 from tltlc.interfaces.cli.paths import OutputPath
 
@@ -19,6 +21,7 @@ Examples:
   tltlc test my_game
   tltlc new my_vault --level vault
   tltlc play my_vault/vault.toml
+  tltlc new my_hall --game python
 """
 )
 @click.argument("folder", metavar="NAME", type=OutputPath("folder"))
@@ -28,10 +31,15 @@ Examples:
     help="Copy a level of the stealth game with its spec, assets and overlays: the small level `vault`, or one from "
     "`tltlc list levels`.",
 )
-def command(folder: Path, level: str | None) -> int:
+@click.option(
+    "--game",
+    metavar="KIND",
+    help="Write a small game that agents can play, with its level, spec, suite and CI file: `python`.",
+)
+def command(folder: Path, level: str | None, game: str | None) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
 
-    With --level, the folder contains a level for you to change instead.
+    With --level, the folder contains a level for you to change instead; with --game, a game.
     """
     from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report
@@ -40,14 +48,30 @@ def command(folder: Path, level: str | None) -> int:
     with Report() as report:
         if not is_free(folder):
             raise occupied_folder_error(folder, "choose another name, or an empty folder")
-        files, next_command = _FILES, f"test {shlex.quote(str(folder))}"
-        if level is not None:
-            files = plugins.load_from("tltlc.levels", "new", "`tltlc new --level`")(level)
-            next_command = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
+        files, steps = _files(folder, level, game)
         for path in write_files(folder, files, advice="choose another place, e.g. `tltlc new my_game`"):
             report.say(f"wrote {path}")
-        report.say(f"Next: tltlc {next_command}")
+        for step in steps:
+            report.say(f"Next: {step}")
     return report.status
+
+
+def _files(folder: Path, level: str | None, game: str | None) -> tuple[Mapping[str, str], tuple[str, ...]]:
+    """Return the texts of the new files by path, and the commands that follow.
+
+    Raises:
+        TltlError: TLT0700, both a level and a game; the errors of the plugin that knows the level or the game.
+    """
+    if level is not None and game is not None:
+        title, help_ = "a new folder has either a level or a game", "leave out --level or --game"
+        raise TltlError([Diagnostic("TLT0700", title, help=help_)])
+    if game is not None:
+        texts, commands = plugins.load_from("tltlc.games", "new", "`tltlc new --game`")(game)
+        return texts, (f"cd {shlex.quote(str(folder))}", *(f"tltlc {command}" for command in commands))
+    if level is not None:
+        texts = plugins.load_from("tltlc.levels", "new", "`tltlc new --level`")(level)
+        return texts, (f"tltlc check --level {shlex.quote(str(folder / next(iter(texts))))}",)
+    return _FILES, (f"tltlc test {shlex.quote(str(folder))}",)
 
 
 _SPEC: Final = """\

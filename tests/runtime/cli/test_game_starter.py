@@ -1,0 +1,106 @@
+"""``tltlc new --game``: each starter is a game that its own README can check, train and test."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime.cli.support import game_starter
+from tltlc.interfaces.cli.commands import new
+
+Run = Callable[..., Outcome]
+CLIENTS = Path(game_starter.__file__).parents[2] / "wire" / "clients"
+FEW = "[rollout]\nenvs = 2\nsteps = 16\nworkers = 1\n[network]\nhidden = [8]\n[exploration]\nways = 0\n"
+_COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
+
+
+@pytest.fixture(name="made")
+def _made(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], list[str]]:  # noqa: F811
+    """A function that makes a starter, enters its folder, and returns the commands to go on with."""
+
+    def make(kind: str) -> list[str]:
+        monkeypatch.chdir(tmp_path)
+        result = tltlc("new", "my game", "--game", kind)
+        assert result.status == 0, result.err
+        first, *others = re.findall(r"^Next: (.*)$", result.err, re.MULTILINE)
+        assert first == "cd 'my game'"
+        monkeypatch.chdir(tmp_path / "my game")
+        assert all(command.startswith("tltlc ") for command in others)
+        return [command.removeprefix("tltlc ") for command in others]
+
+    return make
+
+
+def play_all(tltlc: Run, commands: list[str]) -> None:  # noqa: F811
+    """Run the commands of a starter, with a training of a few steps."""
+    Path("settings.toml").write_text(FEW)
+    Path("suite.toml").write_text(Path("suite.toml").read_text().replace("episodes = 50", "episodes = 25"))
+    for command in commands:
+        words = command.split()
+        short = {"train": ["--steps", "64"], "baseline": ["--workers", "1"], "regress": ["--workers", "1"]}
+        result = tltlc(*words, *short.get(words[0], []))
+        # A training of a few steps does not succeed, and its agent may fail.
+        assert result.status in ((0, 1) if words[0] in short else (0,)), result.err
+        assert "error[" not in result.err
+    assert Path("agent/policy.safetensors").is_file()
+    assert Path("suite.baseline.json").is_file()
+
+
+def test_the_starter_in_python_runs(tltlc: Run, made: Callable[[str], list[str]]) -> None:  # noqa: F811
+    commands = made("python")
+    play_all(tltlc, commands)
+    listed = _COMMAND.findall(Path("README.md").read_text())
+    assert [command for command in listed if command in commands] == commands
+    result = tltlc("check", "--game", "hall.game.toml")
+    assert "hall:v0 has everything that `leave` needs" in result.err
+    assert "equal seeds and actions give equal plays: yes" in result.err
+
+
+def test_a_person_is_recorded_in_the_starter_in_python(tltlc: Run, made: Callable[[str], list[str]]) -> None:  # noqa: F811
+    made("python")
+    played = subprocess.run(
+        [sys.executable, "record.py"],
+        input="wwwwaaaaaa\nq\n",
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
+        check=True,
+    )
+    assert "@" in played.stdout
+    result = tltlc("monitor", "hall.tltl", "traces")
+    assert result.status in (0, 1), result.err
+    assert "trace-0001.csv" in result.out
+
+
+@pytest.mark.parametrize("kind", game_starter.kinds())
+def test_each_starter_is_complete(tltlc: Run, made: Callable[[str], list[str]], kind: str) -> None:  # noqa: F811
+    made(kind)
+    assert tltlc("test", "hall.tltl").status == 0
+    assert Path(".github/workflows/levels.yml").is_file()
+    assert Path("README.md").read_text().startswith("# The hall")
+    clients = [path for path in Path().rglob("*") if (CLIENTS / path.name).is_file()]
+    assert clients
+    assert all(path.read_bytes() == (CLIENTS / path.name).read_bytes() for path in clients)
+    assert not [*Path().rglob("*.template"), *Path().rglob("starter.toml"), *Path().rglob("dot_*")]
+
+
+def test_the_help_names_all_starters() -> None:
+    (option,) = [option for option in new.command.params if option.name == "game"]
+    assert sorted(re.findall(r"`(\w+)`", getattr(option, "help", ""))) == list(game_starter.kinds())
+
+
+def test_wrong_kinds_are_reported(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    result = tltlc("new", "mine", "--game", "pyton")
+    assert (result.status, Path("mine").exists()) == (2, False)
+    assert "there is no starter for games of the kind `pyton`\n  help: did you mean `python`?" in result.err
+    result = tltlc("new", "mine", "--game", "python", "--level", "vault")
+    assert result.status == 2
+    assert "a new folder has either a level or a game" in result.err
