@@ -17,7 +17,7 @@ from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
-from tltl_runtime.wire.wire_game import START_S, STEP_S, WireGame, address
+from tltl_runtime.wire.wire_game import PROTOCOLS, START_S, STEP_S, TLTL, WireGame, address
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 
 SUFFIX: Final = ".game.toml"
@@ -80,11 +80,11 @@ class GameFile:
     a registered environment, ``python`` a function that returns the environment, and ``wire`` a game in
     another process. ``modules`` are imported before that, so that they can register the id.
 
-    ``signals`` is a function from an environment to its signals; None if the environment has a
-    method ``tltl_signals``. ``clock_s`` is the length of a step in seconds; None if the file does not
-    say. ``observation`` are the keys of a Dict observation that agents see; empty for all. ``keys`` has
-    a key of the keyboard for each action. If it is empty, a person plays with the keys that the
-    environment names, or with the digits.
+    ``signals`` is a function from an environment to its signals, or from an observation if the game
+    speaks another protocol than ``tltl``; None if the environment has a method ``tltl_signals``.
+    ``clock_s`` is the length of a step in seconds; None if the file does not say. ``observation`` are the
+    keys of a Dict observation that agents see; empty for all. ``keys`` has a key of the keyboard for each
+    action. If it is empty, a person plays with the keys that the environment names, or with the digits.
 
     ``has_scenes`` is false if the file describes no scene; ``scenes`` then has one that is named after
     the file. ``labels`` are the places of the keys of ``[game]``, and of the table itself as ``game``.
@@ -186,7 +186,7 @@ class _Reader:
         Return None if the game runs in this process, or if the keys are wrong.
         """
         process, connect = game.names("process", ()), game.text("connect", "")
-        game.text("protocol", "tltl", one_of=("tltl",))
+        protocol = game.text("protocol", TLTL, one_of=PROTOCOLS)
         start_s = game.number("start_s", START_S, low=_LEAST_S, high=_MOST_S, unit="s")
         step_s = game.number("step_s", STEP_S, low=_LEAST_S, high=_MOST_S, unit="s")
         if "process" in game.entries and not any(process[:1]):
@@ -199,7 +199,11 @@ class _Reader:
         except TltlError as error:
             game.log += [replace(diagnostic, labels=(game.label_of("connect"),)) for diagnostic in error.diagnostics]
             return None
-        return WireGame(self._path.name, self._folder, process, connect, start_s, step_s)
+        if protocol != TLTL and "signals" not in game.entries:
+            title = f"a game that speaks `{protocol}` does not say its signals"
+            help_ = 'name a function that computes them from an observation: `signals = "MODULE:FUNCTION"`'
+            game.log.append(Diagnostic("TLT0803", title, (game.label_of("protocol"),), help_))
+        return WireGame(self._path.name, self._folder, process, connect, start_s, step_s, protocol)
 
     def _scenes(self, tables: list[CheckedTable], around: Label) -> tuple[GameScene, ...]:
         """Read the scenes; if there are none, return one that is named after the file, with the label ``around``."""

@@ -20,10 +20,10 @@ from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, RAISES, guard
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, SceneVariant, read_game_file
 from tltl_runtime.gymnasium_games.game_modules import folder_first, import_function, import_module
 from tltl_runtime.gymnasium_games.outline_reader import OutlineError, read_outline
+from tltl_runtime.gymnasium_games.process_games import env_in_process, signals_in_process
 from tltl_runtime.gymnasium_games.value_text import type_text
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
 
 _OWN_OPTIONS: Final = ("max_episode_steps", "disable_env_checker", "render_mode")
@@ -220,35 +220,20 @@ def make_base_env(
         for module in game.modules:
             import_module(game, module, "import")
         if game.wire is not None:
-            env = _in_process(game.wire, game, scene, variant, options, own)
+            env = env_in_process(game.wire, game, scene, variant, options, own)
         elif game.python is not None:
             env = _from_function(game, import_function(game, game.python, "python"), scene, options, own)
         else:
             env = _from_id(game, scene, options, own, render_mode)
         try:
             signals = import_function(game, game.signals, "signals") if game.signals else None
+            if signals is not None and game.wire is not None:
+                signals = signals_in_process(game.wire, signals)
             _check_offers(game, env, own)
             return SceneEnv(env, game, signals, own.label)
         except BaseException:
             env.close()
             raise
-
-
-def _in_process(
-    wire: WireGame, game: GameFile, scene: str, variant: str, options: Mapping[str, Any], own: SceneVariant
-) -> gymnasium.Env[Any, Any]:
-    """Start a game in another process, or connect to it. The game gets the names of the scene and the variant."""
-    from tltl_runtime.wire.env import WireEnv
-
-    unknown = [key for key in options if key != "render_mode"]
-    if unknown:
-        title = f"a game in another process takes no option `{unknown[0]}`"
-        help_ = "leave it out: the game gets the names of the scene and of the variant"
-        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
-    # A game file that names no scenes means the first one of the game.
-    named = scene if game.has_scenes else None
-    with guarded(game, CANNOT_START, "the game", own.label):
-        return WireEnv(wire, scene=named, variant=variant, render_mode=options.get("render_mode"))
 
 
 def _from_function(

@@ -12,6 +12,7 @@ from tltl_runtime.gymnasium_games.game_argument import variant_of
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile
 from tltl_runtime.gymnasium_games.python_files import content_of, possible_python_files, python_files
 from tltl_runtime.support.json_hash import json_hash
+from tltl_runtime.wire.wire_game import TLTL
 from tltlc.api import fileio
 
 
@@ -34,6 +35,7 @@ def scene_hash(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> str:
             "gymnasium": game.gymnasium,
             "python": game.python.text if game.python else None,
             **({"process": game.wire.process, "connect": game.wire.connect, "variant": variant} if game.wire else {}),
+            **({"protocol": game.wire.protocol} if game.wire and game.wire.protocol != TLTL else {}),
             "import": game.modules,
             "signals": game.signals.text if game.signals else None,
             "clock_s": game.clock_s,

@@ -160,6 +160,11 @@ class WireEnv(gymnasium.Env[Any, Any]):
         """Return the signals after the last reset or step, by name and in SI units."""
         return self._current().signals
 
+    @property
+    def observation(self) -> Any:
+        """The observation after the last reset or step."""
+        return self._current().observation
+
     def tltl_cause(self) -> str | None:
         """Return who or what ended the episode; None if it has not ended, or the game does not say."""
         return self._current().cause

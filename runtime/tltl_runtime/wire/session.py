@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar
 
-from tltl_runtime.wire import errors
+from tltl_runtime.wire import errors, godot_rl
 from tltl_runtime.wire.answers import ReportedError, body_of
 from tltl_runtime.wire.byte_stream import ByteStream
 from tltl_runtime.wire.channel import Channel, JsonLines, has_msgpack
@@ -18,13 +18,14 @@ from tltl_runtime.wire.game_process import GameProcess
 from tltl_runtime.wire.hello import JSON, MSGPACK, VERSION, Hello, hello_from
 from tltl_runtime.wire.listener import Listener
 from tltl_runtime.wire.requests import CloseRequest
-from tltl_runtime.wire.wire_game import WireGame, address
+from tltl_runtime.wire.wire_game import GODOT_RL, WireGame, address
 from tltlc.api import fileio
 
 _TO_CLOSE_S: Final = 5.0
 """Seconds in which a game that has closed its connection, or was asked to close, ends by itself."""
 _TOKEN_BYTES: Final = 16
 _ENDED: Final = "correct the game; let it write what it does to standard error"
+_HELLO: Final = ("said hello", "say hello")
 
 Answer = TypeVar("Answer")
 
@@ -42,7 +43,7 @@ class WireSession:
         self._process: GameProcess | None = None
         self._channel: Channel | None = None
         try:
-            self._channel, message = self._connected() if game.connect else self._started()
+            self._channel, message = self._opened()
             self.hello: Hello = hello_from(message)
             self._agree_on_encoding()
         except BaseException as error:
@@ -92,6 +93,23 @@ class WireSession:
         self._end_process()
 
     # --- the beginning ------------------------------------------------------------------------------
+
+    def _opened(self) -> tuple[Channel, Any]:
+        """Start the game, or connect to it; return the connection and the game's ``hello``."""
+        if self._game.protocol == GODOT_RL:
+            return self._awaited()
+        return self._connected() if self._game.connect else self._started()
+
+    def _awaited(self) -> tuple[Channel, Any]:
+        """Wait for a game that speaks the protocol of Godot RL Agents. Start it first, unless it has ``connect``."""
+        server = _server(self._game.connect)
+        with server:
+            if self._game.process:
+                words = godot_rl.with_arguments(self._game.process, server.getsockname()[1])
+                self._process = GameProcess(words, self._game.folder, {})
+            has_ended = self._process.has_ended if self._process else lambda: False
+            channel = self._channel = godot_rl.accept(server, self._game.start_s, has_ended)
+        return channel, channel.hello(self._game.start_s)
 
     def _started(self) -> tuple[Channel, Any]:
         """Start the game, and wait until it connects; return the connection and the game's first message."""
@@ -153,6 +171,7 @@ class WireSession:
         name = f"the game `{self._game.name}`"
         lines = self._process.last_lines() if self._process else ""
         starting = kind == "hello"
+        other = self._game.protocol == GODOT_RL
         if isinstance(error, MalformedMessageError):
             help_ = "correct the game; `docs/wire.md` describes the messages"
             return wire_error(errors.MALFORMED, f"{name} {error}", help_, lines)
@@ -161,13 +180,14 @@ class WireSession:
                 errors.REPORTED, f"{name} reports: {error}", "correct the game, or what it asks for", lines
             )
         code = errors.NOT_STARTED if starting else errors.LOST
-        before = "before it said hello" if starting else f"instead of answering `{kind}`"
+        said_hello, say_hello = ("answered `env_info`", "connect and answer `env_info`") if other else _HELLO
+        before = f"before it {said_hello}" if starting else f"instead of answering `{kind}`"
         if has_ended and self._process:
             return wire_error(code, f"{name} {self._process.end_text()} {before}", _ENDED, lines)
         if isinstance(error, GameGoneError):
             return wire_error(code, f"{name} closed its connection {before}", _ENDED, lines)
         key = "start_s" if starting else "step_s"
-        what = "say hello" if starting else f"answer `{kind}`"
+        what = say_hello if starting else f"answer `{kind}`"
         help_ = f"find out what it waits for, or allow more time with `{key}`"
         ended = ", and was ended" if self._process else ""
         return wire_error(code, f"{name} did not {what} within {patience:g} s{ended}", help_, lines)
@@ -189,3 +209,13 @@ class WireSession:
     def _end_process(self) -> None:
         if self._process is not None:
             self._process.end()
+
+
+def _server(place: str) -> socket.socket:
+    """Return a socket that listens at ``place``, ``HOST:PORT``, or on a free port of 127.0.0.1 if it is empty."""
+    try:
+        return socket.create_server(address(place) if place else ("127.0.0.1", 0))
+    except OSError as error:
+        title = f"cannot wait for a game at `{place}`: {error.strerror or error}"
+        help_ = "end the other program that uses this port; it may be another tltlc, or Godot RL Agents"
+        raise wire_error(errors.NOT_STARTED, title, help_) from None

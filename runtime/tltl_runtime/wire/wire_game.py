@@ -6,6 +6,11 @@ from pathlib import Path
 
 from tltlc.api import Diagnostic, TltlError, record
 
+TLTL = "tltl"
+GODOT_RL = "godot-rl"
+PROTOCOLS = (TLTL, GODOT_RL)
+"""The protocols that games in other processes may speak."""
+
 START_S = 30.0
 STEP_S = 5.0
 
@@ -17,7 +22,8 @@ class WireGame:
     Either ``process`` has the words of the command that starts the game in ``folder``, or ``connect``
     is the address, ``HOST:PORT``, of a game that is running. The game must say ``hello`` within
     ``start_s`` seconds, and answer each request within ``step_s`` seconds. ``name`` is used in
-    messages.
+    messages. ``protocol`` is one of :data:`PROTOCOLS`. With ``godot-rl``, ``connect`` is the address at which tltlc
+    waits for a game that is running.
     """
 
     name: str
@@ -26,6 +32,7 @@ class WireGame:
     connect: str = ""
     start_s: float = START_S
     step_s: float = STEP_S
+    protocol: str = TLTL
 
     def __post_init__(self) -> None:
         if bool(self.process) == bool(self.connect):
