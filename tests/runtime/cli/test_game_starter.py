@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
+from runpy import run_path
 
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.cli.support import game_starter
+from tltl_runtime.gymnasium_games.game_file import read_game_file
+from tltl_runtime.gymnasium_games.scene_env import make_base_env
 from tltlc.interfaces.cli.commands import new
 
 Run = Callable[..., Outcome]
 CLIENTS = Path(game_starter.__file__).parents[2] / "wire" / "clients"
 FEW = "[rollout]\nenvs = 2\nsteps = 16\nworkers = 1\n[network]\nhidden = [8]\n[exploration]\nways = 0\n"
+IN_PROCESSES = {
+    "web": ["node", "node.js"],
+    "love": ["lua5.4", "headless.lua"],
+    "godot": ["godot3-server", "--path", ".", "--fixed-fps", "10", "--disable-render-loop"],
+}
+"""The games in other processes, and the command of each that can run here: LÖVE needs a screen."""
 _COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
 
 
@@ -63,6 +75,59 @@ def test_the_starter_in_python_runs(tltlc: Run, made: Callable[[str], list[str]]
     assert "equal seeds and actions give equal plays: yes" in result.err
 
 
+@pytest.mark.parametrize("kind", IN_PROCESSES)
+def test_the_starters_in_processes_are_checked(tltlc: Run, made: Callable[[str], list[str]], kind: str) -> None:  # noqa: F811
+    commands = made_in_process(made, kind)
+    result = tltlc(*commands[0].split())
+    assert result.status == 0, result.err
+    assert "hall:v0 has everything that `leave` needs" in result.err
+    assert "equal seeds and actions give equal plays: yes" in result.err
+    listed = _COMMAND.findall(Path("README.md").read_text())
+    assert [command for command in listed if command in commands] == commands
+
+
+@pytest.mark.parametrize("kind", IN_PROCESSES)
+def test_the_starters_are_one_game(made: Callable[[str], list[str]], tmp_path: Path, kind: str) -> None:
+    made("python")
+    hall = run_path("hall.py")["make"]("hall")
+    (tmp_path / "my game").rename(tmp_path / "python")
+    made_in_process(made, kind)
+    env = make_base_env(read_game_file(Path("hall.game.toml")), "hall")
+    choose = Random(kind)
+    for seed in range(20):
+        env.reset(seed=seed)
+        hall.reset()
+        hall.player = hall.starts[seed % len(hall.starts)]
+        for _ in range(40):
+            action = choose.randrange(4)
+            observation, _, ended, _, _ = env.step(action)
+            wanted, _, wanted_end, _, _ = hall.step(action)
+            assert (observation.tolist(), ended) == (wanted.tolist(), wanted_end)
+            assert env.tltl_signals() == hall.tltl_signals()
+            assert {name: place[:2] for name, place in env.scene_positions().items()} == hall.tltl_positions()
+            if ended:
+                break
+    env.close()
+
+
+def made_in_process(made: Callable[[str], list[str]], kind: str) -> list[str]:
+    """Make a starter whose game is another process; skip the test if the program or its client is missing."""
+    words = IN_PROCESSES[kind]
+    if kind not in game_starter.kinds():
+        pytest.skip(f"needs the client of the kind `{kind}`")
+    if shutil.which(words[0]) is None:
+        pytest.skip(f"needs {words[0]}")
+    if (
+        kind == "love"
+        and subprocess.run([words[0], "-e", "require 'socket'"], capture_output=True, check=False).returncode
+    ):
+        pytest.skip("needs LuaSocket")
+    commands = made(kind)
+    path = Path("hall.game.toml")
+    path.write_text(re.sub("^process = .*$", f"process = {json.dumps(words)}", path.read_text(), flags=re.MULTILINE))
+    return commands
+
+
 def test_a_person_is_recorded_in_the_starter_in_python(tltlc: Run, made: Callable[[str], list[str]]) -> None:  # noqa: F811
     made("python")
     played = subprocess.run(
@@ -93,7 +158,8 @@ def test_each_starter_is_complete(tltlc: Run, made: Callable[[str], list[str]], 
 
 def test_the_help_names_all_starters() -> None:
     (option,) = [option for option in new.command.params if option.name == "game"]
-    assert sorted(re.findall(r"`(\w+)`", getattr(option, "help", ""))) == list(game_starter.kinds())
+    folders = sorted(path.parent.name for path in game_starter.KINDS.glob("*/starter.toml"))
+    assert sorted(re.findall(r"`(\w+)`", getattr(option, "help", ""))) == folders
 
 
 def test_wrong_kinds_are_reported(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811

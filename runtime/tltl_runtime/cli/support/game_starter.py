@@ -22,7 +22,8 @@ from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio
 
 _PACKAGE: Final = Path(__file__).parents[2]
-_KINDS: Final = _PACKAGE / "starter" / "games"
+KINDS: Final = _PACKAGE / "starter" / "games"
+"""The folder with a folder for each kind."""
 _CLIENTS: Final = _PACKAGE / "wire" / "clients"
 _COMMON: Final = "common"
 _ABOUT: Final = "starter.toml"
@@ -40,8 +41,8 @@ STEPS: Final = (
 
 def kinds() -> tuple[str, ...]:
     """Return the kinds of games that there are starters for, in alphabetical order; each client of theirs exists."""
-    names = sorted(path.parent.name for path in _KINDS.glob(f"*/{_ABOUT}"))
-    return tuple(name for name in names if all(map(Path.is_file, _clients(_about(_KINDS / name / _ABOUT)[0]))))
+    names = sorted(path.parent.name for path in KINDS.glob(f"*/{_ABOUT}"))
+    return tuple(name for name in names if all(map(Path.is_file, _clients(_about(KINDS / name / _ABOUT)[0]))))
 
 
 def files(kind: str) -> tuple[dict[str, str], tuple[str, ...]]:
@@ -53,8 +54,8 @@ def files(kind: str) -> tuple[dict[str, str], tuple[str, ...]]:
     if kind not in kinds():
         title = f"there is no starter for games of the kind `{kind}`"
         raise TltlError([Diagnostic("TLT0700", title, help=suggestion(kind, kinds()))])
-    clients, steps = _about(_KINDS / kind / _ABOUT)
-    texts = {**_texts(_KINDS / _COMMON), **_texts(_KINDS / kind)}
+    clients, steps = _about(KINDS / kind / _ABOUT)
+    texts = {**_texts(KINDS / _COMMON), **_texts(KINDS / kind)}
     texts |= {path: _text(client) for path, client in zip(clients, _clients(clients), strict=True)}
     return texts, steps
 

@@ -34,7 +34,8 @@ Examples:
 @click.option(
     "--game",
     metavar="KIND",
-    help="Write a small game that agents can play, with its level, spec, suite and CI file: `python`.",
+    help="Write a small game that agents can play, with its level, spec, suite and CI file: `godot`, `love`, "
+    "`python` or `web`.",
 )
 def command(folder: Path, level: str | None, game: str | None) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.

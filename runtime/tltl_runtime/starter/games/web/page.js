@@ -1,0 +1,39 @@
+// The game in a page. tltlc plays it if it has opened the page; otherwise a person does, with the arrow keys.
+
+import { CLOCK_HZ, Hall } from "./hall.js";
+import { Recorder, isStartedByTltlc, play } from "./tltl_client.js";
+
+const KEYS = ["ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight"]; // in the order of the moves
+const element = (id) => document.getElementById(id);
+
+async function read(scene) {
+  return (await fetch(`levels/${scene}.txt`)).text();
+}
+
+function draw(game) {
+  const rows = game.rows.map((row) => [...row]);
+  rows[game.player[1]][game.player[0]] = "@";
+  element("map").textContent = rows.reverse().map((row) => row.join("")).join("\n");
+}
+
+async function playByHand() {
+  const game = new Hall(read);
+  const recorder = new Recorder("hall", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
+  let now = await game.reset("hall", "v0", Math.floor(Math.random() * 2 ** 31));
+  recorder.begin();
+  draw(game);
+  addEventListener("keydown", (event) => {
+    const action = KEYS.indexOf(event.key);
+    if (action < 0 || now.ended) return;
+    event.preventDefault();
+    now = game.step(action);
+    recorder.sample(now.signals);
+    draw(game);
+    if (now.signals.has_key) element("text").textContent = now.signals.at_door ? "You are out!" : "You have the key.";
+    if (now.ended) element("text").textContent = "You fell on the spikes.";
+  });
+  element("save").addEventListener("click", () => recorder.download());
+}
+
+if (isStartedByTltlc()) await play(new Hall(read));
+else await playByHand();
