@@ -108,7 +108,8 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def _check_program(program: str, folder: Path) -> None:
     """Raise WireError, TLT0790, if there is no such program; a path is relative to ``folder``."""
     is_path = os.sep in program or (os.altsep is not None and os.altsep in program)
-    path = shutil.which(folder / program) if is_path else shutil.which(program)
+    # `folder / program` alone may have no separator, and would be searched in PATH.
+    path = shutil.which((folder / program).absolute()) if is_path else shutil.which(program)
     if path is None:
         title = f"there is no program `{program}` that can be run"
         help_ = "paths are relative to the folder of the game file" if is_path else "install it, or give its path"

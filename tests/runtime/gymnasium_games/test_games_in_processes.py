@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -49,6 +51,17 @@ def test_a_game_is_checked(tltlc: Run) -> None:  # noqa: F811
     assert "short:trap has everything that `count` needs" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     assert "a restored snapshot is what was saved: yes" in result.err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the program is a script for a shell")
+def test_a_program_beside_the_game_file_is_started(tltlc: Run, game: Path) -> None:  # noqa: F811
+    counter = Path(__file__).parents[1] / "wire" / "games" / "counter.py"
+    program = game.with_name("counter")
+    program.write_text(f"#!/bin/sh\nexec {shlex.quote(sys.executable)} {shlex.quote(str(counter))}\n")
+    program.chmod(0o755)
+    write(game.parent, "./counter")
+    result = tltlc("check", "--game", "counter.game.toml:short:v0")
+    assert result.status == 0, result.err
 
 
 @pytest.mark.usefixtures("game")
