@@ -6,7 +6,7 @@ folder ``common`` are added, unless the kind has a file of the same name. Two th
 the start of a name stands for a dot.
 
 A kind's ``starter.toml`` is not written. Its key ``clients`` lists the paths that copies of clients get: the name of
-each is that of a file of ``tltl_runtime/wire/clients``. Its key ``steps`` lists the commands of tltlc to go on with;
+each is that of a file of ``tltl_runtime/wire/clients``. Its key ``steps`` lists the commands to go on with;
 without it, they are :data:`STEPS`.
 """
 
@@ -31,12 +31,12 @@ _SUFFIX: Final = ".template"
 _DOT: Final = "dot_"
 
 STEPS: Final = (
-    "check --game hall.game.toml",
-    "train --game hall.game.toml:hall --config settings.toml --out agent",
-    "baseline suite.toml",
-    "regress suite.toml",
+    "tltlc check --game hall.game.toml",
+    "tltlc train --game hall.game.toml:hall --config settings.toml --out agent",
+    "tltlc baseline suite.toml",
+    "tltlc regress suite.toml",
 )
-"""The commands of tltlc that follow, inside the new folder, unless a kind has others."""
+"""The commands that follow, inside the new folder, unless a kind has others."""
 
 
 def kinds() -> tuple[str, ...]:
@@ -46,7 +46,7 @@ def kinds() -> tuple[str, ...]:
 
 
 def files(kind: str) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return the texts of all files of a starter, by their paths, and the commands of tltlc that follow.
+    """Return the texts of all files of a starter, by their paths, and the commands that follow in its folder.
 
     Raises:
         TltlError: TLT0700, there is no such kind.

@@ -35,7 +35,7 @@ Examples:
     "--game",
     metavar="KIND",
     help="Write a small game that agents can play, with its level, spec, suite and CI file: `godot`, `love`, "
-    "`python` or `web`.",
+    "`python`, `unity`, `unreal` or `web`.",
 )
 def command(folder: Path, level: str | None, game: str | None) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
@@ -68,7 +68,7 @@ def _files(folder: Path, level: str | None, game: str | None) -> tuple[Mapping[s
         raise TltlError([Diagnostic("TLT0700", title, help=help_)])
     if game is not None:
         texts, commands = plugins.load_from("tltlc.games", "new", "`tltlc new --game`")(game)
-        return texts, (f"cd {shlex.quote(str(folder))}", *(f"tltlc {command}" for command in commands))
+        return texts, (f"cd {shlex.quote(str(folder))}", *commands)
     if level is not None:
         texts = plugins.load_from("tltlc.levels", "new", "`tltlc new --level`")(level)
         return texts, (f"tltlc check --level {shlex.quote(str(folder / next(iter(texts))))}",)

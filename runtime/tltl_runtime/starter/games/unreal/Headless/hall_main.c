@@ -1,0 +1,45 @@
+// The game without Unreal: `cc -O2 -o hall -I Source/Hall Headless/hall_main.c -lm`
+//
+// tltlc plays if it has started the game. Otherwise a person does: w, a, s or d and Enter for each move, or several at
+// once; q ends. Each walk becomes a trace in the folder `traces`.
+
+#define TLTL_CLIENT_IMPLEMENTATION
+#include "tltl_client.h"
+
+#include "HallGame.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+static int play_by_hand(void) {
+    static const char keys[] = "wsad";  // in the order of the moves
+    static hall_game hall;
+    static tltl_recorder recorder;
+    char key;
+    int y;
+    if (!hall_begin(&hall, "levels/hall.txt", (uint64_t)time(NULL))) return 1;
+    if (!tltl_recorder_init(&recorder, "traces", hall_signals, 3, 10) || !tltl_recorder_begin(&recorder)) return 1;
+    do {
+        for (y = hall.row_count - 1; y >= 0; --y) {
+            const char *row = hall.rows[hall.row_count - 1 - y];
+            if (y == hall.y) printf("%.*s@%s\n", hall.x, row, row + hall.x + 1);
+            else printf("%s\n", row);
+        }
+        printf(hall.has_key ? "You have the key.\n" : "Fetch the key K.\n");
+        while (scanf("%c", &key) == 1 && key != '\n' && key != 'q')
+            if (strchr(keys, key)) {
+                double values[3];
+                hall_move(&hall, (int)(strchr(keys, key) - keys));
+                values[0] = hall.has_key;
+                values[1] = hall_mark(&hall, hall.x, hall.y) == 'D';
+                values[2] = hall_mark(&hall, hall.x, hall.y) == '^';
+                tltl_recorder_sample(&recorder, values);
+            }
+    } while (!feof(stdin) && key != 'q' && hall_mark(&hall, hall.x, hall.y) != '^');
+    tltl_recorder_end(&recorder);
+    return 0;
+}
+
+int main(void) {
+    return getenv("TLTL_PORT") ? hall_play() : play_by_hand();
+}
