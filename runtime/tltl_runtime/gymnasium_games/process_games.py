@@ -10,7 +10,7 @@ import gymnasium
 
 from tltl_runtime.gymnasium_games.game_errors import CANNOT_START, guarded
 from tltl_runtime.gymnasium_games.game_file import GameFile, SceneVariant
-from tltl_runtime.wire.wire_game import GODOT_RL, TLTL, WireGame
+from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame
 from tltlc.api import Diagnostic, TltlError, replace
 
 Signals = Callable[[Any], Any]
@@ -21,8 +21,9 @@ def env_in_process(
 ) -> gymnasium.Env[Any, Any]:
     """Start a game in another process, or connect to it.
 
-    The game gets the names of the scene and the variant. A game that speaks the protocol of Godot RL Agents gets the
-    options in their place, as the arguments ``--KEY=VALUE``.
+    The game gets the names of the scene and the variant. A game that speaks another protocol gets the options in their
+    place: with that of Godot RL Agents as the arguments ``--KEY=VALUE``, with that of ML-Agents as environment
+    parameters.
     """
     from tltl_runtime.wire.env import WireEnv
 
@@ -30,6 +31,9 @@ def env_in_process(
     if wire.protocol == GODOT_RL and wire.process:
         # As Godot RL Agents does: the game reads its options from its arguments.
         wire = replace(wire, process=(*wire.process, *(f"--{key}={_argument(given[key])}" for key in given)))
+        given = {}
+    elif wire.protocol == ML_AGENTS:
+        wire = replace(wire, parameters=tuple((key, _parameter(key, given[key], own)) for key in given))
         given = {}
     if given:
         title = f"a game in another process takes no option `{next(iter(given))}`"
@@ -47,6 +51,17 @@ def signals_in_process(wire: WireGame, function: Signals) -> Signals:
     If the game speaks another protocol than ``tltl``, ``function`` gets the observation in place of the environment.
     """
     return function if wire.protocol == TLTL else lambda env: function(env.get_wrapper_attr("observation"))
+
+
+def _parameter(key: str, value: Any, own: SceneVariant) -> float:
+    """Return the value of an environment parameter; raises TltlError, TLT0803, if it is no number."""
+    if not isinstance(value, (int, float)) or not key.isascii():
+        title, help_ = (
+            f"the environment parameter `{key}` must be a number",
+            "ML-Agents has parameters of no other type",
+        )
+        raise TltlError([Diagnostic("TLT0803", title, (own.label,), help_)])
+    return float(value)
 
 
 def _argument(value: Any) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar
 
-from tltl_runtime.wire import errors, godot_rl
+from tltl_runtime.wire import errors, godot_rl, ml_agents
 from tltl_runtime.wire.answers import ReportedError, body_of
 from tltl_runtime.wire.byte_stream import ByteStream
 from tltl_runtime.wire.channel import Channel, JsonLines, has_msgpack
@@ -17,15 +17,21 @@ from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMe
 from tltl_runtime.wire.game_process import GameProcess
 from tltl_runtime.wire.hello import JSON, MSGPACK, VERSION, Hello, hello_from
 from tltl_runtime.wire.listener import Listener
+from tltl_runtime.wire.ml_agents import MlAgentsChannel
 from tltl_runtime.wire.requests import CloseRequest
-from tltl_runtime.wire.wire_game import GODOT_RL, WireGame, address
+from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame, address
 from tltlc.api import fileio
 
 _TO_CLOSE_S: Final = 5.0
 """Seconds in which a game that has closed its connection, or was asked to close, ends by itself."""
 _TOKEN_BYTES: Final = 16
 _ENDED: Final = "correct the game; let it write what it does to standard error"
-_HELLO: Final = ("said hello", "say hello")
+_HELLO: Final = {
+    TLTL: ("said hello", "say hello"),
+    GODOT_RL: ("answered `env_info`", "connect and answer `env_info`"),
+    ML_AGENTS: ("described its agent", "connect and describe its agent"),
+}
+"""How messages say, for each protocol, that the game has introduced itself, and that it does so."""
 
 Answer = TypeVar("Answer")
 
@@ -98,6 +104,8 @@ class WireSession:
         """Start the game, or connect to it; return the connection and the game's ``hello``."""
         if self._game.protocol == GODOT_RL:
             return self._awaited()
+        if self._game.protocol == ML_AGENTS:
+            return self._served()
         return self._connected() if self._game.connect else self._started()
 
     def _awaited(self) -> tuple[Channel, Any]:
@@ -110,6 +118,17 @@ class WireSession:
             has_ended = self._process.has_ended if self._process else lambda: False
             channel = self._channel = godot_rl.accept(server, self._game.start_s, has_ended)
         return channel, channel.hello(self._game.start_s)
+
+    def _served(self) -> tuple[Channel, Any]:
+        """Wait for a game that speaks the protocol of ML-Agents. Start it first, unless it has ``connect``."""
+        game = self._game
+        host, port = address(game.connect) if game.connect else ("127.0.0.1", 0)
+        channel = MlAgentsChannel(host, port, dict(game.parameters))
+        self._channel = channel
+        if game.process:
+            self._process = GameProcess(ml_agents.with_arguments(game.process, channel.port), game.folder, {})
+        has_ended = self._process.has_ended if self._process else lambda: False
+        return channel, channel.hello(game.start_s, has_ended)
 
     def _started(self) -> tuple[Channel, Any]:
         """Start the game, and wait until it connects; return the connection and the game's first message."""
@@ -171,7 +190,6 @@ class WireSession:
         name = f"the game `{self._game.name}`"
         lines = self._process.last_lines() if self._process else ""
         starting = kind == "hello"
-        other = self._game.protocol == GODOT_RL
         if isinstance(error, MalformedMessageError):
             help_ = "correct the game; `docs/wire.md` describes the messages"
             return wire_error(errors.MALFORMED, f"{name} {error}", help_, lines)
@@ -180,7 +198,7 @@ class WireSession:
                 errors.REPORTED, f"{name} reports: {error}", "correct the game, or what it asks for", lines
             )
         code = errors.NOT_STARTED if starting else errors.LOST
-        said_hello, say_hello = ("answered `env_info`", "connect and answer `env_info`") if other else _HELLO
+        said_hello, say_hello = _HELLO[self._game.protocol]
         before = f"before it {said_hello}" if starting else f"instead of answering `{kind}`"
         if has_ended and self._process:
             return wire_error(code, f"{name} {self._process.end_text()} {before}", _ENDED, lines)

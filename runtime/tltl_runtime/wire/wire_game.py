@@ -8,7 +8,8 @@ from tltlc.api import Diagnostic, TltlError, record
 
 TLTL = "tltl"
 GODOT_RL = "godot-rl"
-PROTOCOLS = (TLTL, GODOT_RL)
+ML_AGENTS = "ml-agents"
+PROTOCOLS = (TLTL, GODOT_RL, ML_AGENTS)
 """The protocols that games in other processes may speak."""
 
 START_S = 30.0
@@ -22,8 +23,9 @@ class WireGame:
     Either ``process`` has the words of the command that starts the game in ``folder``, or ``connect``
     is the address, ``HOST:PORT``, of a game that is running. The game must say ``hello`` within
     ``start_s`` seconds, and answer each request within ``step_s`` seconds. ``name`` is used in
-    messages. ``protocol`` is one of :data:`PROTOCOLS`. With ``godot-rl``, ``connect`` is the address at which tltlc
-    waits for a game that is running.
+    messages. ``protocol`` is one of :data:`PROTOCOLS`. With another one than ``tltl``, ``connect`` is the
+    address at which tltlc waits for a game that is running. ``parameters`` are the names and values of environment
+    parameters; only games that speak ``ml-agents`` have them.
     """
 
     name: str
@@ -33,6 +35,7 @@ class WireGame:
     start_s: float = START_S
     step_s: float = STEP_S
     protocol: str = TLTL
+    parameters: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         if bool(self.process) == bool(self.connect):
