@@ -39,13 +39,13 @@ class Doom(gymnasium.Wrapper):
         observation, info = self.env.reset(**options)
         self._look()
         self.first_ammo = self.number("SELECTED_WEAPON_AMMO")
-        return self._small(observation), info
+        return self._small(observation), {**info, "cell": self._cell()}
 
     def step(self, action):
         """Press a button for four tics."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._look()
-        return self._small(observation), reward, terminated, truncated, info
+        return self._small(observation), reward, terminated, truncated, {**info, "cell": self._cell()}
 
     def number(self, name):
         """Return a variable of the game, such as HEALTH."""
@@ -55,10 +55,8 @@ class Doom(gymnasium.Wrapper):
         """Return what specs speak of, in metres, radians and counts since the reset."""
         fired = self.first_ammo - self.number("SELECTED_WEAPON_AMMO")
         return {
-            "health": max(0.0, self.number("HEALTH")),
             "alive": not self.number("DEAD"),
             "kills": self.number("KILLCOUNT"),
-            "fired": max(0.0, fired),
             "missed": max(0.0, fired - self.number("HITCOUNT")),
             "off_target": min([VIEW, *map(self._angle_to, self.monsters)]),
             "has_armor": self.number("ARMOR") > 0,
@@ -108,6 +106,15 @@ class Doom(gymnasium.Wrapper):
 
     def _player(self):
         return self.number("POSITION_X") / UNIT, self.number("POSITION_Y") / UNIT
+
+    def _cell(self):
+        """Return a number for the player's square metre, the direction it faces, and its kills.
+
+        The search for demonstrations goes to each cell that it has found, and on from there.
+        """
+        x, y = (int(coordinate + 128) for coordinate in self._player())
+        direction = int(self.number("ANGLE") // 45) % 8
+        return ((x * 256 + y) * 8 + direction) * 16 + min(15, int(self.number("KILLCOUNT")))
 
     def _angle_to(self, name):
         """Return the angle between the player's view and a thing, in radians, in [0, pi]."""
