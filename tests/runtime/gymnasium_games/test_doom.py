@@ -61,7 +61,7 @@ def test_blind_shots_break_the_spec() -> None:
     play(env, 2, lambda env: button(env, "ATTACK"))
     cause = GAME.cause(env.episode)
     assert cause.kind == "violated"
-    assert cause.broke == ("missed > 3",)
+    assert cause.broke == ("missed > 5",)
     env.close()
 
 
