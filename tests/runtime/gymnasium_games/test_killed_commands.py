@@ -7,7 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,6 +15,7 @@ import pytest
 from tests.docs.blocks import ROOT
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games.test_lost_episodes import SETTINGS, _trained, mortal  # noqa: F401
+from tests.runtime.wire.processes import descendants, no_game_is_left, supervisors
 from tests.waiting import HANG_S, children, until, until_gone
 
 Run = Callable[..., Outcome]
@@ -31,17 +32,6 @@ def _folder(tmp_path: Path, trained: Path, monkeypatch: pytest.MonkeyPatch) -> P
     (folder / "settings.toml").write_text(SETTINGS.format(steps=400, workers=2))
     monkeypatch.chdir(folder)
     return folder
-
-
-def family(pid: int) -> Iterator[int]:
-    """Yield the ids of a process and of all processes that descend from it."""
-    yield pid
-    for child in children(pid):
-        yield from family(child)
-
-
-def is_supervisor(pid: int) -> bool:
-    return b"supervisor.py" in Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -74,9 +64,9 @@ def test_no_process_is_left_after_a_signal(folder: Path, words: tuple[str, ...],
     ) as process:
         hangs = folder.with_name("episodes.fault")
         until(lambda: hangs.exists() or process.poll() is not None, "the game to hang")
-        pids = [*family(process.pid)]
-        supervisors = [pid for pid in pids if is_supervisor(pid)]
-        assert supervisors and all(children(pid) for pid in supervisors)
+        # With two workers, the other game may still be starting.
+        until(lambda: any(map(children, supervisors(process.pid))), "the game below its supervisor")
+        pids = [*descendants(process.pid)]
         # A terminal sends Ctrl-C to all processes of its group.
         os.killpg(process.pid, number) if number == signal.SIGINT else process.send_signal(number)
         _, errors = process.communicate(timeout=HANG_S)
@@ -96,11 +86,10 @@ def test_no_process_is_left_if_a_signal_function_raises(
         "def signals(env):\n    return {'at_goal': env.unwrapped.tltl_signals()['gaol']}\n"
     )
     game.write_text(game.read_text().replace("[game]\n", '[game]\nsignals = "rules:signals"\n', 1))
-    before = children(os.getpid())
-    result = tltlc(*EVALUATE, "--workers", workers, "--episodes", "4")
+    with no_game_is_left():
+        result = tltlc(*EVALUATE, "--workers", workers, "--episodes", "4")
     assert result.status in (1, 2)
     assert "error[TLT0781]: `rules:signals`, called after the reset, raises KeyError: 'gaol'" in result.err
-    until_gone(set(children(os.getpid())) - set(before) if workers == "1" else ())
 
 
 @pytest.mark.parametrize("words", [EVALUATE, TRAIN], ids=lambda value: value[0])
@@ -110,32 +99,29 @@ def test_a_scene_that_the_game_cannot_load_is_an_error(
     words: tuple[str, ...],
 ) -> None:
     mortal(folder, "reset", "all")
-    before = set(children(os.getpid()))
-    result = tltlc(*words)
+    with no_game_is_left():
+        result = tltlc(*words)
     assert result.status in (1, 2)
     assert "the game `counter.game.toml` reports: no such map" in result.err
     assert result.err.count("error[") == 1
-    assert set(children(os.getpid())) <= before
 
 
 def test_a_game_that_is_not_deterministic_is_measured_and_played(tltlc: Run, folder: Path) -> None:  # noqa: F811
     mortal(folder, "chance")
-    before = set(children(os.getpid()))
-    result = tltlc("check", *PLACE)
+    with no_game_is_left():
+        result = tltlc("check", *PLACE)
+        assert tltlc(*EVALUATE, "--episodes", "4").status == 0
+        assert tltlc(*TRAIN, "--steps", "80").status in (0, 1)
     # Ten episodes and more would have to begin alike by chance.
     assert result.status == 0
     assert "warning[TLT0783]: equal seeds and actions give different plays in `short:v0`" in result.err
     assert "equal seeds and actions give equal plays: no" in result.err
-    assert tltlc(*EVALUATE, "--episodes", "4").status == 0
-    assert tltlc(*TRAIN, "--steps", "80").status in (0, 1)
-    assert set(children(os.getpid())) <= before
 
 
 @pytest.mark.parametrize(("fault", "code"), [("exit", "TLT0791"), ("garbage", "TLT0792"), ("reset", "TLT0793")])
 def test_a_check_ends_with_the_first_error(tltlc: Run, folder: Path, fault: str, code: str) -> None:  # noqa: F811
     mortal(folder, fault, 2)
-    before = set(children(os.getpid()))
-    result = tltlc("check", *PLACE)
+    with no_game_is_left():
+        result = tltlc("check", *PLACE)
     assert result.status in (1, 2)
     assert f"error[{code}]: the game `counter.game.toml` " in result.err
-    assert set(children(os.getpid())) <= before

@@ -12,7 +12,8 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games.test_games_in_processes import write
-from tests.waiting import HANG_S, children
+from tests.runtime.wire.processes import no_game_is_left
+from tests.waiting import HANG_S
 
 Run = Callable[..., Outcome]
 GAMES = Path(__file__).parents[1] / "wire" / "games"
@@ -27,9 +28,8 @@ checkpoint_s = 0.0
 
 @pytest.fixture(autouse=True)
 def _no_process_is_left() -> Iterator[None]:
-    before = children(os.getpid())
-    yield
-    assert set(children(os.getpid())) <= set(before)
+    with no_game_is_left():
+        yield
 
 
 @pytest.fixture(name="folder")

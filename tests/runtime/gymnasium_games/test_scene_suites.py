@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import pytest
@@ -107,8 +108,8 @@ class Unrecordable(SceneEnv):
 
     closed = 0
 
-    def __init__(self, env: gymnasium.Env, *rest: object) -> None:  # type: ignore[type-arg]
-        super().__init__(env, *rest)  # type: ignore[arg-type]
+    def __init__(self, env: gymnasium.Env[Any, Any], *rest: Any) -> None:
+        super().__init__(env, *rest)
         self.action_space = gymnasium.spaces.Text(8)
 
     def close(self) -> None:

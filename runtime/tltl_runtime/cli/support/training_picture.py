@@ -126,6 +126,7 @@ class TrainingDisplay:
         since = 0.0 if report.stop else now - self._report_time
         messages = [self._confirmation] if self._confirmation else []
         messages += [search_line(self._search)] if self._search else []
+        messages += [report.lost.text] if report.lost else []
         lines = [*_figures(report, stop, since), *messages, self._checkpoint_text(now, report)]
         # Leave out violated states: an episode that violated the spec counts for its state before the violation.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")
