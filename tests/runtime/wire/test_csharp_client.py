@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.runtime.wire import conversation
@@ -268,8 +268,7 @@ def test_the_component_in_the_head_comment_compiles(tmp_path: Path) -> None:
 
 
 TEXTS = st.text(st.characters(exclude_categories=()))
-# Mono reads numbers that are too small to have all their digits with an error of one bit.
-NUMBERS = st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False, allow_infinity=False, allow_subnormal=False)
+NUMBERS = st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=False, allow_infinity=False)
 VALUES = st.recursive(
     st.none() | st.booleans() | NUMBERS | TEXTS,
     lambda parts: st.lists(parts) | st.dictionaries(TEXTS, parts),
@@ -316,6 +315,29 @@ def test_a_broken_line_is_refused(echo: Callable[[str], str], line: str, data: s
         return
     kind, _, answer = echo(text).partition(" ")
     assert kind == "right" and same(json.loads(answer), value)
+
+
+NUMERALS = st.builds(
+    "{}.{}e{}".format, st.integers(0, 10**25), st.from_regex(r"[0-9]{1,40}", fullmatch=True), st.integers(-360, 310)
+)
+
+
+@given(NUMERALS)
+@example("1.7976931348623157e308")
+@example("2.2250738585072011e-308")
+@example("2.5e-324")
+@example("2.4e-324")
+@example("9007199254740993.0")
+@example("9007199254740993." + "0" * 500 + "1")
+@example("0." + "0" * 400 + "123456789e390")
+@example("1" * 400 + "e-390")
+@example("-0e99999999999")
+def test_a_numeral_is_read_exactly(echo: Callable[[str], str], text: str) -> None:
+    kind, _, answer = echo(text).partition(" ")
+    if isinf(float(text)):
+        assert kind == "wrong"
+    else:
+        assert kind == "right" and json.loads(answer) == float(text)
 
 
 def whole(word: str) -> float:

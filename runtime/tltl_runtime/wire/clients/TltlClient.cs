@@ -899,11 +899,7 @@ namespace Tltl
             }
             if (Math.Abs(value) < 1e15 && Math.Floor(value) == value) return ((long)value).ToString(Plain);
             string text = value.ToString("R", Plain);
-            double read;
-            // Where numbers are too small to have all their digits, Mono's "R" leaves out some that count.
-            bool isExact = Math.Abs(value) > 1e-307
-                && double.TryParse(text, NumberStyles.Float, Plain, out read) && read == value;
-            return isExact ? text : value.ToString("G17", Plain);
+            return Decimals.Parse(text) == value ? text : value.ToString("G17", Plain);
         }
 
         private static void Write(StringBuilder text, object value, int depth)
@@ -1167,10 +1163,8 @@ namespace Tltl
                 string numeral = _text.Substring(start, _at - start);
                 long whole;
                 if (isWhole && long.TryParse(numeral, NumberStyles.AllowLeadingSign, Plain, out whole)) return whole;
-                double real;
-                bool isFinite = double.TryParse(numeral, NumberStyles.Float, Plain, out real)
-                    && !double.IsInfinity(real);
-                if (!isFinite) throw Wrong();
+                double real = Decimals.Parse(numeral);
+                if (double.IsInfinity(real)) throw Wrong();
                 return real;
             }
 
@@ -1208,6 +1202,115 @@ namespace Tltl
             {
                 return new FormatException("the line is not JSON at character " + (_at + 1).ToString(Plain));
             }
+        }
+    }
+
+    /// <summary>Reads decimal numbers exactly; Mono is wrong by one bit for some.</summary>
+    internal static class Decimals
+    {
+        private const long Infinity = 0x7FF0000000000000;
+        private const ulong Hidden = 1UL << 52;
+        private const int ExactDigits = 15;
+        private const int ExactPower = 22;
+        private const int MostDigits = 800;
+        private const int MostPower = 1300;
+
+        /// <summary>
+        /// Returns the number nearest to a numeral of JSON; it is infinite if the numeral is too large. Numerals of
+        /// more than 800 digits may be wrong by one bit.
+        /// </summary>
+        public static double Parse(string numeral)
+        {
+            string digits;
+            int exponent;
+            bool isShort = Split(numeral, out digits, out exponent);
+            bool isNegative = numeral[0] == '-';
+            double size;
+            if (isShort && digits.Length <= ExactDigits && Math.Abs(exponent) <= ExactPower)
+            {
+                double power = 1.0;
+                for (int i = 0; i < Math.Abs(exponent); i++) power *= 10.0;
+                double whole = digits == "" ? 0.0 : long.Parse(digits, NumberStyles.None, CultureInfo.InvariantCulture);
+                size = exponent < 0 ? whole / power : whole * power;
+                return isNegative ? -size : size;
+            }
+            string rest = isNegative ? numeral.Substring(1) : numeral;
+            bool isRead = double.TryParse(rest, NumberStyles.Float, CultureInfo.InvariantCulture, out size);
+            if (!isRead) size = double.PositiveInfinity;
+            if (isShort && digits != "") size = Nearest(digits, exponent, size);
+            return isNegative ? -size : size;
+        }
+
+        /// <summary>
+        /// Returns the digits without a point, and the power of ten by which to multiply them; false if they are too
+        /// many, or the power is too large.
+        /// </summary>
+        private static bool Split(string numeral, out string digits, out int exponent)
+        {
+            int end = numeral.IndexOfAny(new[] {'e', 'E'});
+            string mantissa = (end < 0 ? numeral : numeral.Substring(0, end)).TrimStart('-');
+            int point = mantissa.IndexOf('.');
+            digits = mantissa.Replace(".", "").TrimStart('0');
+            exponent = 0;
+            if (end >= 0 && !int.TryParse(
+                numeral.Substring(end + 1), NumberStyles.AllowLeadingSign, CultureInfo.InvariantCulture, out exponent))
+            {
+                return false;
+            }
+            if (digits.Length > MostDigits || Math.Abs((long)exponent) > MostPower) return false;
+            if (point >= 0) exponent -= mantissa.Length - point - 1;
+            return Math.Abs(exponent) <= MostPower;
+        }
+
+        /// <summary>Returns the number nearest to digits times a power of ten, given one that is near.</summary>
+        private static double Nearest(string digits, int exponent, double near)
+        {
+            long bits = Math.Min(BitConverter.DoubleToInt64Bits(near), Infinity - 1);
+            while (bits < Infinity && IsAbove(digits, exponent, bits)) bits++;
+            while (bits > 0 && bits < Infinity && !IsAbove(digits, exponent, bits - 1)) bits--;
+            return BitConverter.Int64BitsToDouble(bits);
+        }
+
+        /// <summary>Whether digits times a power of ten is nearer to the next number than to that of these bits.</summary>
+        private static bool IsAbove(string digits, int exponent, long bits)
+        {
+            int power = (int)(bits >> 52);
+            ulong mantissa = (ulong)bits & (Hidden - 1);
+            if (power == 0) power = 1;
+            else mantissa += Hidden;
+            power -= 1076;
+            // The middle between the two numbers is (2 * mantissa + 1) * 2^power.
+            var left = new List<uint>();
+            foreach (char digit in digits) MultiplyAdd(left, 10, (ulong)(digit - '0'));
+            var right = new List<uint> {(uint)(2 * mantissa + 1), (uint)(mantissa >> 31)};
+            if (right[1] == 0) right.RemoveAt(1);
+            Scale(exponent < 0 ? right : left, 10, Math.Abs(exponent), 9);
+            Scale(power < 0 ? left : right, 2, Math.Abs(power), 31);
+            int order = left.Count.CompareTo(right.Count);
+            for (int i = left.Count - 1; i >= 0 && order == 0; i--) order = left[i].CompareTo(right[i]);
+            return order > 0 || order == 0 && bits % 2 == 1;
+        }
+
+        /// <summary>Multiplies by a power of the base, of which 32 bits hold <paramref name="most"/>.</summary>
+        private static void Scale(List<uint> limbs, uint root, int power, int most)
+        {
+            for (; power > 0; power -= most)
+            {
+                ulong factor = 1;
+                for (int i = 0; i < Math.Min(power, most); i++) factor *= root;
+                MultiplyAdd(limbs, factor, 0);
+            }
+        }
+
+        private static void MultiplyAdd(List<uint> limbs, ulong factor, ulong carry)
+        {
+            for (int i = 0; i < limbs.Count; i++)
+            {
+                ulong product = limbs[i] * factor + carry;
+                limbs[i] = (uint)product;
+                carry = product >> 32;
+            }
+            if (carry > 0) limbs.Add((uint)carry);
         }
     }
 }
