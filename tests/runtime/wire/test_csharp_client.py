@@ -1,4 +1,4 @@
-"""The client in C#: it passes the conversation with Mono, keeps every number, and compiles in a game of Unity."""
+"""The client in C#: it passes the conversation with Mono, keeps every number, and plays as a component of Unity."""
 
 from __future__ import annotations
 
@@ -44,13 +44,65 @@ namespace UnityEngine
     public static class Physics
     {
         public static SimulationMode simulationMode;
-        public static void Simulate(float step) { }
+        public static int ticks;
+        public static void Simulate(float step) { ticks++; }
     }
-    public static class QualitySettings { public static int vSyncCount; }
-    public static class Application { public static void Quit(int status) { } }
+    public static class QualitySettings { public static int vSyncCount = 1; }
+    public static class Application
+    {
+        public static int status = -1;
+        public static void Quit(int code) { status = code; }
+    }
+}
+
+internal sealed class Walk : TltlGame
+{
+    private int _speed;
+
+    public override Tltl.Message Hello
+    {
+        get
+        {
+            return new Tltl.Message
+            {
+                {"signals", new Tltl.Message {{"ticks", new Tltl.Message()}, {"speed", new Tltl.Message()}}},
+                {"actions", new Tltl.Message {{"type", "box"}, {"low", -9}, {"high", 9}, {"shape", new[] {2}}}},
+            };
+        }
+    }
+
+    public override Tltl.State Reset(string scene, string variant, long? seed)
+    {
+        UnityEngine.Physics.ticks = _speed = 0;
+        return Now();
+    }
+
+    protected override void Tick(object action) { _speed = (int)Tltl.TltlClient.Numbers(action)[1]; }
+
+    protected override Tltl.State Now()
+    {
+        return new Tltl.State(new Tltl.Message {{"ticks", UnityEngine.Physics.ticks}, {"speed", _speed}});
+    }
+
+    private static int Main()
+    {
+        var game = new Walk();
+        Call(game, "Start");
+        for (int frame = 0; UnityEngine.Application.status < 0 && frame < 9; frame++) Call(game, "Update");
+        bool isPaused = UnityEngine.Time.timeScale == 0 && UnityEngine.QualitySettings.vSyncCount == 0
+            && UnityEngine.Physics.simulationMode == UnityEngine.SimulationMode.Script;
+        System.Console.Error.WriteLine(isPaused);
+        return UnityEngine.Application.status;
+    }
+
+    private static void Call(TltlGame game, string name)
+    {
+        var flags = System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic;
+        typeof(TltlGame).GetMethod(name, flags).Invoke(game, null);
+    }
 }
 """
-"""A stand-in for the parts of Unity's library that the example uses."""
+"""A stand-in for the parts of Unity that the example uses, and a game."""
 
 DRIVER = """
 using System.Collections.Generic;
@@ -119,11 +171,10 @@ internal sealed class Driver
 """Echoes lines of JSON, or tries the recorder, where a decimal point is a comma."""
 
 
-def build(folder: Path, *sources: Path, target: str = "exe") -> Path:
+def build(folder: Path, *sources: Path) -> Path:
     """Compile sources with the client, and return the path of the program."""
-    program = folder / f"game.{target}"
-    kind = "library" if target == "dll" else target
-    command = ["mcs", *STRICT, f"-target:{kind}", f"-out:{program}", str(CLIENT), *map(str, sources)]
+    program = folder / "game.exe"
+    command = ["mcs", *STRICT, f"-out:{program}", str(CLIENT), *map(str, sources)]
     result = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
     return program
@@ -259,12 +310,28 @@ def test_the_game_in_the_head_comment_is_played(tmp_path: Path) -> None:
     env.close()
 
 
-def test_the_component_in_the_head_comment_compiles(tmp_path: Path) -> None:
-    """Unity is not here; a stand-in for its library is."""
+def test_the_component_in_the_head_comment_is_played(tmp_path: Path) -> None:
+    """Unity is not here; a stand-in for its library and its loop is."""
     (tmp_path / "Unity.cs").write_text(UNITY, encoding="utf-8")
     (tmp_path / "Game.cs").write_text(examples()[1], encoding="utf-8")
-    # In Unity, nobody calls these methods but the engine, which the compiler cannot know.
-    build(tmp_path, tmp_path / "Game.cs", tmp_path / "Unity.cs", target="dll")
+    program = build(tmp_path, tmp_path / "Game.cs", tmp_path / "Unity.cs")
+    with conversation.Game(["mono", str(program)]) as game:
+        assert "hello" in game.receive()
+        assert "state" in game.ask({"reset": {}})
+        answer = game.ask({"step": {"action": [0, 2.0], "repeat": 3}})
+        assert answer["state"]["signals"] == {"ticks": 3, "speed": 2}
+        assert "telepathy" in game.ask({"telepathy": {}})["error"]["message"]
+        game.send({"close": {}})
+        assert (game.status(), game.stderr()) == (0, "True")
+    with conversation.Game(["mono", str(program)]) as game:
+        game.receive()
+        game.send({"error": {"message": "because it is a test"}})
+        assert (game.status(), game.stderr()) == (1, "because it is a test\nTrue")
+    variables = {key: value for key, value in os.environ.items() if not key.startswith("TLTL_")}
+    alone = subprocess.run(
+        ["mono", str(program)], capture_output=True, text=True, env=variables, timeout=HANG_S, check=False
+    )
+    assert alone.stderr == "False\n", "without tltlc, the clock is not stopped"
 
 
 TEXTS = st.text(st.characters(exclude_categories=()))

@@ -147,7 +147,7 @@ def run_script(project: Path, body: str) -> str:
 def example() -> str:
     """Return the game in the head comment of the client."""
     head = CLIENT.read_text(encoding="utf-8").partition("\nextends")[0]
-    block = head[head.index("#     extends Node3D") : head.index("# Run the game")]
+    block = head[head.index("#     extends Node3D") : head.index("# `seed_` is null")]
     return re.sub(r"^#(?: {5})?", "", block, flags=re.MULTILINE).replace("    ", "\t")
 
 

@@ -80,6 +80,8 @@
 //
 //         private void Start()
 //         {
+//             // Without tltlc, a person plays, and a Recorder can write it down.
+//             if (string.IsNullOrEmpty(System.Environment.GetEnvironmentVariable("TLTL_PORT"))) return;
 //             // Unity calls FixedUpdate no more, and moves nothing by itself. (Before Unity 2022.2:
 //             // Physics.autoSimulation = false.)
 //             Time.timeScale = 0;
@@ -128,7 +130,9 @@ namespace Tltl
     using System.Net.Sockets;
     using System.Text;
 
-    /// <summary>Throw this in a method of the game if a request cannot be met. tltlc shows the text, which says why.</summary>
+    /// <summary>
+    /// Throw this in a method of the game if a request cannot be met. tltlc shows the text, which says why.
+    /// </summary>
     public sealed class Refusal : Exception
     {
         public Refusal(string reason) : base(reason) { }
@@ -192,7 +196,9 @@ namespace Tltl
             Body = body as Message ?? new Message();
         }
 
-        /// <summary>The kind of the request: `reset`, `step`, `snapshot`, `restore`, `screenshot`, `close`, or another word.</summary>
+        /// <summary>
+        /// The kind of the request: `reset`, `step`, `snapshot`, `restore`, `screenshot`, `close`, or another word.
+        /// </summary>
         public string Kind { get; private set; }
 
         /// <summary>All that the request contains.</summary>
@@ -872,7 +878,9 @@ namespace Tltl
         /// <summary>
         /// Returns the value of a text: null, a bool, a long, a double, a string, a List of objects, or a Message.
         /// </summary>
-        /// <exception cref="FormatException">The text is not JSON, nests too deep, or has a number that is too large.</exception>
+        /// <exception cref="FormatException">
+        /// The text is not JSON, nests too deep, or has a number that is too large.
+        /// </exception>
         public static object Parse(string text)
         {
             return new Parser(text).Whole();
@@ -1192,7 +1200,9 @@ namespace Tltl
                 if (!Take(c)) throw Wrong();
             }
 
-            /// <summary>Returns the next character; a null character at the end, which no text of JSON may contain.</summary>
+            /// <summary>
+            /// Returns the next character; a null character at the end, which no text of JSON may contain.
+            /// </summary>
             private char Next()
             {
                 return _at < _text.Length ? _text[_at] : '\0';
@@ -1271,7 +1281,9 @@ namespace Tltl
             return BitConverter.Int64BitsToDouble(bits);
         }
 
-        /// <summary>Whether digits times a power of ten is nearer to the next number than to that of these bits.</summary>
+        /// <summary>
+        /// Whether digits times a power of ten is nearer to the next number than to that of these bits.
+        /// </summary>
         private static bool IsAbove(string digits, int exponent, long bits)
         {
             int power = (int)(bits >> 52);

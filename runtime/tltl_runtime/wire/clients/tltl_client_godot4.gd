@@ -49,9 +49,13 @@
 #     # func screenshot() -> Dictionary:         return a picture, see `array`
 #     # func close() -> void:                    called at the end
 #
-# Run the game as fast as the machine allows, and without a window:
+# `seed_` is null if the game does not declare the capability `seed`. Run the game as fast as the machine
+# allows, and without a window; 60 is the number of physics frames in a second of the project:
 #
 #     godot --headless --path project --fixed-fps 60 --disable-render-loop
+#
+# If a person may play the game, too, call `begin` only if OS.has_environment("TLTL_PORT"), and record
+# the play with a `Recorder`.
 #
 # A game that needs no physics of the engine has a method `step(action)`, which plays one tick and
 # returns the state; `tltl.play(self)` then answers all requests. A game that is started first, and
