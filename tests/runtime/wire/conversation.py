@@ -130,7 +130,12 @@ class Game:
             variables = {**os.environ, "TLTL_PORT": str(server.getsockname()[1]), "TLTL_TOKEN": token}
             self.errors = tempfile.TemporaryFile()  # noqa: SIM115
             self.process = subprocess.Popen(command, env=variables, stdin=subprocess.DEVNULL, stderr=self.errors)
-            self.connection, _ = server.accept()
+            try:
+                self.connection, _ = server.accept()
+            except BaseException:  # It did not connect in time, or Ctrl-C.
+                self.process.kill()
+                self.process.wait()
+                raise
         self.connection.settimeout(PATIENCE_S)
         is_page = self.connection.recv(4, socket.MSG_PEEK) == b"GET "
         self.web = WebSocketChannel(self.connection, WebSocketMessages()) if is_page else None
