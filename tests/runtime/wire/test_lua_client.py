@@ -100,7 +100,7 @@ def test_an_error_in_the_game_names_its_place(lua: str, tmp_path: Path) -> None:
 
 @with_lua
 def test_damaged_lines_are_read_as_python_reads_them(lua: str, tmp_path: Path) -> None:
-    lines = [*request_lines.lines(26, 4000)]
+    lines = [*request_lines.lines(26, 10000)]
     path = tmp_path / "lines"
     path.write_bytes(b"\n".join(lines) + b"\n")
     output = subprocess.run([lua, READ_LINES, str(path)], capture_output=True, timeout=HANG_S, check=True).stdout

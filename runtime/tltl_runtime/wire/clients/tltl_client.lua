@@ -96,6 +96,19 @@ local function is_finite(value)
   return value == value and value ~= huge and value ~= -huge
 end
 
+-- Have a function interpreted: builds of LuaJIT 2.1 leave members out in compiled loops over `pairs`.
+local function interpreted(loop)
+  local jit = rawget(_G, "jit")
+  if jit then jit.off(loop) end
+  return loop
+end
+
+local copy = interpreted(function(values)
+  local result = {}
+  for key, value in pairs(values) do result[key] = value end
+  return result
+end)
+
 -- JSON, written ------------------------------------------------------------------------------------------------------
 
 -- Return the shortest text of a finite number that has its value, whatever the locale is.
@@ -134,7 +147,7 @@ local function write_list(parts, values, length, depth)
   parts[#parts + 1] = "]"
 end
 
-local function write_object(parts, values, depth)
+local write_object = interpreted(function(parts, values, depth)
   local mark = "{"
   for key, value in pairs(values) do
     if type(key) ~= "string" then
@@ -147,16 +160,16 @@ local function write_object(parts, values, depth)
     mark = ","
   end
   parts[#parts + 1] = mark == "{" and "{}" or "}"
-end
+end)
 
 -- Return the length of a list; nil if the table is an object.
-local function list_length(values)
+local list_length = interpreted(function(values)
   local length = #values
   if length == 0 then return getmetatable(values) == List and 0 or nil end
   local count = 0
   for _ in pairs(values) do count = count + 1 end
   return count == length and length or nil
-end
+end)
 
 -- Add the pieces of a JSON text to the list `parts`.
 function write(parts, value, depth)
@@ -400,12 +413,6 @@ end
 --- `{84, 84, 3}`.
 function tltl_client.array(data, dtype, shape)
   return {base64 = base64(data), dtype = dtype, shape = list(shape)}
-end
-
-local function copy(values)
-  local result = {}
-  for key, value in pairs(values) do result[key] = value end
-  return result
 end
 
 --- Return the `hello` of a game, with the capabilities `snapshot` and `screenshot` if it has the methods.
