@@ -88,6 +88,7 @@ def test_the_examples_work(language: str, build: Build, tmp_path: Path) -> None:
     code = examples.code_of_comment(CLIENTS / "tltl_client.h", "//", "#define", "    return tltl_play")
     source.write_text(code + "}\n", encoding="utf-8")
     examples.check_example([build(language, source, "-Wno-unused-parameter")])
+    examples.check_example([build(language, "own_loop.c")])
     page.write_text(examples.code_of_page("c"), encoding="utf-8")
     subprocess.run([build(language, page)], cwd=tmp_path, timeout=HANG_S, check=True)
     examples.check_traces_of_page(tmp_path / "traces")

@@ -56,21 +56,24 @@
 // it, so the game moves only when tltlc asks it to.  Let each tick have the same length, in Unreal with the options
 // `-UseFixedTimeStep -FPS=60`.  Only the file with the code needs the sockets: keep it apart from the engine's headers.
 //
-//     void before_tick() {                                    // `client` is connected by tltl_connect
+//     void answer() {                                         // `client` is connected by tltl_connect
+//         tltl_begin_state(&client);
+//         tltl_signal(&client, "health", player->health);     // and so on
+//         tltl_send_state(&client, has_ended);
+//     }
+//
+//     void before_tick() {
 //         if (ticks_left > 0 && --ticks_left > 0 && !has_ended) return;
-//         if (is_asked) {                                     // what was asked for has been played
-//             tltl_begin_state(&client);
-//             tltl_signal(&client, "health", player->health); // and so on
-//             tltl_send_state(&client, has_ended);
+//         if (is_asked) answer();                             // the ticks that were asked for have been played
+//         is_asked = false;
+//         while (!is_asked) {
+//             if (!tltl_next_request(&client, &request) || request.kind == TLTL_CLOSE) { quit(client.error); return; }
+//             if (request.kind == TLTL_STEP) is_asked = true;
+//             else if (request.kind == TLTL_RESET) { load(request.scene, request.seed); answer(); }
+//             else tltl_refuse(&client, "this game does not know the request `%s`", request.name);
 //         }
-//         for (;;) {
-//             if (!tltl_next_request(&client, &request) || request.kind == TLTL_CLOSE) { quit(); return; }
-//             if (request.kind == TLTL_RESET || request.kind == TLTL_STEP) break;
-//             tltl_refuse(&client, "this game does not know the request `%s`", request.name);
-//         }
-//         is_asked = true;
 //         ticks_left = request.repeat;
-//         if (request.kind == TLTL_RESET) { load(request.scene); } else { press(request.action); }
+//         press(request.action);
 //     }
 //
 // Functions that return int return 1, or 0 if something went wrong: then the field `error` says what, and is empty if
