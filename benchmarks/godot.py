@@ -206,10 +206,10 @@ def section(records: Mapping[str, Record]) -> str:
 ## A game in Godot 3 over the wire
 
 The scene `{_KEY}` of `examples/godot_game`, with all its signals, a monitor inside, an observation of 20 numbers and
-six positions, in {record["rounds"]} rounds of {STEPS:,} random actions, in turns; *speed* is steps per second of wall time.
-*Wire*: an environment `WireEnv`, and the client in the game. *Client*: the client in the game, and a loop in Python by
-hand on the other side, which reads lines with Python's `json` and checks nothing. *Bare*: also a loop by hand in the
-game, which plays the same ticks, and sends its states with the engine's JSON, whose numbers have six decimals.
+six positions, in {record["rounds"]} rounds of {STEPS:,} random actions, in turns; *speed* is steps per second of wall
+time. *Wire*: an environment `WireEnv`, and the client in the game. *Client*: the client in the game, and a loop in
+Python by hand on the other side, which reads lines with Python's `json` and checks nothing. *Bare*: also a loop by hand
+in the game, which plays the same ticks, and sends its states with the engine's JSON, whose numbers have six decimals.
 
 {table(("", "speed", "CPU time of a step in both processes, µs", "speed / bare"), rows)}
 """
