@@ -113,7 +113,8 @@ bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
 
 # Install the checkers that tests use, each in a folder of its own: gdtoolkit needs another version of lark than tltlc.
-checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc $(VENV)/pyodide/node_modules/pyodide
+checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc $(VENV)/pyodide/node_modules/pyodide \
+    $(VENV)/onnxruntime-web/node_modules/onnxruntime-web
 
 $(VENV)/gdtoolkit/bin/gdparse:
 	$(PYTHON) -m venv $(VENV)/gdtoolkit
@@ -124,6 +125,9 @@ $(VENV)/npm/node_modules/.bin/tsc:
 
 $(VENV)/pyodide/node_modules/pyodide:
 	npm install --prefix $(VENV)/pyodide --silent --no-audit --no-fund --ignore-scripts pyodide@314.0.7
+
+$(VENV)/onnxruntime-web/node_modules/onnxruntime-web:
+	npm install --prefix $(VENV)/onnxruntime-web --silent --no-audit --no-fund --ignore-scripts onnxruntime-web@1.30.0
 
 clean:
 	rm -rf $(VENV) demo site build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -133,7 +133,7 @@ export class Courier {
   state() {
     const { courier, parcel, door, dog, carrying } = this.now;
     const signals = this.signals();
-    const isCaught = signals.dog_distance <= CATCH_M;
+    const isCaught = signals.dog_distance < CATCH_M;
     return state({
       signals,
       observation: this.#observation(),
@@ -143,14 +143,21 @@ export class Courier {
     });
   }
 
-  /** Where things are, as numbers in [-1, 1], and which neighbouring cells are walls. */
+  /**
+   * Numbers in [-1, 1]: where the courier, its target and the dog are, where the dog runs, what the courier's map says of
+   * the four neighbouring cells (1: nearer to the target, -1: farther, 0: a wall), and where the dog is from the courier.
+   */
   #observation() {
     const { scene, courier, parcel, door, dog, dogEnd, carrying } = this.now;
-    const target = carrying ? door : parcel;
-    const numbers = [...courier, ...target, ...dog].map((value, axis) => value / (SIZE[axis % 2] / 2) - 1);
-    const walls = MOVES.slice(1).map(([east, north]) => (isWall(scene, [courier[0] + east, courier[1] + north]) ? 1 : 0));
-    const nearDog = [dog[0] - courier[0], dog[1] - courier[1]].map((value) => Math.min(Math.max(value / 4, -1), 1));
-    return new Float32Array([...numbers, dogEnd, carrying ? 1 : 0, scene === "yard" ? 0 : 1, ...walls, ...nearDog]);
+    const places = [...courier, ...(carrying ? door : parcel), ...dog];
+    const metres = carrying ? this.#distances.door : this.#distances.parcel;
+    const map = MOVES.slice(1).map(([east, north]) => {
+      const next = [courier[0] + east, courier[1] + north];
+      return isWall(scene, next) ? 0 : metres(courier) - metres(next);
+    });
+    const toDog = dog.map((value, axis) => Math.min(Math.max((value - courier[axis]) / 4, -1), 1));
+    const shares = places.map((value, index) => value / (SIZE[index % 2] / 2) - 1);
+    return new Float32Array([...shares, dogEnd, carrying ? 1 : 0, scene === "yard" ? 0 : 1, ...map, ...toDog]);
   }
 
   /** The dog runs to one end of its route and back. */

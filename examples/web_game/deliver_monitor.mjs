@@ -2,7 +2,7 @@
 //
 // Fetch the parcel and bring it to the door, out of the dog's reach.
 //
-//     F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !!(dog_distance > 1)
+//     F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)
 //
 // An ES module for browsers and for Node, without dependencies.  In a game:
 //
@@ -40,10 +40,10 @@ const PARAMS = [];
  * @type {ReadonlyArray<{label: string, verdict: Verdict, accepting: boolean, ends: boolean}>}
  */
 const STATES = [
-  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G(dog_distance > 1)", verdict: "pending", accepting: false, ends: false },
-  { label: "F(door_distance < 0.5) & G(dog_distance > 1)", verdict: "pending", accepting: false, ends: false },
+  { label: "F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)", verdict: "pending", accepting: false, ends: false },
+  { label: "F(door_distance < 0.5) & G !(dog_distance < 1)", verdict: "pending", accepting: false, ends: false },
   { label: "false", verdict: "violated", accepting: false, ends: true },
-  { label: "G(dog_distance > 1)", verdict: "holding", accepting: true, ends: true },
+  { label: "G !(dog_distance < 1)", verdict: "holding", accepting: true, ends: true },
 ];
 
 /** The result of one sample. */
@@ -135,61 +135,69 @@ export class Monitor {
       dog_distance = this.#signal(2, signals);
     }
 
-    // dog_distance > 1
-    const dog_distance_over_1 = min((dog_distance - 1) / 19, dog_distance - 1);
+    // dog_distance < 1
+    const dog_distance_under_1 = max(1 - dog_distance, (1 - dog_distance) / 19);
 
     let target = this.state;
     let robustness = 0;
     let progress = 0;
     let limiting = null;
     switch (this.state) {
-      // F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G(dog_distance > 1)
+      // F((parcel_distance < 0.5) & X F(door_distance < 0.5)) & G !(dog_distance < 1)
       case 0: {
         // parcel_distance < 0.5
         const parcel_distance_under_0_5 = max((0.5 - parcel_distance) / 0.5, (0.5 - parcel_distance) / 29.5);
-        if (dog_distance_over_1 <= 0) {
-          // !(dog_distance > 1)
+        if (dog_distance_under_1 > 0) {
+          // dog_distance < 1
           target = 2;
-          robustness = -dog_distance_over_1;
+          robustness = dog_distance_under_1;
           progress = 0;
           limiting = null;
-        } else if (parcel_distance_under_0_5 <= 0 && dog_distance_over_1 > 0) {
-          // !(parcel_distance < 0.5) & (dog_distance > 1)
+        } else if (parcel_distance_under_0_5 <= 0 && dog_distance_under_1 <= 0) {
+          // !(parcel_distance < 0.5) & !(dog_distance < 1)
           target = 0;
-          robustness = Math.min(-parcel_distance_under_0_5, dog_distance_over_1);
-          const nearest = parcel_distance_under_0_5;
-          limiting = "parcel_distance < 0.5";
+          robustness = Math.min(-parcel_distance_under_0_5, -dog_distance_under_1);
+          const nearest = Math.min(parcel_distance_under_0_5, -dog_distance_under_1);
+          if (parcel_distance_under_0_5 === nearest) {
+            limiting = "parcel_distance < 0.5";
+          } else {
+            limiting = "dog_distance < 1";
+          }
           progress = (1 + nearest) / 2;
         } else {
-          // (parcel_distance < 0.5) & (dog_distance > 1)
+          // (parcel_distance < 0.5) & !(dog_distance < 1)
           target = 1;
-          robustness = Math.min(parcel_distance_under_0_5, dog_distance_over_1);
+          robustness = Math.min(parcel_distance_under_0_5, -dog_distance_under_1);
           progress = 0.5;
           limiting = null;
         }
         break;
       }
-      // F(door_distance < 0.5) & G(dog_distance > 1)
+      // F(door_distance < 0.5) & G !(dog_distance < 1)
       case 1: {
         // door_distance < 0.5
         const door_distance_under_0_5 = max((0.5 - door_distance) / 0.5, (0.5 - door_distance) / 29.5);
-        if (dog_distance_over_1 <= 0) {
-          // !(dog_distance > 1)
+        if (dog_distance_under_1 > 0) {
+          // dog_distance < 1
           target = 2;
-          robustness = -dog_distance_over_1;
+          robustness = dog_distance_under_1;
           progress = 0;
           limiting = null;
-        } else if (door_distance_under_0_5 <= 0 && dog_distance_over_1 > 0) {
-          // !(door_distance < 0.5) & (dog_distance > 1)
+        } else if (door_distance_under_0_5 <= 0 && dog_distance_under_1 <= 0) {
+          // !(door_distance < 0.5) & !(dog_distance < 1)
           target = 1;
-          robustness = Math.min(-door_distance_under_0_5, dog_distance_over_1);
-          const nearest = door_distance_under_0_5;
-          limiting = "door_distance < 0.5";
+          robustness = Math.min(-door_distance_under_0_5, -dog_distance_under_1);
+          const nearest = Math.min(door_distance_under_0_5, -dog_distance_under_1);
+          if (door_distance_under_0_5 === nearest) {
+            limiting = "door_distance < 0.5";
+          } else {
+            limiting = "dog_distance < 1";
+          }
           progress = 0.5 + (1 + nearest) / 2;
         } else {
-          // (door_distance < 0.5) & (dog_distance > 1)
+          // (door_distance < 0.5) & !(dog_distance < 1)
           target = 3;
-          robustness = Math.min(door_distance_under_0_5, dog_distance_over_1);
+          robustness = Math.min(door_distance_under_0_5, -dog_distance_under_1);
           progress = 1;
           limiting = null;
         }
@@ -204,18 +212,18 @@ export class Monitor {
         limiting = null;
         break;
       }
-      // G(dog_distance > 1)
+      // G !(dog_distance < 1)
       case 3: {
-        if (dog_distance_over_1 <= 0) {
-          // !(dog_distance > 1)
+        if (dog_distance_under_1 > 0) {
+          // dog_distance < 1
           target = 2;
-          robustness = -dog_distance_over_1;
+          robustness = dog_distance_under_1;
           progress = 0;
           limiting = null;
         } else {
-          // dog_distance > 1
+          // !(dog_distance < 1)
           target = 3;
-          robustness = dog_distance_over_1;
+          robustness = -dog_distance_under_1;
           progress = 1;
           limiting = null;
         }
@@ -314,11 +322,6 @@ function paramValues(given) {
     values[index] = value;
   }
   return values;
-}
-
-/** Returns the first of equal values; Math.min treats -0 and 0 as different. */
-function min(x, y) {
-  return y < x ? y : x;
 }
 
 /** Returns the first of equal values; Math.max treats -0 and 0 as different. */

@@ -1,5 +1,6 @@
 // The game in a page: tltlc plays it if it has opened the page, and otherwise a person does, with the arrow keys.
 
+import { loadAgent } from "./agent.js";
 import { CLOCK_HZ, Courier, SIZE, isWall } from "./courier.js";
 import { Monitor } from "./deliver_monitor.mjs";
 import { Recorder, array, isStartedByTltlc, play } from "./tltl_client.js";
@@ -50,6 +51,7 @@ function playByHand() {
   const recorder = new Recorder("courier", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
   const held = [];
   let action = 0;
+  let agent = null;
   let before, state, start;
 
   function begin() {
@@ -58,6 +60,14 @@ function playByHand() {
     monitor.reset();
     recorder.begin();
     start = performance.now();
+    askAgent();
+  }
+
+  /** Let the agent choose the next action; until it has, no tick is played. */
+  async function askAgent() {
+    if (!agent || state.ended) return;
+    action = null;
+    action = await agent(state.observation, monitor.state, monitor.progress);
   }
 
   function tick() {
@@ -69,10 +79,12 @@ function playByHand() {
     element("progress").value = result.progress;
     element("text").textContent = `Still to do: ${result.label}`;
     if (result.done || state.ended) {
-      element("text").textContent = result.accepting ? "Delivered! Press a key." : "That went wrong. Press a key.";
+      const help = agent ? "" : " Press a key.";
+      element("text").textContent = (result.accepting ? "Delivered!" : "That went wrong.") + help;
       element("save").disabled = false;
       state.ended = true;
     }
+    askAgent();
   }
 
   addEventListener("keydown", (event) => {
@@ -86,10 +98,18 @@ function playByHand() {
     if (index >= 0) held.splice(index, 1);
   });
   element("save").addEventListener("click", () => recorder.download());
+  element("agent").addEventListener("click", async () => {
+    try {
+      agent = await loadAgent();
+      begin();
+    } catch (error) {
+      element("text").textContent = `There is no agent here yet: see README.md. ${error.message}`;
+    }
+  });
 
   function frame(time) {
     const share = Math.max((time - start) * CLOCK_HZ / 1000, 0);
-    if (share >= 1 && !state.ended) {
+    if (share >= 1 && !state.ended && action !== null) {
       tick();
       start = time;
     }

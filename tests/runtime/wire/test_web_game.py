@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import threading
 from collections.abc import Callable, Iterator
@@ -29,6 +30,7 @@ from tltlc.backends import emit
 Run = Callable[..., Outcome]
 FOLDER = ROOT / "examples" / "web_game"
 SPEC = FOLDER / "web_game.tltl"
+RUNTIME = os.environ.get("ONNXRUNTIME_WEB", "")
 
 pytestmark = pytest.mark.skipif(not NODE, reason="needs Node: apt-get install nodejs")
 
@@ -152,12 +154,12 @@ def test_the_monitor_inside_agrees_with_the_one_outside(tmp_path: Path) -> None:
     verdicts = set()
     with played(folder, NODE, "judged.js") as game, played(folder, NODE, "node_game.js") as scout:
         env = TltlEnv(game, str(SPEC) + ":deliver")
-        for seed in range(25):
+        for seed in range(24):
             env.reset(seed=seed)
             scout.reset(seed=seed)
             over = False
             while not over:
-                action = _careful_action(scout) if seed % 2 else int(env.np_random.integers(5))
+                action = (int(env.np_random.integers(5)), _careful_action(scout), _chasing_action(scout))[seed % 3]
                 scout.step(action)
                 _, _, terminated, truncated, _ = env.step(action)
                 over = terminated or truncated
@@ -196,18 +198,53 @@ def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) 
     assert result.out.splitlines()[-1].startswith("not accepted"), result.err
 
 
+@pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
+@pytest.mark.skipif(not RUNTIME, reason="needs ONNXRUNTIME_WEB, the folder of npm's onnxruntime-web")
+def test_the_trained_agent_rides_in_the_page(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    pytest.importorskip("onnx")
+    folder = tmp_path / "game"
+    shutil.copytree(FOLDER, folder)
+    (folder / "node_modules").mkdir()
+    (folder / "node_modules" / "onnxruntime-web").symlink_to(RUNTIME, target_is_directory=True)
+    exported = tltlc("inspect", folder / "courier.safetensors", "-o", folder / "courier.onnx")
+    assert exported.status == 0, exported.err
+    with served(folder) as address, chromium.browser() as browser:
+        page = browser.new_page()
+        page.set_default_timeout(chromium.HANG_MS)
+        page.goto(f"{address}/index.html")
+        for _ in range(5):
+            page.click("#agent")
+            page.wait_for_function("document.getElementById('text').textContent.startsWith('Still')")
+            page.wait_for_function("/^(Delivered|That|There)/.test(document.getElementById('text').textContent)")
+            text = page.inner_text("#text")
+            if text == "Delivered!":
+                return
+    raise AssertionError(f"the agent delivered in none of five rides: {text}")
+
+
 def _careful_action(game: WireEnv) -> int:
-    """Return the action that leads nearer to what comes next, and not to the dog; stay if there is none.
+    """Return the action that leads nearer to what comes next, and not near the dog."""
+    target = "door_distance" if game.tltl_signals()["carrying"] else "parcel_distance"
+    return _nearer(game, target, keep_off=2)
+
+
+def _chasing_action(game: WireEnv) -> int:
+    """Return the action that leads to the door, and beyond the gap in the wall to the dog."""
+    is_beyond = game.tltl_positions()["player"][0] > 8
+    return _nearer(game, "dog_distance" if is_beyond else "door_distance", keep_off=0)
+
+
+def _nearer(game: WireEnv, target: str, keep_off: float) -> int:
+    """Return the action after which a distance is least, farther than ``keep_off`` from the dog; 0 if none lessens it.
 
     The game plays each action, and returns to where it was.
     """
     kept = game.tltl_snapshot()
-    target = "door_distance" if game.tltl_signals()["carrying"] else "parcel_distance"
     best, chosen = game.tltl_signals()[target], 0
     for action in range(1, 5):
         game.step(action)
         signals = game.tltl_signals()
-        if signals["dog_distance"] > 2 and signals[target] < best:
+        if signals["dog_distance"] >= keep_off and signals[target] < best:
             best, chosen = signals[target], action
         game.tltl_restore(kept)
     return chosen
