@@ -23,12 +23,19 @@ Examples:
   tltlc inspect training/cover_and_hide-v0-cover_and_hide-0
   tltlc inspect bots/*.safetensors --format json
   tltlc inspect bot.safetensors -o bot.onnx      the policy for another engine
+  tltlc inspect bot.safetensors -o bot.onnx --for ml-agents
 """
 )
 @click.argument("files", metavar="POLICY...", nargs=-1, required=True)
 @output_file("OUT.onnx", "Write the policy as an ONNX model instead of the summary.")
+@click.option(
+    "--for",
+    "player",
+    type=click.Choice(("godot-rl", "ml-agents")),
+    help="Give the inputs and outputs of the ONNX model the names that Godot RL Agents or ML-Agents expects.",
+)
 @summary_format
-def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # noqa: A002
+def command(files: tuple[str, ...], path: Path | None, player: str | None, format: str) -> int:  # noqa: A002
     """Show what policies were trained for, what they observe and choose, and how their training went.
 
     A POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
@@ -37,6 +44,8 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         raise click.UsageError(f"-o writes a .onnx file, not `{path}`")
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
+    if player is not None and path is None:
+        raise click.UsageError("--for is for the model that -o writes")
     summaries: list[dict[str, Any]] = []
     with cli.Report(format, results=True) as report, name_missing_extra("`tltlc inspect`"):
         from tltl_runtime.policies.summary import summary, summary_text
@@ -44,7 +53,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         for name, (policy, training_so_far, progress_line) in read_each(files, _read, report):
             fields = {"file": name, **summary(policy), **training_so_far}
             if path is not None:
-                _export(policy, path)
+                _export(policy, path, player)
                 report.say(f"wrote {path}")
             elif format == "text":
                 print(f"{name}\n{summary_text(fields)}{progress_line}")
@@ -73,8 +82,9 @@ def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
     return policy, {"training": record_so_far(path)}, f"  ended    not yet: {progress(path)}\n"
 
 
-def _export(policy: Policy, path: Path) -> None:
+def _export(policy: Policy, path: Path, player: str | None) -> None:
     from tltl_runtime.policies.onnx import to_onnx
+    from tltl_runtime.policies.onnx_players import to_player_onnx
     from tltlc.api import fileio
 
-    fileio.write_file(path, to_onnx(policy))
+    fileio.write_file(path, to_onnx(policy) if player is None else to_player_onnx(policy, player))

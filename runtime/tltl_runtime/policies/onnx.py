@@ -6,7 +6,7 @@ import json
 import logging
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, cast
 
@@ -50,27 +50,50 @@ def to_onnx(policy: Policy) -> bytes:
     numbers. ``docs/policy-file.md`` describes the metadata.
     """
     card = policy.card
-    shapes = [shape for _, shape in card.shapes]
-    outputs = _output_names(card)
+    inputs = {name: torch.zeros(2, *shape) for name, (_, shape) in zip(_model_inputs(card), card.shapes, strict=True)}
+    return exported(policy_module(policy), inputs, output_names(card), metadata(policy), is_variadic=True)
+
+
+def exported(
+    module: nn.Module,
+    inputs: Mapping[str, Tensor],
+    outputs: Sequence[str],
+    texts: Mapping[str, str],
+    *,
+    is_variadic: bool = False,
+) -> bytes:
+    """Return a torch module as an ONNX model.
+
+    ``inputs`` are examples of its arguments by name, each with a batch of any size as its first axis. ``outputs`` are
+    the names of its results, and ``texts`` the metadata. ``is_variadic`` says that ``forward`` takes ``*parts``.
+    """
     batch = torch.export.Dim("batch", min=1)
+    dynamic: tuple[Any, ...] = tuple({0: batch} for _ in inputs)
     with _silence_exporter():
         program = torch.onnx.export(
-            (_PolicyModule(policy) if card.spaces is None else _SpacePolicyModule(policy, card.spaces)).eval(),
-            tuple(torch.zeros(2, *shape) for shape in shapes),
+            module.eval(),
+            tuple(inputs.values()),
             dynamo=True,
             verbose=False,
             opset_version=_OPSET,
-            input_names=_model_inputs(card),
-            output_names=outputs,
-            dynamic_shapes=(tuple({0: batch} for _ in shapes),),
+            input_names=list(inputs),
+            output_names=list(outputs),
+            dynamic_shapes=(dynamic,) if is_variadic else dynamic,
         )
     model = cast(Any, program).model_proto
     _forget_source(model)
-    set_model_props(model, _metadata(policy))
+    set_model_props(model, dict(texts))
     return bytes(model.SerializeToString(deterministic=True))
 
 
-def _output_names(card: Card) -> list[str]:
+def policy_module(policy: Policy) -> nn.Module:
+    """Return a policy as a torch module, from the parts of an observation to the outputs of :func:`output_names`."""
+    layouts = policy.card.spaces
+    return _PolicyModule(policy) if layouts is None else _SpacePolicyModule(policy, layouts)
+
+
+def output_names(card: Card) -> list[str]:
+    """Return the names of the outputs of a policy's module, in order."""
     if card.spaces is None:
         return ["logits", "action"]
     action = card.spaces.action
@@ -83,11 +106,11 @@ def _model_inputs(card: Card) -> list[str]:
     A name is the key of a part of the observation. If it is also the name of an output, or the name
     of another input, ``observation/`` is put before it.
     """
-    taken = {*_output_names(card), *(key for key, _ in card.shapes)}
+    taken = {*output_names(card), *(key for key, _ in card.shapes)}
     names = []
     for key, _ in card.shapes:
         name = key
-        while name in _output_names(card) or (name != key and name in taken):
+        while name in output_names(card) or (name != key and name in taken):
             name = f"observation/{name}"
         names.append(name)
     return names
@@ -107,7 +130,7 @@ class _PolicyModule(nn.Module):
 
 
 class _SpacePolicyModule(nn.Module):
-    """A policy for spaces of any kind as a torch module; :func:`_output_names` lists its outputs."""
+    """A policy for spaces of any kind as a torch module; :func:`output_names` lists its outputs."""
 
     def __init__(self, policy: Policy, layouts: SpaceLayouts) -> None:
         super().__init__()
@@ -135,7 +158,7 @@ class _SpacePolicyModule(nn.Module):
         return numbers.maximum(self.low).minimum(self.high)
 
 
-def _metadata(policy: Policy) -> dict[str, str]:
+def metadata(policy: Policy) -> dict[str, str]:
     """Return the metadata of the model, by name. All values except ``spec_hash`` are JSON texts."""
     card = policy.card
     texts = {
