@@ -76,6 +76,18 @@ def test_a_monster_is_the_cause_of_death() -> None:
     env.close()
 
 
+def test_the_trained_agent_hunts(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    result = tltlc("regress", FOLDER / "suite.toml", "--out", tmp_path / "report", "--workers", "1")
+    assert result.status in (0, 1), result.err
+    lines = [line.split() for line in result.out.splitlines() if not line.startswith(" ")]
+    verdicts = {words[0]: words[1] for words in lines if words[0].startswith("hunt")}
+    assert verdicts["hunt:v0"] == "pass"
+    assert verdicts["hunt:rockets"] in ("review", "fail")
+    assert verdicts["hunt:walking"] == "fail"
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert "<h3>Map</h3>" in page
+
+
 def play(env: gymnasium.Env[Any, Any], seed: int, choose: Callable[[Any], int]) -> None:
     """Play an episode."""
     env.reset(seed=seed)
