@@ -39,11 +39,11 @@ const SCENES = {
   ],
 };
 
-/** What is different in each variant: the cells that the dog runs in a tick, or the cell of the door. */
+/** What is different in each variant: the cells that the dog runs in a tick, or the gap in which it lies. */
 const VARIANTS = {
   v0: {},
   fast_dog: { dogSpeed: 1 },
-  new_address: { door: { yard: [13.5, 1.5], alley: [13.5, 1.5] } },
+  dog_in_gap: { place: { yard: [7.5, 5.5], alley: [5.5, 3.5] } },
 };
 
 export const SIZE = [SCENES.yard[0].length, SCENES.yard.length];
@@ -76,13 +76,13 @@ export class Courier {
     if (!Object.hasOwn(VARIANTS, variant)) throw new Refusal(`there is no variant \`${variant}\``);
     const random = randomNumbers(seed ?? 0);
     const one = (cells) => [...cells[Math.floor(random() * cells.length)]];
-    const { dogSpeed = 0.5, door } = VARIANTS[variant];
-    const route = cellsOf(name, "d");
+    const { dogSpeed = 0.5, place } = VARIANTS[variant];
+    const route = place ? [place[name]] : cellsOf(name, "d");
     this.now = {
       scene: name,
       courier: one(cellsOf(name, "c")),
       parcel: one(cellsOf(name, "p")),
-      door: door?.[name] ?? cellsOf(name, "D")[0],
+      door: cellsOf(name, "D")[0],
       carrying: false,
       route: [route[0], route[route.length - 1]],
       dog: one(route),

@@ -100,7 +100,7 @@ def test_the_copied_and_the_generated_file_are_up_to_date() -> None:
 
 
 @pytest.mark.parametrize("scene", ["yard", "alley"])
-@pytest.mark.parametrize("variant", ["v0", "fast_dog", "new_address"])
+@pytest.mark.parametrize("variant", ["v0", "fast_dog", "dog_in_gap"])
 def test_a_scene_can_be_played(scene: str, variant: str) -> None:
     with played(FOLDER, NODE, "node_game.js") as env:
         for seed in (0, 3, 2**31, 2**53 - 1):
@@ -256,5 +256,5 @@ def test_the_trained_agent_delivers(tltlc: Run, monkeypatch: pytest.MonkeyPatch,
     assert result.status in (0, 1), result.err
     lines = [line.split() for line in result.out.splitlines() if line.startswith("yard")]
     verdicts = {words[0]: words[1] for words in lines}
-    assert verdicts["yard:v0"] == "pass"
-    assert "fail" in (verdicts["yard:fast_dog"], verdicts["yard:new_address"])
+    assert verdicts["yard:v0"] in ("pass", "review")
+    assert verdicts["yard:dog_in_gap"] == "fail"
