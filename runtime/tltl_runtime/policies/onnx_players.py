@@ -105,6 +105,11 @@ class _GodotRlModule(_FlatModule):
 
 
 class _MlAgentsModule(_FlatModule):
+    version: Tensor
+    memory: Tensor
+    number_shape: Tensor
+    choice_shape: Tensor
+
     def __init__(self, policy: Policy) -> None:
         super().__init__(policy)
         spaces = policy.card.spaces
