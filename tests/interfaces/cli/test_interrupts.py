@@ -55,8 +55,8 @@ def test_an_import_finishes_before_its_interrupt(tmp_path: Path) -> None:
     script = "import time\nwith end_on_signals():\n    import slow\n    print('imported')\n    time.sleep(60)"
     status, out, err = _interrupt_at_line(tmp_path, script, "imports\n")
     assert (status, err) == (130, "")
-    # On a slow machine, the interrupt may arrive right after the import.
-    assert out in ("", "imported\n")
+    # On a slow machine, the interrupt may arrive right after the import, also before the end of the line.
+    assert "imported\n".startswith(out)
 
 
 def test_an_interrupt_ends_an_endless_import(tmp_path: Path) -> None:

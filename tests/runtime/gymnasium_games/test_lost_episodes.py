@@ -22,6 +22,7 @@ stop.steps = {steps}
 stop.confirmation = 2
 rollout = {{ envs = 2, steps = 40, workers = {workers} }}
 network.hidden = [16]
+exploration.ways = {ways}
 checkpoint_s = 0.0
 """
 
@@ -50,8 +51,8 @@ def mortal(folder: Path, fault: str, *episodes: int | str, step_s: float = HANG_
     return path
 
 
-def train(tltlc: Run, folder: Path, *, steps: int = 400, workers: int = 1) -> Outcome:  # noqa: F811
-    (folder / "settings.toml").write_text(SETTINGS.format(steps=steps, workers=workers))
+def train(tltlc: Run, folder: Path, *, steps: int = 400, workers: int = 1, ways: int = 0) -> Outcome:  # noqa: F811
+    (folder / "settings.toml").write_text(SETTINGS.format(steps=steps, workers=workers, ways=ways))
     return tltlc("train", "--game", "counter.game.toml:short", "--config", "settings.toml", "-o", "run")
 
 
@@ -61,7 +62,7 @@ def _trained(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("trained") / "game"
     folder.mkdir()
     mortal(folder, "exit")
-    (folder / "settings.toml").write_text(SETTINGS.format(steps=160, workers=1))
+    (folder / "settings.toml").write_text(SETTINGS.format(steps=160, workers=1, ways=0))
     from tltlc.interfaces.cli.main import main
 
     with pytest.raises(SystemExit):
@@ -175,6 +176,28 @@ def test_a_game_that_dies_in_each_episode_ends_the_training(tltlc: Run, folder: 
     assert "error[TLT0871]: the training was interrupted" in result.err
     assert "ended with exit status 3 instead of answering `step`" in result.err
     assert "the game's standard error ends:\n        now: exit\n" in result.err
+
+
+def test_a_game_that_dies_while_it_is_measured_is_measured_again(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    mortal(folder, "exit", 2)
+    result = train(tltlc, folder, ways=1)
+    assert result.status in (0, 1), result.err
+    assert "searches by restoring the game's snapshots" in result.err
+    assert "lost" not in result.err
+
+
+def test_a_game_that_always_dies_while_it_is_measured_is_not_searched(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    mortal(folder, "exit", 2, 3, 4)
+    result = train(tltlc, folder, ways=1)
+    assert result.status in (0, 1), result.err
+    assert "trains from the start alone, without a search: the game `counter.game.toml` ended" in result.err
+
+
+def test_a_search_goes_on_without_lost_episodes(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    mortal(folder, "exit", *range(40, 400, 60))
+    result = train(tltlc, folder, ways=1)
+    assert result.status in (0, 1), result.err
+    assert "the training was interrupted" not in result.err
 
 
 def test_a_suite_reports_lost_episodes(tltlc: Run, trained: Path, folder: Path) -> None:  # noqa: F811

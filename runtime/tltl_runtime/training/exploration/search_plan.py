@@ -20,14 +20,16 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.same_values import copied, is_same, other_name
 from tltl_runtime.training.exploration.cells import CellGrid, position_grid, signal_grid
 from tltl_runtime.training.exploration.snapshots import has_snapshots, restore, save
+from tltl_runtime.wire.errors import WireError
 from tltlc.api import record
 
-ObstacleKind = Literal["plays", "restore", "one at a time", "earlier"]
+ObstacleKind = Literal["plays", "restore", "one at a time", "earlier", "lost"]
 """Why there is no search.
 
 ``plays``: equal seeds and actions give different plays. ``restore``: a restored snapshot is not what
 was saved. ``one at a time``: the game plays for one environment at a time. ``earlier``: the training
-was begun without a search, and goes on so.
+was begun without a search, and goes on so. ``lost``: the game, in another process, is lost each time
+it is measured.
 """
 
 THE_END: Final = "the end"
@@ -38,6 +40,8 @@ _STEPS: Final = 200
 """The steps of a play, as in ``tltlc check --game``."""
 _REPEAT_PROBABILITY: Final = 0.7
 """The probability that an action is that of the step before, so that the player gets around."""
+_MEASUREMENTS: Final = 3
+"""A game that is lost while it is measured is started and measured again, this many times in all."""
 _RESTORES: Final = 4
 """So many snapshots are restored, each in another episode."""
 _BEFORE_SNAPSHOT: Final = 20
@@ -50,7 +54,8 @@ class SearchObstacle:
 
     ``name`` is the signal that differs, or ``THE_OBSERVATION`` or ``THE_END``; ``first`` and
     ``second`` are its values. ``step`` is the step of the play, or the steps after the restored
-    snapshot. ``problem`` is the exception of ``tltl_snapshot`` or ``tltl_restore``, empty if there is none.
+    snapshot. ``problem`` is the exception of ``tltl_snapshot`` or ``tltl_restore``, or how the game was
+    lost; empty if there is none.
     """
 
     kind: ObstacleKind
@@ -100,6 +105,21 @@ def search_plan(env: TltlEnv, game: Game[Any, Any], *, has_cells: bool) -> Searc
         return SearchPlan("own" if has_cells else "signals", obstacle=SearchObstacle("one at a time"))
     if has_cells and game.promises_replays:
         return SearchPlan("own")
+    problem = ""
+    for _ in range(_MEASUREMENTS):
+        try:
+            return _measured(env, game, has_cells=has_cells)
+        except WireError as error:
+            problem = error.diagnostics[0].title
+    return SearchPlan("own" if has_cells else "signals", obstacle=SearchObstacle("lost", problem=problem))
+
+
+def _measured(env: TltlEnv, game: Game[Any, Any], *, has_cells: bool) -> SearchPlan:
+    """Return how to search a game, after plays and restores that show what it can do.
+
+    Raises:
+        TltlError: the game raises an exception, or is lost (WireError).
+    """
     actions = _actions(env)
     with warnings.catch_warnings():
         # Warnings about values of signals are for the training itself.
