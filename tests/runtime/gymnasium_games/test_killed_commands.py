@@ -29,7 +29,7 @@ def _folder(tmp_path: Path, trained: Path, monkeypatch: pytest.MonkeyPatch) -> P
     folder = tmp_path / "game"
     folder.mkdir()
     shutil.copy(trained, folder / "policy.safetensors")
-    (folder / "settings.toml").write_text(SETTINGS.format(steps=400, workers=2))
+    (folder / "settings.toml").write_text(SETTINGS.format(steps=400, workers=2, ways=0))
     monkeypatch.chdir(folder)
     return folder
 
