@@ -26,7 +26,7 @@ _CHUNK: Final = 1 << 16
 class Listener:
     """Listens on a free port of 127.0.0.1 for the one game that knows ``token``.
 
-    Any other connection is told why it is refused, and closed. ``refusal`` is the reason of the last
+    It refuses any other connection with a reason, and closes it. ``refusal`` is the reason of the last
     refusal, such as "sent a wrong token"; empty if there was none.
     """
 

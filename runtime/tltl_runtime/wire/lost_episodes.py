@@ -12,7 +12,7 @@ MOST_IN_A_ROW: Final = 3
 """If more episodes than these are lost one after the other, the game is at fault each time."""
 
 _SHARE: Final = 10
-"""At most one of so many episodes may be lost."""
+"""At most a tenth of the episodes may be lost."""
 
 
 @record

@@ -100,7 +100,7 @@ def test_files_outside_the_folder_need_an_option(tltlc, inside: Path) -> None:  
     arguments = ("check", "--game", "game/corridor.game.toml:short:v0")
     refused = tltlc(*arguments).err
     assert "`../rules.tltl` is outside the folder of the game file" in refused
-    # Only `check` has the option, so the way out that the message names is one for all commands.
+    # Only `check` has the option, so the message gives a help that works for all commands.
     assert "move it into this folder, or the game file into a folder that contains both" in refused
     assert tltlc(*arguments, "--allow-outside").status == 0
 

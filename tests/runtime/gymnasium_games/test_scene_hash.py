@@ -95,10 +95,10 @@ def test_modules_that_are_offered_or_relative_are_followed(tmp_path: Path, text:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(content)
     always = {"game.py"} | ({"maps/__init__.py"} if "from maps" in text or "maps')" in text else set())
-    found = set(python_files(tmp_path, ["game"]))
+    files = set(python_files(tmp_path, ["game"]))
     if text == "from maps import rooms":
         followed = {"maps/rooms/__init__.py", "maps/rooms/crypt.py", "maps/large.py"}
-    assert found == always | followed
+    assert files == always | followed
 
 
 def test_a_file_that_has_gone_is_an_error(tmp_path: Path) -> None:

@@ -91,7 +91,7 @@ def test_a_file_counts_as_changed_only_if_its_bytes_have_changed(folder: Path, b
 
 def test_a_case_without_a_scene_has_the_name_of_the_first_scene(folder: Path) -> None:
     (folder / "first.toml").write_text(case("corridor.game.toml", scene=""))
-    assert [each.name for each in read_suite(folder / "first.toml").cases] == ["short:v0"]
+    assert [suite_case.name for suite_case in read_suite(folder / "first.toml").cases] == ["short:v0"]
 
 
 def test_a_baseline_with_which_no_case_can_pass_says_so(tltlc: Run, folder: Path) -> None:  # noqa: F811

@@ -19,7 +19,7 @@ def descendants(pid: int) -> Iterator[int]:
 
 def supervisors(pid: int) -> list[int]:
     """Return the ids of the supervisors of games among a process and its descendants."""
-    return [each for each in descendants(pid) if _is_supervisor(each)]
+    return [descendant for descendant in descendants(pid) if _is_supervisor(descendant)]
 
 
 @contextmanager

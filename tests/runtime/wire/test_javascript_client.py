@@ -57,15 +57,15 @@ def page_command(folder: Path, page: str) -> list[str]:
 
 def processes_with(text: str) -> list[int]:
     """Return the ids of the processes whose command contains a text, on Linux."""
-    found = []
+    ids = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             command = (entry / "cmdline").read_bytes()
         except OSError:
             continue
         if text.encode() in command and int(entry.name) != os.getpid():
-            found.append(int(entry.name))
-    return found
+            ids.append(int(entry.name))
+    return ids
 
 
 def test_the_client_passes_the_conversation_in_node(folder: Path) -> None:

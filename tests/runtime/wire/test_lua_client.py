@@ -31,8 +31,8 @@ def _missing(interpreter: str, library: str) -> str:
     if shutil.which(interpreter) is None:
         return f"{interpreter} is not installed"
     words = [interpreter, "-e", f'require "{library}"']
-    found = subprocess.run(words, capture_output=True, timeout=HANG_S, check=False).returncode == 0
-    return "" if found else f"{interpreter} has no LuaSocket (on Debian: apt-get install lua-socket)"
+    is_there = subprocess.run(words, capture_output=True, timeout=HANG_S, check=False).returncode == 0
+    return "" if is_there else f"{interpreter} has no LuaSocket (on Debian: apt-get install lua-socket)"
 
 
 def _usable(library: str) -> Iterator[Any]:

@@ -94,11 +94,11 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
         Return the observation and the info there, and how many actions lead there.
         """
-        found = None
+        saved = None
         if self._store is not None and self._has_begun:
-            found = self._store.nearest(self._seed, b"".join(map(self._bytes, actions)))
-        if found is not None:
-            self._actions, moment = found
+            saved = self._store.nearest(self._seed, b"".join(map(self._bytes, actions)))
+        if saved is not None:
+            self._actions, moment = saved
             problem = None
             try:
                 problem = restore(self._play, moment)
