@@ -184,9 +184,10 @@ def local_results(
     if workers < 0:
         raise ValueError(f"the number of workers must be at least 0, not {workers}")
     with ExitStack() as stack:
-        team = [WorkerProcess(make, modules) for _ in range(min(workers or cores(), len(requests)))]
-        for worker in team:
-            stack.callback(worker.close)
+        team = [
+            stack.enter_context(closing(WorkerProcess(make, modules)))
+            for _ in range(min(workers or cores(), len(requests)))
+        ]
         yield from _without_lost(play_all(team, requests, seed, replay_command), len(requests), on_lost)
 
 

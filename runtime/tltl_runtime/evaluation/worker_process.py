@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
+import atexit
+import pickle
 import signal
 import threading
+import traceback
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from concurrent.futures import Future
 from multiprocessing.connection import Connection
 from typing import Final
 
@@ -17,85 +17,110 @@ from tltl_runtime.evaluation.scheduler import Result, WorkerLostError
 from tltl_runtime.support.child_processes import end_with_parent, worker_context
 from tltlc.api import fileio
 
+_PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"
+
+_TO_END_S: Final = 5.0
+"""The seconds that an idle process has to close its player."""
+
 
 class WorkerProcess:
     """A process on this machine that plays episodes.
 
     The process calls ``make`` once, which returns the object that plays the episodes. ``make`` must be
     picklable. ``modules`` are the names of the modules that this object needs; on Linux, a fork server
-    imports them once for all workers. Each worker has an executor of its own. So if the process ends,
-    it is known which episode was lost.
+    imports them once for all workers.
 
-    The process has one end of a pipe, and ends when the other end, which this object has, is closed. So
-    neither Ctrl-C nor the end of a regression test waits for a game that does not answer.
+    A ``ProcessPoolExecutor`` would wait for ever for the rest of a result if its process is killed
+    while it sends one. Here, the pipe has no other sender, so it closes with the process.
     """
 
     def __init__(self, make: Callable[[], EpisodePlayer], modules: Sequence[str] = ()) -> None:
         context = worker_context(["tltl_runtime.evaluation.player", *modules])
-        leash, self._leash = context.Pipe(duplex=False)
+        self._connection, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(make, theirs), name="player of episodes")
+        with fileio.block_interrupts():
+            self._process.start()
+        theirs.close()
         self._playing: Future[Result] | None = None
-        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(make, leash))
+        # At its exit, Python waits for processes that nobody closed.
+        atexit.register(self._process.kill)
 
     def play(self, request: EpisodeRequest) -> Future[Result]:
         """Start to play an episode; return a future of its result.
 
         The future raises the exception that the episode raised, or :class:`WorkerLostError` if the
-        process ends.
+        process ends. The result of the episode before must be there.
         """
         future: Future[Result] = Future()
         self._playing = future
-        try:
-            with fileio.block_interrupts():
-                playing = self._executor.submit(_play, request)
-            playing.add_done_callback(lambda done: _pass_on(done, future))
-        except BrokenProcessPool:
-            future.set_exception(WorkerLostError(_PROCESS_ENDED))
+        self._receiver = threading.Thread(target=self._receive, args=(request, future), daemon=True)
+        self._receiver.start()
         return future
 
     def close(self) -> None:
         """End the process, even if it plays an episode."""
-        if self._playing is not None and not self._playing.done():
-            self._leash.close()
-        # Wait: an executor that is still shutting down when Python exits may fail or hang.
-        self._executor.shutdown(wait=True, cancel_futures=True)
-        self._leash.close()
+        if self._playing is not None:
+            if not self._playing.done():
+                self._process.kill()
+            self._receiver.join()
+        self._connection.close()
+        self._process.join(_TO_END_S)
+        self._process.kill()
+        self._process.join()
+        atexit.unregister(self._process.kill)
+
+    def _receive(self, request: EpisodeRequest, future: Future[Result]) -> None:
+        """Send a request, and pass its result or its error on to ``future``."""
+        try:
+            self._connection.send(request)
+            result, error, where = self._connection.recv()
+        except (EOFError, OSError):
+            future.set_exception(WorkerLostError(_PROCESS_ENDED))
+            return
+        except Exception as unreadable:
+            future.set_exception(unreadable)
+            return
+        if error is None:
+            future.set_result(result)
+        else:
+            error.__cause__ = _TracebackInWorker(where)
+            future.set_exception(error)
 
 
-_PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"
+class _TracebackInWorker(Exception):
+    """The cause of an error in a worker process; its message is the traceback there."""
 
-_make: Callable[[], EpisodePlayer]
-_player: EpisodePlayer | None = None
-"""The object with which this worker process plays episodes; None before the first episode."""
+    def __str__(self) -> str:
+        return f"\n{self.args[0]}"
 
 
-def _begin(make: Callable[[], EpisodePlayer], leash: Connection) -> None:
-    global _make
+def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
+    """Play the episodes that arrive at ``connection`` until its other end is closed."""
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     end_with_parent()
-    threading.Thread(target=_end_with, args=(leash,), name="end with the pipe", daemon=True).start()
-    _make = make
+    player: EpisodePlayer | None = None
+    try:
+        while True:
+            request = connection.recv()
+            try:
+                player = player or make()
+                answer = pickle.dumps((player.play(request), None, ""))
+            except Exception as error:
+                answer = _failure(error)
+            connection.send_bytes(answer)
+    except (EOFError, OSError):
+        if player is not None:
+            player.close()
 
 
-def _end_with(leash: Connection) -> None:
-    """End this process when the other end of a pipe is closed."""
-    with suppress(EOFError, OSError):
-        leash.recv_bytes()
-    os._exit(1)
-
-
-def _play(request: EpisodeRequest) -> Result:
-    # The player is made here because an exception in `_begin` would be lost.
-    global _player
-    _player = _player or _make()
-    return _player.play(request)
-
-
-def _pass_on(done: Future[Result], future: Future[Result]) -> None:
-    error = done.exception()
-    if isinstance(error, BrokenProcessPool):
-        future.set_exception(WorkerLostError(_PROCESS_ENDED))
-    elif error is not None:
-        future.set_exception(error)
-    else:
-        future.set_result(done.result())
+def _failure(error: Exception) -> bytes:
+    """Return the message that carries an error to the other process."""
+    where = traceback.format_exc()
+    try:
+        message = pickle.dumps((None, error, where))
+        pickle.loads(message)
+    except Exception:
+        # An exception whose constructor has arguments of its own cannot always be pickled.
+        return pickle.dumps((None, RuntimeError(f"{type(error).__name__}: {error}"), where))
+    return message

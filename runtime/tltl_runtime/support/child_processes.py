@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 from collections.abc import Iterable
+from multiprocessing import resource_tracker
 from multiprocessing.context import ForkServerContext, SpawnContext
 
 
@@ -24,6 +25,8 @@ def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
+    # The first start of a worker would start this, too, and leave SIGINT unblocked (`fileio.block_interrupts`).
+    resource_tracker.ensure_running()
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(list(preloaded))
     return context

@@ -1,12 +1,13 @@
-"""Worker processes on this machine: Ctrl-C during their start, and the fork server."""
+"""Worker processes on this machine: Ctrl-C during their start, the fork server, and their end."""
 
 from __future__ import annotations
 
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Final, cast
 
 import pytest
 
@@ -28,6 +29,9 @@ if __name__ == "__mp_main__":
 class Plays:
     def play(self, request):
         return request
+
+    def close(self):
+        pass
 
 if __name__ == "__main__":
     worker = WorkerProcess(Plays)
@@ -79,3 +83,58 @@ def test_workers_are_forked_from_one_process_with_one_thread_and_without_torch()
             worker.close()
     parent, *state = cast(Any, first_origin)
     assert first_origin == second_origin and parent != os.getpid() and state == [1, False]
+
+
+LARGE: Final = b"x" * (100 << 20)
+
+
+class Large:
+    """Plays episodes whose results are so large that sending one takes a while, or that fail to be sent."""
+
+    def play(self, request: EpisodeRequest) -> Any:
+        if request.sampled:
+            return LARGE
+        raise OwnError(request, "in the game")
+
+    def close(self) -> None:
+        pass
+
+
+class OwnError(Exception):
+    """Cannot be pickled, because its constructor has two arguments."""
+
+    def __init__(self, request: EpisodeRequest, message: str) -> None:
+        super().__init__(f"episode {request.index}: {message}")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 0.9])
+def test_a_worker_that_sends_a_large_result_can_be_closed(share: float) -> None:
+    worker = WorkerProcess(cast("type[EpisodePlayer]", Large))
+    began = time.monotonic()
+    assert cast(Any, worker.play(EpisodeRequest(0)).result(HANG_S)) == LARGE
+    took = time.monotonic() - began
+    worker.play(EpisodeRequest(1))
+    time.sleep(share * took)
+    worker.close()
+
+
+def test_an_error_that_cannot_be_pickled_is_raised_with_the_traceback_of_the_worker() -> None:
+    worker = WorkerProcess(cast("type[EpisodePlayer]", Large))
+    try:
+        with pytest.raises(RuntimeError, match="OwnError: episode 3: in the game") as caught:
+            worker.play(EpisodeRequest(3, sampled=False)).result(HANG_S)
+    finally:
+        worker.close()
+    assert "in play\n" in str(caught.value.__cause__)
+
+
+def test_a_worker_that_is_never_closed_does_not_keep_python_from_ending() -> None:
+    code = (
+        "from tests.runtime.evaluation.test_local import EpisodeRequest, Large, WorkerProcess\n"
+        "worker = WorkerProcess(Large)\n"
+        "assert len(worker.play(EpisodeRequest(0)).result()) == 100 << 20\n"
+        "worker.play(EpisodeRequest(1))\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, timeout=HANG_S, check=False)
+    assert done.returncode == 0
