@@ -19,7 +19,7 @@ from tltl_runtime.evaluation.player import (
     Setup,
 )
 from tltl_runtime.evaluation.scheduler import ReplayCommand, Result, play_all
-from tltl_runtime.evaluation.worker_process import WorkerProcess
+from tltl_runtime.evaluation.worker_process import WorkerProcess, close_all
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import check_policy
@@ -184,10 +184,9 @@ def local_results(
     if workers < 0:
         raise ValueError(f"the number of workers must be at least 0, not {workers}")
     with ExitStack() as stack:
-        team = [
-            stack.enter_context(closing(WorkerProcess(make, modules)))
-            for _ in range(min(workers or cores(), len(requests)))
-        ]
+        team: list[WorkerProcess] = []
+        stack.callback(close_all, team)
+        team.extend(WorkerProcess(make, modules) for _ in range(min(workers or cores(), len(requests))))
         yield from _without_lost(play_all(team, requests, seed, replay_command), len(requests), on_lost)
 
 

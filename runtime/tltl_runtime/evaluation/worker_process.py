@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import atexit
+import os
 import pickle
 import signal
 import threading
+import time
 import traceback
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
@@ -20,7 +22,7 @@ from tltlc.api import fileio
 _PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"
 
 _TO_END_S: Final = 5.0
-"""The seconds that an idle process has to close its player."""
+"""The seconds that idle processes have to close their players."""
 
 
 class WorkerProcess:
@@ -42,6 +44,7 @@ class WorkerProcess:
             self._process.start()
         theirs.close()
         self._playing: Future[Result] | None = None
+        self._receiver: threading.Thread | None = None
         # At its exit, Python waits for processes that nobody closed.
         atexit.register(self._process.kill)
 
@@ -57,17 +60,25 @@ class WorkerProcess:
         self._receiver.start()
         return future
 
+    def end(self) -> None:
+        """Kill the process if it plays an episode; otherwise tell it to close its player and to end."""
+        if self._playing is not None and not self._playing.done():
+            self._process.kill()
+        if self._receiver is not None:
+            self._receiver.join(_TO_END_S)
+        self._connection.close()
+
+    def wait(self, seconds: float) -> None:
+        """Wait for the end of the process; kill it if it takes longer than ``seconds``."""
+        self._process.join(seconds)
+        self._process.kill()
+        self._process.join(_TO_END_S)
+        atexit.unregister(self._process.kill)
+
     def close(self) -> None:
         """End the process, even if it plays an episode."""
-        if self._playing is not None:
-            if not self._playing.done():
-                self._process.kill()
-            self._receiver.join()
-        self._connection.close()
-        self._process.join(_TO_END_S)
-        self._process.kill()
-        self._process.join()
-        atexit.unregister(self._process.kill)
+        self.end()
+        self.wait(_TO_END_S)
 
     def _receive(self, request: EpisodeRequest, future: Future[Result]) -> None:
         """Send a request, and pass its result or its error on to ``future``."""
@@ -87,6 +98,15 @@ class WorkerProcess:
             future.set_exception(error)
 
 
+def close_all(workers: Sequence[WorkerProcess]) -> None:
+    """End all workers at the same time, even those that play."""
+    for worker in workers:
+        worker.end()
+    deadline = time.monotonic() + _TO_END_S
+    for worker in workers:
+        worker.wait(max(0.0, deadline - time.monotonic()))
+
+
 class _TracebackInWorker(Exception):
     """The cause of an error in a worker process; its message is the traceback there."""
 
@@ -99,6 +119,8 @@ def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     end_with_parent()
+    # A program that the game starts would keep the pipe open after the end of this process.
+    os.set_inheritable(connection.fileno(), False)
     player: EpisodePlayer | None = None
     try:
         while True:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ import pytest
 from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest
+from tltl_runtime.evaluation.scheduler import WorkerLostError
 from tltl_runtime.evaluation.worker_process import WorkerProcess
 
 _MAIN = """
@@ -138,3 +140,30 @@ def test_a_worker_that_is_never_closed_does_not_keep_python_from_ending() -> Non
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
     done = subprocess.run([sys.executable, "-c", code], env=environment, timeout=HANG_S, check=False)
     assert done.returncode == 0
+
+
+class StartsProgram:
+    """Starts a program that has all descriptors that it can have, and then never ends its episode."""
+
+    def play(self, request: EpisodeRequest) -> Any:
+        if request.index == 0:
+            return subprocess.Popen(["sleep", str(HANG_S)], close_fds=False).pid
+        time.sleep(HANG_S)
+        return None
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs the program sleep")
+def test_a_program_that_outlives_its_worker_does_not_keep_the_pipe_open() -> None:
+    worker = WorkerProcess(cast("type[EpisodePlayer]", StartsProgram))
+    program = cast(Any, worker.play(EpisodeRequest(0)).result(HANG_S))
+    try:
+        future = worker.play(EpisodeRequest(1))
+        worker._process.kill()
+        with pytest.raises(WorkerLostError):
+            future.result(HANG_S)
+    finally:
+        worker.close()
+        os.kill(program, signal.SIGKILL)
