@@ -66,7 +66,7 @@ BUSY   ?= 6
 test-again: $(VENV)/.installed-dev
 	$(BIN)/python -m tests.repeated_runs $(N) $(BUSY) $(ARGS)
 
-# Run the slow tests: trainings that are killed and continued, the shipped suite, large formulas. This takes minutes.
+# Run the slow tests: whole trainings, Ray clusters, long sessions, the shipped suite, large formulas. This takes minutes.
 test-slow: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -q -rs -n 2 -m slow
 

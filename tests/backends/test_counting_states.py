@@ -121,6 +121,7 @@ def test_some_random_parallel_runs_are_folded() -> None:
     assert fold_parallel_runs(find(parallel_runs(), lambda fspa: len(fold_parallel_runs(fspa).folded) == 3))
 
 
+@pytest.mark.slow
 @times(40)
 @given(counting() | in_step())
 def test_folding_parallel_runs_draws_no_more_states_than_folding_runs(fspa: Fspa) -> None:

@@ -32,6 +32,7 @@ def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
     }
 
 
+@pytest.mark.slow
 def test_a_quick_run_is_resumed_and_skips_finished_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for package in training.NEEDED:
         pytest.importorskip(package)

@@ -119,6 +119,7 @@ def test_all_contextual_keywords_are_tested() -> None:
     assert {"after", "as", "at", "expect", "for", "in", "step", "x", "within"} == set(load().soft)
 
 
+@pytest.mark.slow
 def test_real_files_are_split_like_the_compiler_splits_them() -> None:
     folders = ("examples", "stdlib_predicates", "tltlc", "runtime", "tests", "editors")
     count = 0

@@ -52,11 +52,13 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_the_grammar_tests_pass(extension: Path) -> None:
     done = npm(extension, "test")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_the_package_is_complete(extension: Path) -> None:
     done = npm(extension, "run", "package")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -363,6 +363,7 @@ def test_damaged_metrics_are_read_or_rejected(seed: int, training: Path) -> None
         path.unlink()
 
 
+@pytest.mark.slow
 @given(seed=SEEDS)
 @times(100)
 def test_a_damaged_record_of_a_training_is_read_or_rejected(seed: int, training: Path) -> None:
@@ -449,6 +450,7 @@ def _other_value(random: Random, value: Any) -> Any:
     return deepcopy(random.choice(STRANGE))
 
 
+@pytest.mark.slow
 @given(seed=SEEDS)
 @times(60)
 def test_a_checkpoint_with_unusual_values_is_read_or_rejected(

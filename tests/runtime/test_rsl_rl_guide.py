@@ -29,6 +29,7 @@ def errand(tmp_path: Path) -> dict[str, Any]:
     return runpy.run_path(str(path))
 
 
+@pytest.mark.slow
 def test_the_program_prints_lines_of_the_form_shown(tmp_path: Path) -> None:
     short = PROGRAM.text.replace("train(4096, 8, DEVICE)", "train(256, 2, DEVICE)").replace("learn(15)", "learn(1)")
     assert short != PROGRAM.text

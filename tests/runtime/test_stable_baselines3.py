@@ -32,6 +32,7 @@ def test_a_few_updates_change_every_weight_and_actions_are_valid() -> None:
     envs.close()
 
 
+@pytest.mark.slow
 def test_the_program_prints_the_output_shown(tmp_path: Path) -> None:
     program, printed = blocks(DOCS / "guides" / "stable-baselines3.md")
     check_program(program, printed, tmp_path / "program.py")

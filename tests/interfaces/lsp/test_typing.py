@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.interfaces.lsp.client import Client
 from tests.interfaces.lsp.test_server import SPEC, codes
 from tests.interfaces.lsp.texts import ENDLESS, open_text
@@ -168,6 +170,7 @@ def test_tests_that_could_not_run_are_reported(client: Client, tmp_path: Path) -
     assert text == "the tests of `leave` did not run: a text changed, or its automata take more than 60 s"
 
 
+@pytest.mark.slow
 def test_a_long_analysis_gives_way_to_the_edited_document(client: Client, tmp_path: Path) -> None:
     slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(slow) == []

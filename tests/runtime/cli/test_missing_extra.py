@@ -52,6 +52,7 @@ episodes = 25
 """
 
 
+@pytest.mark.slow
 def test_levels_are_judged_without_the_packages_that_learn(tmp_path: Path) -> None:
     (tmp_path / "suite.toml").write_text(SUITE, encoding="utf-8")
     for command, status in [

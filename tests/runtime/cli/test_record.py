@@ -155,6 +155,7 @@ def test_a_signal_ends_it_with_the_number_of_demonstrations(here: Path, name: st
     assert len(names(here / "many")) == int(err.split()[1]) >= 1
 
 
+@pytest.mark.slow
 @needs_screen
 def test_a_person_records_until_there_are_enough(here: Path) -> None:
     words = ("record", "cover_and_hide", "--by", "keyboard", "--spec", "soon.tltl")

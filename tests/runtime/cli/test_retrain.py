@@ -56,6 +56,7 @@ def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     with_few_environments(monkeypatch)
 
 
+@pytest.mark.slow
 def test_retraining_reports_that_no_demonstration_was_found(
     tltlc: Run,  # noqa: F811
     game: Path,

@@ -38,6 +38,7 @@ def cells(folder: Path) -> dict[str, int]:
     return {path.name: path.stat().st_mtime_ns for path in folder.glob("*.json")}
 
 
+@pytest.mark.slow
 def test_the_expert_and_the_shipped_policies_fill_the_table(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "expert", "ours")
     result = tltlc("table1", "--shipped", *ONE)

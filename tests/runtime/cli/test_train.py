@@ -131,6 +131,7 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
     assert json.loads((folder / "record.json").read_text())["iterations"] == 3
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("run")
 def test_a_training_killed_at_its_limit_is_finished_when_it_resumes(tltlc: TltlcFunction) -> None:  # noqa: F811
     folder = Path("run")

@@ -37,7 +37,7 @@ V0 = Variant("v0")
 CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
 """A spec that an untrained policy meets in some episodes, but not in all."""
 
-POOLS = [2, pytest.param("ray", marks=needs_ray)]
+POOLS = [2, pytest.param("ray", marks=[needs_ray, pytest.mark.slow])]
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +125,7 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) 
     )
 
 
-@pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
+@pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=[needs_ray, pytest.mark.slow])])
 def test_an_error_of_the_game_is_raised_unchanged(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", V0, policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as caught:
@@ -217,6 +217,7 @@ def busy(ray_here: None) -> Iterator[Any]:
 
 
 @needs_ray
+@pytest.mark.slow
 def test_a_cluster_without_free_cores_is_reported_after_waiting(
     policy: Policy, busy: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -232,6 +233,7 @@ def test_a_cluster_without_free_cores_is_reported_after_waiting(
 
 
 @needs_ray
+@pytest.mark.slow
 def test_a_core_that_becomes_free_is_used(
     policy: Policy, busy: Any, expected: list[EpisodeSummary], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -43,9 +43,9 @@ def _folder(tmp_path: Path, trained: Path, monkeypatch: pytest.MonkeyPatch) -> P
         ((*EVALUATE, "--workers", "2"), signal.SIGKILL),
         ((*EVALUATE, "--workers", "2"), signal.SIGTERM),
         ((*EVALUATE, "--workers", "2"), signal.SIGINT),
-        (TRAIN, signal.SIGKILL),
-        (TRAIN, signal.SIGTERM),
-        (TRAIN, signal.SIGINT),
+        pytest.param(TRAIN, signal.SIGKILL, marks=pytest.mark.slow),
+        pytest.param(TRAIN, signal.SIGTERM, marks=pytest.mark.slow),
+        pytest.param(TRAIN, signal.SIGINT, marks=pytest.mark.slow),
     ],
     ids=lambda value: f"{value[0]} {value[-1]}" if isinstance(value, tuple) else signal.Signals(value).name,
 )

@@ -178,6 +178,7 @@ def test_a_game_that_dies_in_each_episode_ends_the_training(tltlc: Run, folder: 
     assert "the game's standard error ends:\n        now: exit\n" in result.err
 
 
+@pytest.mark.slow
 def test_a_game_that_dies_while_it_is_measured_is_measured_again(tltlc: Run, folder: Path) -> None:  # noqa: F811
     mortal(folder, "exit", 2)
     result = train(tltlc, folder, ways=1)
@@ -193,6 +194,7 @@ def test_a_game_that_always_dies_while_it_is_measured_is_not_searched(tltlc: Run
     assert "trains from the start alone, without a search: the game `counter.game.toml` ended" in result.err
 
 
+@pytest.mark.slow
 def test_a_search_goes_on_without_lost_episodes(tltlc: Run, folder: Path) -> None:  # noqa: F811
     mortal(folder, "exit", *range(40, 400, 60))
     result = train(tltlc, folder, ways=1)
@@ -200,6 +202,7 @@ def test_a_search_goes_on_without_lost_episodes(tltlc: Run, folder: Path) -> Non
     assert "the training was interrupted" not in result.err
 
 
+@pytest.mark.slow
 def test_a_suite_reports_lost_episodes(tltlc: Run, trained: Path, folder: Path) -> None:  # noqa: F811
     game = mortal(folder, "exit", 2, 7)
     case = f'[[case]]\ngame = "{game.name}"\nscene = "short"\npolicy = "{os.path.relpath(trained, folder)}"\n'

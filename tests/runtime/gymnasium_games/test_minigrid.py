@@ -55,6 +55,7 @@ def test_a_step_into_lava_is_the_cause_of_the_end() -> None:
     raise AssertionError("no random walk of twenty ended in lava")
 
 
+@pytest.mark.slow
 def test_the_trained_agent_fetches_the_key(tltlc: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:  # noqa: F811
     monkeypatch.chdir(FOLDER)
     result = tltlc("regress", "suite.toml", "--out", tmp_path, "--workers", "1")

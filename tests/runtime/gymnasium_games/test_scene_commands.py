@@ -141,6 +141,7 @@ def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None
     assert "There is no film" not in page
 
 
+@pytest.mark.slow
 def test_a_policy_that_fails_after_a_change_is_retrained(
     tltlc: Run,  # noqa: F811
     tmp_path: Path,
@@ -260,6 +261,7 @@ def test_a_game_without_an_expert_is_refused(tltlc: Run, tmp_path: Path, monkeyp
     assert "error[TLT0731]" in result.err
 
 
+@pytest.mark.slow
 def test_a_training_says_how_it_searches(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     games.write(tmp_path, settings__toml=SEARCHING)

@@ -280,6 +280,7 @@ def test_each_key_press_is_a_step(start: Callable[..., Player], tmp_path: Path) 
     assert not list((tmp_path / "runs").glob("*.unfinished*"))
 
 
+@pytest.mark.slow
 @needs_screen
 def test_a_game_with_keys_of_its_own_goes_on_at_its_clock(start: Callable[..., Player], tmp_path: Path) -> None:
     game = games.write(tmp_path, corridor__py=own_keys("{(): 0, 'd': 1, 'a': 2, 'r': 0, 'q': 0}"))

@@ -94,6 +94,7 @@ def test_a_case_without_a_scene_has_the_name_of_the_first_scene(folder: Path) ->
     assert [suite_case.name for suite_case in read_suite(folder / "first.toml").cases] == ["short:v0"]
 
 
+@pytest.mark.slow
 def test_a_baseline_with_which_no_case_can_pass_says_so(tltlc: Run, folder: Path) -> None:  # noqa: F811
     strict = "thresholds = { pass_rate = 0.999 }\n"
     (folder / "strict.toml").write_text(case("corridor.game.toml") + strict)

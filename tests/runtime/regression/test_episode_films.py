@@ -136,6 +136,7 @@ def test_films_are_equal_for_equal_episodes(tmp_path: Path) -> None:
     assert first == second
 
 
+@pytest.mark.slow
 def test_a_large_film_loses_quality_and_then_frames() -> None:
     random = np.random.default_rng(5)
     noise = [random.integers(0, 256, (240, 320, 3), dtype=np.uint8) for _ in range(MOST_FRAMES)]

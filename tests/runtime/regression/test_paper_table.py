@@ -86,6 +86,7 @@ def test_a_cell_is_cached_until_the_policy_changes(tmp_path: Path, monkeypatch: 
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
     one_process = cell_episodes(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
     assert [episode.success for episode in one_process] == [True] * 3
@@ -101,6 +102,7 @@ class Mortal(table_cells._ExpertPlayer):
         return super().play(request)
 
 
+@pytest.mark.slow
 def test_a_lost_process_of_the_expert_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(table_cells, "_ExpertPlayer", Mortal)
     with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:

@@ -81,6 +81,7 @@ def _game(game_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     return read_suite(Path("game.toml"))
 
 
+@pytest.mark.slow
 def test_only_cases_that_do_not_pass_are_retrained(game: Suite) -> None:
     easy, other, hopeless = judged(game)
     assert [done.case_to_train for done in (easy, other, hopeless)] == [None, None, hopeless.prepared]
@@ -91,6 +92,7 @@ def test_only_cases_that_do_not_pass_are_retrained(game: Suite) -> None:
     assert replace(hopeless, report=replace(hopeless.report, retrained=retrained_report)).case_to_train is None
 
 
+@pytest.mark.slow
 def test_a_case_with_an_unreachable_goal_is_not_retrained(game: Suite) -> None:
     *_, hopeless = judged(game)
     assert hopeless.prepared and hopeless.training_obstacle is None
@@ -217,6 +219,7 @@ def test_a_policy_in_the_folder_of_a_training_is_rejected(game: Suite) -> None:
     assert not (Path("run/retrained") / "room-v1").exists()
 
 
+@pytest.mark.slow
 def test_a_training_resumes_with_more_minutes(game: Suite) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)

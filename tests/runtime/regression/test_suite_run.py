@@ -271,6 +271,7 @@ class Deadly:
         os.kill(os.getpid(), signal.SIGTERM)
 
 
+@pytest.mark.slow
 def test_a_lost_worker_ends_the_run(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     suite = read_suite(Path("game.toml"))
 

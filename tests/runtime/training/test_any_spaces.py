@@ -131,6 +131,7 @@ def test_a_training_begins_with_the_weights_of_a_policy(
     assert report.window.pass_rate > 0.8
 
 
+@pytest.mark.slow
 def test_an_agent_imitates_demonstrations(tmp_path: Path) -> None:
     folder = write_demonstrations(tmp_path / "demonstrations", 40)
     run = line_run(

@@ -195,6 +195,7 @@ def check(made: tuple[TrainingRun, Content], chosen: list[tuple[Path_, str]], fo
     assert not errors, "\n".join(errors)
 
 
+@pytest.mark.slow
 def test_changes_that_once_crashed_are_rejected_or_harmless(made: tuple[TrainingRun, Content], tmp_path: Path) -> None:
     check(made, [(path, name) for path, names in CRASHING_CHANGES.items() for name in names], tmp_path)
 

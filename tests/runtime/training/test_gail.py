@@ -93,6 +93,7 @@ def test_the_record_and_the_policy_describe_the_imitation(imitated: tuple[Traini
     assert policy.card.network == run.settings.network
 
 
+@pytest.mark.slow
 def test_equal_trainings_and_equal_checkpoints_give_equal_numbers(
     folder: Path, mine: Path, imitated: tuple[TrainingRun, list[TrainingReport]]
 ) -> None:

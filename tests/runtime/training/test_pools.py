@@ -55,6 +55,7 @@ def test_two_processes_give_the_same_policy_from_an_initial_policy(alone: bytes,
     assert one == two != alone
 
 
+@pytest.mark.slow
 @needs_ray
 def test_a_ray_cluster_gives_the_same_policy(alone: bytes, tmp_path: Path) -> None:
     with own_cluster():

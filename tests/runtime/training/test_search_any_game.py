@@ -311,7 +311,7 @@ def test_learning_alone_does_not_meet_the_spec(game: Path, tmp_path: Path) -> No
     assert reports[-1].window.successes == 0
 
 
-@pytest.mark.parametrize("scene", ["maze", "saving"])
+@pytest.mark.parametrize("scene", ["maze", pytest.param("saving", marks=pytest.mark.slow)])
 def test_a_training_finds_what_learning_alone_does_not(game: Path, tmp_path: Path, scene: str) -> None:
     run = run_of(tmp_path / "search", f"{game}:{scene}", exploration__ways=1)
     (*_, report), (plan,) = trained(run)
@@ -335,6 +335,7 @@ def test_a_game_that_cannot_be_searched_is_trained_from_its_start(
     assert (reports[-1].searched, reports[-1].replayed, reports[-1].stop) == (None, 0, "steps")
 
 
+@pytest.mark.slow
 def test_a_training_of_an_earlier_version_goes_on_without_a_search(game: Path, tmp_path: Path) -> None:
     from tltl_runtime.training.files.checkpoint import write_checkpoint
     from tltl_runtime.training.files.run_file import CHECKPOINT
@@ -364,6 +365,7 @@ def write_counter(folder: Path, start: str) -> str:
     return f"{folder / 'counter.game.toml'}:long"
 
 
+@pytest.mark.slow
 def test_a_game_in_another_process_is_searched(tmp_path: Path) -> None:
     level = write_counter(tmp_path, f"process = {json.dumps([sys.executable, str(COUNTER)])}")
     run = run_of(tmp_path / "run", level, rollout__envs=2, stop__steps=64)

@@ -192,6 +192,7 @@ def test_no_checkpoint_contains_an_unmeasured_iteration(
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
 
 
+@pytest.mark.slow
 def test_a_training_continues_until_its_policy_is_confirmed(folder: Path) -> None:
     changes = {"stop__windows": 2, "stop__episodes": 2, "stop__steps": 10**5, "rollout__envs": 8}
     run = _judged_by(run_in(folder / "confirmed", **changes), CHANCE)
@@ -243,6 +244,7 @@ def test_a_resumed_training_has_no_record_of_its_end(folder: Path) -> None:
     assert read_policy(run.folder / POLICY).card.training == record
 
 
+@pytest.mark.slow
 def test_a_resumed_training_starts_from_its_known_demonstrations(folder: Path) -> None:
     def run_of(name: str, steps: int) -> TrainingRun:
         changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5, "stop__steps": steps}
@@ -372,6 +374,7 @@ def test_a_repeated_search_is_in_the_checkpoint(folder: Path, monkeypatch: pytes
     assert searched.seconds > first.searched.seconds
 
 
+@pytest.mark.slow
 def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
     monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
@@ -390,6 +393,7 @@ def test_a_training_at_a_standstill_searches_again_from_failures(folder: Path, m
     assert checkpoint_of(run).searched == last
 
 
+@pytest.mark.slow
 def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

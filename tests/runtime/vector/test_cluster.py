@@ -13,6 +13,7 @@ from tltl_runtime.vector.cluster import cluster
 from tltlc.diagnostics.diagnostic import TltlError
 
 
+@pytest.mark.slow
 @needs_ray
 def test_a_local_cluster_is_started_and_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     import ray

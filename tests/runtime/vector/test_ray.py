@@ -18,7 +18,7 @@ from tests.waiting import HANG_S, until
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
 from tltlc.diagnostics.diagnostic import TltlError
 
-pytestmark = needs_ray
+pytestmark = [needs_ray, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module", autouse=True)

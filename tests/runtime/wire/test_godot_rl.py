@@ -209,6 +209,7 @@ def test_the_port_of_another_program_is_reported() -> None:
             WireEnv(WireGame("row", GAMES, connect=place, protocol=GODOT_RL))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="the player is started by a shell")
 @pytest.mark.usefixtures("game")
 def test_a_training_and_a_suite_run(tltlc: Run) -> None:  # noqa: F811

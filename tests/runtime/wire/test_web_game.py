@@ -176,6 +176,7 @@ def test_the_monitor_inside_agrees_with_the_one_outside(tmp_path: Path) -> None:
     assert {"holding", "violated"} <= verdicts
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
 def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
     with served(FOLDER) as address, chromium.browser() as browser:
@@ -250,6 +251,7 @@ def _nearer(game: WireEnv, target: str, keep_off: float) -> int:
     return chosen
 
 
+@pytest.mark.slow
 def test_the_trained_agent_delivers(tltlc: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:  # noqa: F811
     monkeypatch.chdir(FOLDER)
     result = tltlc("regress", "suite.toml", "--out", tmp_path, "--workers", "1")

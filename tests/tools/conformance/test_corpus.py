@@ -52,6 +52,7 @@ def rows() -> list[dict[str, str]]:
     return [row for text in texts(".expected.csv").values() for row in csv.DictReader(io.StringIO(text, newline=""))]
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_same_bytes_in_every_process(tmp_path: Path) -> None:
     """The second process writes over the files of the first, one of which was changed."""
     for seed in ("1", "2"):
@@ -91,6 +92,7 @@ def test_a_folder_holds_a_case_and_the_index_lists_all_files() -> None:
     assert listed == set(corpus())
 
 
+@pytest.mark.slow
 def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     """Run the check as its README says, with a correct and with a broken monitor."""
     write_files(tmp_path / "corpus", corpus())

@@ -68,6 +68,7 @@ def searched(columns: int) -> tuple[SpecSearch, int]:
     return search, largest
 
 
+@pytest.mark.slow
 def test_the_work_does_not_grow_with_the_columns() -> None:
     work = []
     for columns in (1_000, 2_000):
@@ -86,6 +87,7 @@ def test_the_search_can_be_stopped_every_few_candidates() -> None:
     assert largest <= 20_000
 
 
+@pytest.mark.slow
 def test_the_events_that_separate_best_are_combined() -> None:
     planted = ("key", "door")
     good = [LabelledTrace(f"g{seed}", random_trace(300, 10, seed, planted)) for seed in range(10)]
@@ -141,6 +143,7 @@ def test_the_best_candidates_are_kept_if_there_are_too_many(monkeypatch: pytest.
 # --- the command ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_many_columns_are_mined_with_a_warning(tltlc: Run, inside: Path) -> None:
     for name, seed in (("good.csv", 1), ("bad.csv", 2)):
         (inside / name).write_text(csv(random_trace(300, 10, seed), 300))

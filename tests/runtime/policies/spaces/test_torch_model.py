@@ -156,6 +156,7 @@ def test_running_scales_are_those_of_all_batches_together() -> None:
     assert normalizer.count.item() == len(every)
 
 
+@pytest.mark.slow
 def test_processes_scale_by_what_all_of_them_have_seen(tmp_path: Path) -> None:
     torch.multiprocessing.spawn(_update_in_a_process, (tmp_path,), nprocs=2)
     first, second = (torch.load(tmp_path / f"{rank}.pt") for rank in range(2))

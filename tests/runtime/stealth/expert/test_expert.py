@@ -110,6 +110,7 @@ def test_the_expert_goes_as_far_as_it_can_if_the_route_is_blocked() -> None:
         assert 11.0 < env.episode.snapshots[-1].player.position[0] < 11.6
 
 
+@pytest.mark.slow
 def test_the_expert_takes_the_open_branch() -> None:
     final_y = {}
     for seed in range(20):
@@ -121,6 +122,7 @@ def test_the_expert_takes_the_open_branch() -> None:
     assert final_y["right"] < 9.6 < final_y["left"]
 
 
+@pytest.mark.slow
 def test_the_expert_passes_rising_bars() -> None:
     episode = played("branching", "v1", 1)
     assert _left_is_open(episode), "the branch with the bars"

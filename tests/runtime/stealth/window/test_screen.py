@@ -119,6 +119,7 @@ print("checked")
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 def test_the_checks_of_gymnasium_pass_with_a_screen(tmp_path: Path) -> None:
     with screen() as environment:
@@ -138,6 +139,7 @@ def test_the_checks_of_gymnasium_pass_without_a_screen(name: str, monkeypatch: p
     env.close()
 
 
+@pytest.mark.slow
 def test_the_pictures_of_the_readme_are_up_to_date(tmp_path: Path) -> None:
     images = Path(__file__).parents[4] / "docs" / "images"
     subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=HANG_S, capture_output=True)

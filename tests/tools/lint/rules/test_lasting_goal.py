@@ -62,6 +62,7 @@ def test_a_spec_that_one_step_cannot_meet_or_that_is_no_goal_is_not_reported(cla
     assert "TLT0434" not in codes(spec(*clauses))
 
 
+@pytest.mark.slow
 def test_a_next_beside_the_goal_makes_it_take_the_whole_time() -> None:
     (fspa,) = compile_text(spec("reach (always for 3 s a) and (next after 29 steps true)"))
     monitor = Monitor(fspa)
