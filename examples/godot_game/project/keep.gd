@@ -41,6 +41,7 @@ var level = null
 var judge = null  # the monitor inside the game
 var recorder = null
 var snapshots = []
+var waiting = null  # an action that waits for a frame, after which the engine knows where bodies were put
 
 
 func _ready() -> void:
@@ -56,8 +57,12 @@ func _ready() -> void:
 
 func _physics_process(_delta) -> void:
 	if recorder == null:
-		var action = tltl.next_action()
-		if action != null:
+		var action = waiting if waiting != null else tltl.next_action()
+		waiting = null
+		if action != null and level.is_put:
+			level.is_put = false
+			waiting = action
+		elif action != null:
 			level.tick(action[0] - 1, action[1] - 1)
 			judge.step(level.signals())
 		return

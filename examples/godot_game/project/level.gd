@@ -42,6 +42,7 @@ var ferry_waits = 0
 var guard_goal = Vector3()
 var guard_ahead = Vector3()  # where the guard looks
 var guard_speed = GUARD_SPEED
+var is_put = false  # bodies were put somewhere, and no frame has passed since
 
 
 # --- an episode -----------------------------------------------------------------------------------
@@ -136,8 +137,9 @@ func slide(body: KinematicBody, motion: Vector3) -> void:
 		motion.y = 0
 
 
-# Tells the physics at once where bodies were put.
+# Tells the physics where bodies were put. Rays hit them there after the next frame.
 func update_bodies() -> void:
+	is_put = true
 	for body in [player, ferry, door, guard]:
 		if body != null:
 			body.force_update_transform()
