@@ -8,6 +8,8 @@ from typing import Final
 
 from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMessageError
 
+TWO_ANSWERS: Final = "sent more than one message as the answer to one request"
+
 _CHUNK: Final = 1 << 16
 
 
@@ -25,10 +27,21 @@ class ByteStream:
         if connection.family in (socket.AF_INET, socket.AF_INET6):
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    @property
-    def has_rest(self) -> bool:
-        """Whether there are bytes that were received but not read yet."""
-        return bool(self._rest)
+    def arrived(self) -> bytes:
+        """Return the bytes that have arrived and were not read yet, without waiting; empty if there are none."""
+        data, self._rest = self._rest, b""
+        self._set_timeout(0)
+        try:
+            return data or self._socket.recv(_CHUNK)
+        except BlockingIOError:
+            return b""
+        except OSError:
+            raise GameGoneError from None
+
+    def check_in_step(self) -> None:
+        """Raise MalformedMessageError if bytes have arrived before the request that they could answer."""
+        if self.arrived():
+            raise MalformedMessageError(TWO_ANSWERS)
 
     def send(self, data: bytes, patience: float) -> None:
         """Send all bytes."""

@@ -24,7 +24,8 @@ class Channel(ABC):
     def send(self, message: Any, patience: float) -> None:
         """Send a message.
 
-        Raises MalformedMessageError if the game has sent more than one answer to the last request.
+        Raises MalformedMessageError if another answer to the last request has arrived. One that arrives
+        later is taken for the answer to this message.
         """
 
     @abstractmethod
@@ -51,7 +52,7 @@ class JsonLines(Channel):
 
     def send(self, message: Any, patience: float) -> None:
         """Send a message."""
-        _check_in_step(self._stream)
+        self._stream.check_in_step()
         self._stream.send(json_text.line(message), patience)
 
     def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
@@ -77,7 +78,7 @@ class MessagePackFrames(Channel):
 
     def send(self, message: Any, patience: float) -> None:
         """Send a message."""
-        _check_in_step(self._stream)
+        self._stream.check_in_step()
         data = self._msgpack.packb(message)
         self._stream.send(len(data).to_bytes(_LENGTH_BYTES, "big") + data, patience)
 
@@ -115,8 +116,3 @@ def has_msgpack() -> bool:
     except ModuleNotFoundError:
         return False
     return True
-
-
-def _check_in_step(stream: ByteStream) -> None:
-    if stream.has_rest:
-        raise MalformedMessageError("sent more than one message as the answer to one request")

@@ -115,8 +115,7 @@ class GodotRlChannel(Channel):
 
     def send(self, message: Any, patience: float) -> None:
         """Send a request."""
-        if self._stream.has_rest:
-            raise MalformedMessageError("sent more than one message as the answer to one request")
+        self._stream.check_in_step()
         self._repeats = 0
         if "step" in message:
             body = message["step"]
@@ -138,6 +137,7 @@ class GodotRlChannel(Channel):
             if has_ended or not self._repeats:
                 observation = self._observation(_only(answer, kind, "obs"), f"{kind}.obs[0]")
                 return {"state": {"signals": {}, "observation": observation, "ended": has_ended}}
+            self._stream.check_in_step()
             self._send(self._step, patience)
 
     def close(self) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar
 
-from tltl_runtime.wire import errors, godot_rl, ml_agents
+from tltl_runtime.wire import errors, godot_rl, json_text, ml_agents
 from tltl_runtime.wire.answers import ReportedError, body_of
 from tltl_runtime.wire.byte_stream import ByteStream
 from tltl_runtime.wire.channel import Channel, JsonLines, has_msgpack
@@ -155,10 +155,12 @@ class WireSession:
             title = f"no game listens at `{self._game.connect}`: {error.strerror or error}"
             help_ = "start the game first; it may also be busy with another tltlc"
             raise wire_error(errors.NOT_STARTED, title, help_) from None
-        channel = self._channel = JsonLines(ByteStream(connection))
+        stream = ByteStream(connection)
+        channel = self._channel = JsonLines(stream)
         # The side that connects sends the token: here, this is tltlc.
         token = os.environ.get("TLTL_TOKEN", "")
-        channel.send({"hello": {"tltl": VERSION, "token": token}}, self._game.start_s)
+        # This is no request: the game may have sent an error already, such as that it is busy.
+        stream.send(json_text.line({"hello": {"tltl": VERSION, "token": token}}), self._game.start_s)
         message = channel.receive(self._game.start_s, fileio.limits.WIRE_HELLO.size)
         body_of(message, "hello")
         return channel, message

@@ -8,7 +8,7 @@ from collections import deque
 from typing import Any
 
 from tltl_runtime.wire import json_text
-from tltl_runtime.wire.byte_stream import ByteStream
+from tltl_runtime.wire.byte_stream import TWO_ANSWERS, ByteStream
 from tltl_runtime.wire.channel import Channel, unpacked
 from tltl_runtime.wire.errors import GameGoneError, MalformedMessageError
 from tltlc.api import fileio
@@ -37,6 +37,11 @@ class WebSocketMessages:
         from websockets.protocol import State
 
         return bool(self._protocol.state is State.OPEN)
+
+    @property
+    def has_part(self) -> bool:
+        """Whether bytes of a message were received that was not read yet, even if it is not complete."""
+        return bool(self.messages or self._pieces or self._protocol.reader.buffer)
 
     def feed(self, data: bytes) -> None:
         """Process received bytes; complete messages are appended to ``messages``.
@@ -98,8 +103,10 @@ class WebSocketChannel(Channel):
 
     def send(self, message: Any, patience: float) -> None:
         """Send a message."""
-        if self._messages.messages:
-            raise MalformedMessageError("sent more than one message as the answer to one request")
+        if arrived := self._stream.arrived():
+            self._messages.feed(arrived)
+        if self._messages.has_part:
+            raise MalformedMessageError(TWO_ANSWERS)
         if self._msgpack is None:
             data = self._messages.text(json.dumps(message, allow_nan=False).encode())
         else:
