@@ -45,6 +45,8 @@ class ByteStream:
 
     def send(self, data: bytes, patience: float) -> None:
         """Send all bytes."""
+        if patience <= 0:
+            raise GameSilentError
         self._set_timeout(patience)
         try:
             self._socket.sendall(data)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+import time
 from collections import deque
 from typing import Any
 
@@ -115,10 +116,11 @@ class WebSocketChannel(Channel):
 
     def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
         """Return the next message."""
+        deadline = time.monotonic() + patience
         while not self._messages.messages:
-            self._messages.feed(self._stream.some(patience))
+            self._messages.feed(self._stream.some(deadline - time.monotonic()))
             if reply := self._messages.outgoing():
-                self._stream.send(reply, patience)
+                self._stream.send(reply, deadline - time.monotonic())
         data = self._messages.messages.popleft()
         if len(data) > limit:
             raise MalformedMessageError(f"sent a message of {len(data):,} bytes; at most {limit:,} are allowed")

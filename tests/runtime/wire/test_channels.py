@@ -1,4 +1,4 @@
-"""Channels over a pair of sockets: answers that come too often, and the bytes that tell them apart from others."""
+"""Channels over a pair of sockets: answers that come too often or too late."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
+from tests.runtime.wire.fast_clock import FastClock
 from tests.waiting import HANG_S
 from tltl_runtime.wire.byte_stream import ByteStream
 from tltl_runtime.wire.channel import Channel, JsonLines, MessagePackFrames
-from tltl_runtime.wire.errors import MalformedMessageError
+from tltl_runtime.wire.errors import GameSilentError, MalformedMessageError
 from tltl_runtime.wire.godot_rl import GodotRlChannel
 from tltl_runtime.wire.websocket import WebSocketChannel, WebSocketMessages
 
@@ -116,3 +117,15 @@ def test_a_ping_of_a_page_between_two_requests_is_answered(sockets: Sockets) -> 
     page.channel.send({"reset": {}}, HANG_S)
     page.protocol.receive_data(sockets[1].recv(1 << 16))
     assert [bytes(frame.data) for frame in page.protocol.events_received()] == [b"hi", b'{"reset": {}}']
+
+
+def test_pings_of_a_page_do_not_move_its_deadline(sockets: Sockets, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("websockets")
+    page = Page(sockets)
+    # More than tltlc receives in one piece.
+    for _ in range(800):
+        page.protocol.send_ping(b"x" * 100)
+    sockets[1].sendall(page.bytes() + page.message(b'{"state": {}}'))
+    monkeypatch.setattr("tltl_runtime.wire.websocket.time", FastClock(0.4 * HANG_S))
+    with pytest.raises(GameSilentError):
+        page.channel.receive(HANG_S)
