@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import secrets
 import socket
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar
@@ -24,6 +25,10 @@ from tltlc.api import fileio
 
 _TO_CLOSE_S: Final = 5.0
 """Seconds in which a game that has closed its connection, or was asked to close, ends by itself."""
+_TO_LISTEN_S: Final = 5.0
+"""Seconds in which a game that is running listens again."""
+_PAUSE_S: Final = 0.05
+"""Seconds between two tries to connect to a game that is running."""
 _TOKEN_BYTES: Final = 16
 _ENDED: Final = "correct the game; let it write what it does to standard error"
 _HELLO: Final = {
@@ -148,14 +153,7 @@ class WireSession:
 
     def _connected(self) -> tuple[Channel, Any]:
         """Connect to a game that is already running; say hello and return the connection and the answer."""
-        host, port = address(self._game.connect)
-        try:
-            connection = socket.create_connection((host, port), self._game.start_s)
-        except OSError as error:
-            title = f"no game listens at `{self._game.connect}`: {error.strerror or error}"
-            help_ = "start the game first; it may also be busy with another tltlc"
-            raise wire_error(errors.NOT_STARTED, title, help_) from None
-        stream = ByteStream(connection)
+        stream = ByteStream(_connection(self._game.connect, self._game.start_s))
         channel = self._channel = JsonLines(stream)
         # The side that connects sends the token: here, this is tltlc.
         token = os.environ.get("TLTL_TOKEN", "")
@@ -229,6 +227,26 @@ class WireSession:
     def _end_process(self) -> None:
         if self._process is not None:
             self._process.end()
+
+
+def _connection(place: str, patience: float) -> socket.socket:
+    """Connect to the game that listens at ``place``, ``HOST:PORT``, within ``patience`` seconds.
+
+    If nothing listens there, try again for a few seconds: a game listens again a moment after its last connection
+    has ended, or later if it was lost in a slow step. Raises WireError, TLT0790, if that is in vain.
+    """
+    host, port = address(place)
+    end = time.monotonic() + patience
+    last_try = time.monotonic() + min(_TO_LISTEN_S, patience)
+    while True:
+        try:
+            return socket.create_connection((host, port), max(end - time.monotonic(), _PAUSE_S))
+        except OSError as error:
+            if not isinstance(error, ConnectionRefusedError) or time.monotonic() > last_try:
+                title = f"no game listens at `{place}`: {error.strerror or error}"
+                help_ = "start the game first; it may also be busy with another tltlc"
+                raise wire_error(errors.NOT_STARTED, title, help_) from None
+        time.sleep(_PAUSE_S)
 
 
 def _server(place: str) -> socket.socket:

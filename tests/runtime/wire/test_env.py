@@ -18,11 +18,12 @@ from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 
 from tests.runtime.wire.test_faults import GAMES, faulty, no_new_children
-from tests.waiting import HANG_S, children, until, until_gone
+from tests.waiting import HANG_S, children, until_gone
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.requests import StepRequest
 from tltl_runtime.wire.wire_game import WireGame, address
 from tltlc.api import TltlError
 
@@ -193,7 +194,8 @@ def free_port() -> int:
 
 
 @pytest.fixture
-def listening() -> Iterator[tuple[int, subprocess.Popen[str]]]:
+def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[int, subprocess.Popen[str]]]:
+    monkeypatch.setattr("tltl_runtime.wire.session._TO_LISTEN_S", HANG_S)
     port = free_port()
     words = [sys.executable, str(GAMES / "counter.py"), "--listen", str(port)]
     variables = {**os.environ, "TLTL_TOKEN": "open sesame"}
@@ -204,19 +206,7 @@ def listening() -> Iterator[tuple[int, subprocess.Popen[str]]]:
 
 def connected(port: int) -> WireEnv:
     """Connect as soon as the game listens."""
-    game = WireGame("counter", GAMES, connect=f"127.0.0.1:{port}", start_s=HANG_S, step_s=HANG_S)
-
-    def connect() -> WireEnv | None:
-        try:
-            return WireEnv(game)
-        except WireError as error:
-            if error.diagnostics[0].code != "TLT0790":
-                raise
-            return None
-
-    env = until(connect, "the game to listen")
-    assert env is not None
-    return env
+    return WireEnv(WireGame("counter", GAMES, connect=f"127.0.0.1:{port}", start_s=HANG_S, step_s=HANG_S))
 
 
 def test_a_running_game_is_played_again_and_again(listening: tuple[int, Any], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -226,8 +216,20 @@ def test_a_running_game_is_played_again_and_again(listening: tuple[int, Any], mo
         env.reset(seed=0)
         assert env.step(RIGHT)[0].tolist() == [2]
         with pytest.raises(WireError, match="TLT0790: no game listens at"):
-            WireEnv(WireGame("counter", GAMES, connect=f"127.0.0.1:{listening[0]}"))
+            WireEnv(WireGame("counter", GAMES, connect=f"127.0.0.1:{listening[0]}", start_s=0.2))
         env.close()
+
+
+def test_a_running_game_is_played_again_after_a_lost_episode(
+    listening: tuple[int, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TLTL_TOKEN", "open sesame")
+    env = connected(listening[0])
+    for _ in range(5):
+        env.reset(seed=0)
+        with pytest.raises(ZeroDivisionError):
+            env._session.ask("step", StepRequest(STAY).message(), lambda _: 1 / 0)
+    env.close()
 
 
 def test_a_running_game_refuses_a_wrong_token(listening: tuple[int, Any], monkeypatch: pytest.MonkeyPatch) -> None:
