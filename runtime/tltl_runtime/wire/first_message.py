@@ -8,6 +8,7 @@ import socket
 from tltl_runtime.wire.byte_stream import ByteStream
 from tltl_runtime.wire.channel import Channel, JsonLines
 from tltl_runtime.wire.errors import GameGoneError, MalformedMessageError
+from tltl_runtime.wire.requests import Refusal
 from tltl_runtime.wire.websocket import WebSocketChannel, WebSocketMessages
 from tltlc.api import fileio
 
@@ -54,7 +55,7 @@ class FirstMessage:
 
     def refusal(self, reason: str) -> bytes:
         """Return the bytes of a message that tells the game why it is refused; ``reason`` follows "because it"."""
-        text = json.dumps({"error": {"message": f"tltlc refuses this game, because it {reason}"}}).encode()
+        text = json.dumps(Refusal(reason).message()).encode()
         return self._web.text(text) if self._web is not None and self._web.is_open else text + b"\n"
 
     def channel(self, connection: socket.socket) -> Channel:

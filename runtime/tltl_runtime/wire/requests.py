@@ -68,6 +68,17 @@ class ScreenshotRequest:
 
 
 @record
+class Refusal:
+    """Refuse the ``hello`` of a game; ``reason`` completes "because it …". The game ends without an answer."""
+
+    reason: str
+
+    def message(self) -> dict[str, Any]:
+        """Return the message as a value of JSON."""
+        return {"error": {"message": f"tltlc refuses this game, because it {self.reason}"}}
+
+
+@record
 class CloseRequest:
     """End; the game does not answer."""
 

@@ -19,12 +19,12 @@ from tltl_runtime.wire.game_process import GameProcess
 from tltl_runtime.wire.hello import JSON, MSGPACK, VERSION, Hello, hello_from
 from tltl_runtime.wire.listener import Listener
 from tltl_runtime.wire.ml_agents import MlAgentsChannel
-from tltl_runtime.wire.requests import CloseRequest
+from tltl_runtime.wire.requests import CloseRequest, Refusal
 from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame, address
 from tltlc.api import fileio
 
 _TO_CLOSE_S: Final = 5.0
-"""Seconds in which a game that has closed its connection, or was asked to close, ends by itself."""
+"""Seconds in which a game that has closed its connection, was refused, or was asked to close, ends by itself."""
 _TO_LISTEN_S: Final = 5.0
 """Seconds in which a game that is running listens again."""
 _PAUSE_S: Final = 0.05
@@ -95,12 +95,7 @@ class WireSession:
 
         If tltlc started the game and it does not end within five seconds, kill it.
         """
-        if self._channel is not None:
-            with suppress(Exception):
-                self._channel.send(CloseRequest().message(), _TO_CLOSE_S)
-            self._close_channel()
-            if self._process is not None:
-                self._process.wait(_TO_CLOSE_S)
+        self._say_last(CloseRequest().message())
         self._end_process()
 
     # --- the beginning ------------------------------------------------------------------------------
@@ -178,8 +173,11 @@ class WireSession:
         """End the game after an error, and return the exception to raise.
 
         This is a WireError if the error is about the game, else the error itself. ``kind`` is the request
-        to which no good answer came, and ``patience`` how many seconds the game had for it.
+        to which no good answer came, and ``patience`` how many seconds the game had for it. If it is a
+        ``hello`` that breaks the protocol, the game is told why it is refused.
         """
+        if kind == "hello" and isinstance(error, MalformedMessageError) and self._game.protocol == TLTL:
+            self._say_last(Refusal(str(error)).message())
         self._close_channel()
         has_ended = self._has_ended(error)
         self._end_process()
@@ -218,6 +216,15 @@ class WireSession:
         if self._process is None:
             return False
         return self._process.wait(_TO_CLOSE_S if isinstance(error, GameGoneError) else 0)
+
+    def _say_last(self, message: dict[str, Any]) -> None:
+        """Send the last message, close the connection, and wait a few seconds until the game has ended by itself."""
+        if self._channel is not None:
+            with suppress(Exception):
+                self._channel.send(message, _TO_CLOSE_S)
+            self._close_channel()
+            if self._process is not None:
+                self._process.wait(_TO_CLOSE_S)
 
     def _close_channel(self) -> None:
         if self._channel is not None:

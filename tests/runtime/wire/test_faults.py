@@ -165,12 +165,20 @@ def test_standard_error_without_end_is_read_and_not_held() -> None:
 STARTS = [
     ("old version", "TLT0792", "speaks version 0 of the protocol, and this tltlc speaks version 1"),
     ("wrong token", "TLT0792", "sent a wrong token; it must send the value of the variable TLTL_TOKEN"),
+    (
+        "wrong actions",
+        "TLT0792",
+        "declares `hello.actions` as a space of the unknown type `discret`; did you mean `discrete`?",
+    ),
     ("exit first", "TLT0790", "ended with exit status 1 before it said hello"),
 ]
 
 
 @pytest.mark.parametrize(("fault", "code", "sentence"), STARTS)
-def test_a_game_that_does_not_start_is_reported(fault: str, code: str, sentence: str) -> None:
+def test_a_game_that_does_not_start_is_reported(
+    fault: str, code: str, sentence: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tltl_runtime.wire.session._TO_CLOSE_S", HANG_S)
     with no_new_children(), pytest.raises(WireError) as caught:
         WireEnv(faulty(fault))
     (diagnostic,) = caught.value.diagnostics
@@ -223,7 +231,7 @@ def test_the_next_reset_starts_the_game_again() -> None:
     until_gone(pids)
 
 
-def test_a_game_must_declare_the_same_at_each_start(tmp_path: Path) -> None:
+def test_a_game_must_declare_the_same_at_each_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     env = WireEnv(faulty("changes", str(tmp_path / "started")))
     env.reset()
     pids = family(env)
@@ -232,8 +240,10 @@ def test_a_game_must_declare_the_same_at_each_start(tmp_path: Path) -> None:
     with pytest.raises(WireError):
         env.step(0)
     sentence = "declares other signals, spaces or capabilities than when it was first started"
-    with no_new_children(), pytest.raises(WireError, match=f"TLT0792: the game `faulty` {sentence}"):
+    monkeypatch.setattr("tltl_runtime.wire.session._TO_CLOSE_S", HANG_S)
+    with no_new_children(), pytest.raises(WireError, match=f"TLT0792: the game `faulty` {sentence}") as caught:
         env.reset()
+    assert f"tltlc refuses this game, because it {sentence}" in (caught.value.diagnostics[0].help or "")
     env.close()
 
 

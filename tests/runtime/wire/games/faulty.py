@@ -94,6 +94,8 @@ def main(fault: str, file: str = "") -> None:
         hello["tltl"] = 0
     if fault == "wrong token":
         hello["token"] = "guessed"
+    if fault == "wrong actions":
+        hello["actions"] = {"type": "discret", "n": 2}
     if fault == "changes":
         # From the second start on, the game declares another signal.
         if Path(file).exists():
