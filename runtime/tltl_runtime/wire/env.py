@@ -167,7 +167,8 @@ class WireEnv(gymnasium.Env[Any, Any]):
 
     def tltl_cause(self) -> str | None:
         """Return who or what ended the episode; None if it has not ended, or the game does not say."""
-        return self._current().cause
+        state = self._current()
+        return state.cause if state.ended else None
 
     @property
     def process_id(self) -> int | None:

@@ -136,6 +136,13 @@ def test_the_environment_has_only_what_the_game_declares() -> None:
         WireEnv(faulty("none"), render_mode="rgb_array")
 
 
+def test_what_ends_an_episode_is_unknown_until_it_has_ended() -> None:
+    env = WireEnv(faulty("early cause"))
+    env.reset()
+    assert env.tltl_cause() is None
+    env.close()
+
+
 def test_an_action_outside_the_space_does_not_reach_the_game(env: WireEnv) -> None:
     env.reset()
     with pytest.raises(ValueError, match="the action is 3"):

@@ -33,6 +33,7 @@ ANSWERS: dict[str, bytes] = {
     "missing signal": b'{"state": {"signals": {"health": 1}}}\n',
     "other kind": b'{"snapshot": {"id": 3}}\n',
     "error": b'{"error": {"message": "the scene `crypt` cannot be loaded"}}\n',
+    "early cause": b'{"state": {"signals": {"health": 1, "seen": false}, "ended": false, "cause": "guard"}}\n',
     "two answers": b'{"state": {"signals": {"health": 1, "seen": false}}}\n' * 2,
 }
 
