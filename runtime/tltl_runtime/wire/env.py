@@ -16,7 +16,7 @@ from tltl_runtime.wire import answers, hello
 from tltl_runtime.wire.answers import GameState, Position, StateReader
 from tltl_runtime.wire.hello import Hello
 from tltl_runtime.wire.requests import ResetRequest, RestoreRequest, ScreenshotRequest, SnapshotRequest, StepRequest
-from tltl_runtime.wire.session import WireSession
+from tltl_runtime.wire.session import Answer, WireSession
 from tltl_runtime.wire.values import value_writer
 from tltl_runtime.wire.wire_game import WireGame
 
@@ -148,8 +148,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         """
         if self.render_mode is None:
             return None
-        self._current()
-        return self._session.ask("screenshot", ScreenshotRequest().message(), answers.screenshot)
+        return self._ask_beside("screenshot", ScreenshotRequest().message(), answers.screenshot)
 
     def close(self) -> None:
         """End the game."""
@@ -190,8 +189,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return self._current().positions
 
     def _snapshot(self) -> bytes:
-        self._current()
-        kept = self._session.ask("snapshot", SnapshotRequest().message(), answers.snapshot_id)
+        kept = self._ask_beside("snapshot", SnapshotRequest().message(), answers.snapshot_id)
         return json.dumps({"session": self._session_name, "id": kept}).encode()
 
     def _restore(self, snapshot: bytes) -> None:
@@ -202,6 +200,16 @@ class WireEnv(gymnasium.Env[Any, Any]):
         self._state = None
         request = RestoreRequest(document["id"]).message()
         self._state = self._session.ask("restore", request, self._reader.read)
+
+    def _ask_beside(self, kind: str, message: dict[str, Any], read: Callable[[Any], Answer]) -> Answer:
+        """Send a request that does not change the state, and return what ``read`` makes of the answer.
+
+        If the game is lost, there is no state any more. Raises WireError, and ResetNeeded if there is no episode.
+        """
+        state, self._state = self._current(), None
+        answer = self._session.ask(kind, message, read)
+        self._state = state
+        return answer
 
     def _current(self) -> GameState:
         if self._state is None:

@@ -120,6 +120,20 @@ def test_a_snapshot_is_bytes_that_lead_back(env: WireEnv) -> None:
         env.tltl_restore(kept)
 
 
+def test_a_game_that_is_lost_at_a_snapshot_needs_a_reset() -> None:
+    env = WireEnv(faulty("none"))
+    env.reset()
+    with pytest.raises(WireError, match="sent a message `state` instead of `snapshot`"):
+        env.tltl_snapshot()
+    with pytest.raises(ResetNeeded):
+        env.tltl_signals()
+    with pytest.raises(ResetNeeded):
+        env.step(0)
+    env.reset()
+    env.step(0)
+    env.close()
+
+
 def test_a_picture_is_rendered(env: WireEnv) -> None:
     env.reset(seed=1)
     picture = env.render()
