@@ -23,14 +23,13 @@ class ByteStream:
     def __init__(self, connection: socket.socket, rest: bytes = b"") -> None:
         self._socket = connection
         self._rest = rest
-        self._timeout: float | None = -1.0
         if connection.family in (socket.AF_INET, socket.AF_INET6):
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def arrived(self) -> bytes:
         """Return the bytes that have arrived and were not read yet, without waiting; empty if there are none."""
         data, self._rest = self._rest, b""
-        self._set_timeout(0)
+        self._socket.settimeout(0)
         try:
             return data or self._socket.recv(_CHUNK)
         except BlockingIOError:
@@ -47,7 +46,7 @@ class ByteStream:
         """Send all bytes."""
         if patience <= 0:
             raise GameSilentError
-        self._set_timeout(patience)
+        self._socket.settimeout(patience)
         try:
             self._socket.sendall(data)
         except TimeoutError:
@@ -60,12 +59,13 @@ class ByteStream:
 
         Raises MalformedMessageError if the line has more than ``limit`` bytes.
         """
+        deadline = time.monotonic() + patience
         if not self._rest:
             data = self._received(patience)
             if data.find(b"\n") == len(data) - 1:
                 return data  # Usually, a message comes in one piece.
             self._rest = data
-        return self._long_line(patience, limit)
+        return self._long_line(deadline, limit)
 
     def exactly(self, count: int, patience: float) -> bytes:
         """Return the next ``count`` bytes."""
@@ -84,9 +84,8 @@ class ByteStream:
         """Close the connection."""
         self._socket.close()
 
-    def _long_line(self, patience: float, limit: int) -> bytearray:
-        data, deadline = bytearray(self._rest), time.monotonic() + patience
-        self._rest = b""
+    def _long_line(self, deadline: float, limit: int) -> bytearray:
+        data, self._rest = bytearray(self._rest), b""
         searched = 0
         while (end := data.find(b"\n", searched)) < 0:
             if len(data) > limit:
@@ -103,7 +102,7 @@ class ByteStream:
         """Receive some bytes, at least one."""
         if patience <= 0:
             raise GameSilentError
-        self._set_timeout(patience)
+        self._socket.settimeout(patience)
         try:
             data = self._socket.recv(_CHUNK)
         except TimeoutError:
@@ -113,8 +112,3 @@ class ByteStream:
         if not data:
             raise GameGoneError
         return data
-
-    def _set_timeout(self, patience: float) -> None:
-        if patience != self._timeout:
-            self._socket.settimeout(patience)
-            self._timeout = patience

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
 from typing import Any, Final
 
@@ -84,11 +85,11 @@ class MessagePackFrames(Channel):
 
     def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
         """Return the next message."""
+        deadline = time.monotonic() + patience
         length = int.from_bytes(self._stream.exactly(_LENGTH_BYTES, patience), "big")
         if length > limit:
             raise MalformedMessageError(f"sent a message of {length:,} bytes; at most {limit:,} are allowed")
-        data = self._stream.exactly(length, patience)
-        return unpacked(data)
+        return unpacked(self._stream.exactly(length, deadline - time.monotonic()))
 
     def close(self) -> None:
         """Close the connection."""

@@ -86,10 +86,11 @@ class GodotRlChannel(Channel):
 
     def hello(self, patience: float) -> dict[str, Any]:
         """Shake hands, and ask what the game is; return the answer as the ``hello`` of ``tltl/1``."""
+        deadline = time.monotonic() + patience
         versions = {"major_version": MAJOR_VERSION, "minor_version": MINOR_VERSION}
-        self._send({"type": "handshake", **versions}, patience)
-        self._send({"type": "env_info"}, patience)
-        info = self._receive("env_info", patience, fileio.limits.WIRE_HELLO.size)
+        self._send({"type": "handshake", **versions}, deadline)
+        self._send({"type": "env_info"}, deadline)
+        info = self._receive("env_info", deadline, fileio.limits.WIRE_HELLO.size)
         agents = a_whole_number(info.get("n_agents"), "env_info.n_agents", 0)
         if agents != 1:
             raise MalformedMessageError(
@@ -115,21 +116,23 @@ class GodotRlChannel(Channel):
 
     def send(self, message: Any, patience: float) -> None:
         """Send a request."""
+        deadline = time.monotonic() + patience
         self._stream.check_in_step()
         self._repeats = 0
         if "step" in message:
             body = message["step"]
             self._step = {"type": "action", "action": [body["action"]]}
             self._repeats = body.get("repeat", 1)
-            self._send(self._step, patience)
+            self._send(self._step, deadline)
         else:
-            self._send({"type": "close" if "close" in message else "reset"}, patience)
+            self._send({"type": "close" if "close" in message else "reset"}, deadline)
 
     def receive(self, patience: float, limit: int = fileio.limits.WIRE_MESSAGE.size) -> Any:
         """Return the answer to the last request, as the message ``state``."""
+        deadline = time.monotonic() + patience
         while True:
             kind = "step" if self._repeats else "reset"
-            answer = self._receive(kind, patience, limit)
+            answer = self._receive(kind, deadline, limit)
             has_ended = bool(self._repeats) and _only(answer, "step", "done")
             if type(has_ended) is not bool:
                 raise wrong("step.done[0]", "true or false", has_ended)
@@ -138,7 +141,7 @@ class GodotRlChannel(Channel):
                 observation = self._observation(_only(answer, kind, "obs"), f"{kind}.obs[0]")
                 return {"state": {"signals": {}, "observation": observation, "ended": has_ended}}
             self._stream.check_in_step()
-            self._send(self._step, patience)
+            self._send(self._step, deadline)
 
     def close(self) -> None:
         """Close the connection."""
@@ -160,16 +163,16 @@ class GodotRlChannel(Channel):
                 parts[name] = {"base64": b64encode(data).decode(), "dtype": "uint8", "shape": shape}
         return parts
 
-    def _send(self, message: Mapping[str, Any], patience: float) -> None:
+    def _send(self, message: Mapping[str, Any], deadline: float) -> None:
         data = json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
-        self._stream.send(len(data).to_bytes(_LENGTH_BYTES, "little") + data, patience)
+        self._stream.send(len(data).to_bytes(_LENGTH_BYTES, "little") + data, deadline - time.monotonic())
 
-    def _receive(self, kind: str, patience: float, limit: int) -> dict[str, Any]:
+    def _receive(self, kind: str, deadline: float, limit: int) -> dict[str, Any]:
         """Return the next message, which must have the type ``kind``."""
-        length = int.from_bytes(self._stream.exactly(_LENGTH_BYTES, patience), "little")
+        length = int.from_bytes(self._stream.exactly(_LENGTH_BYTES, deadline - time.monotonic()), "little")
         if length > limit:
             raise MalformedMessageError(f"sent a message of {length:,} bytes; at most {limit:,} are allowed")
-        message = json_text.parse(self._stream.exactly(length, patience))
+        message = json_text.parse(self._stream.exactly(length, deadline - time.monotonic()))
         if not isinstance(message, dict) or message.get("type") != kind:
             sent = message.get("type") if isinstance(message, dict) else message
             raise MalformedMessageError(f"sent {json_text.value_text(sent)} instead of a message of the type `{kind}`")

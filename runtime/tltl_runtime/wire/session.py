@@ -80,9 +80,10 @@ class WireSession:
             WireError: TLT0791, the game is lost; TLT0792, its answer is malformed; TLT0793, the answer is an error.
         """
         assert self._channel is not None
+        deadline = time.monotonic() + self._game.step_s
         try:
             self._channel.send(message, self._game.step_s)
-            return read(self._channel.receive(self._game.step_s))
+            return read(self._channel.receive(deadline - time.monotonic()))
         except BaseException as error:
             raise self._lost(error, kind, self._game.step_s) from None
 
@@ -116,8 +117,9 @@ class WireSession:
                 words = godot_rl.with_arguments(self._game.process, server.getsockname()[1])
                 self._process = GameProcess(words, self._game.folder, {})
             has_ended = self._process.has_ended if self._process else lambda: False
+            deadline = time.monotonic() + self._game.start_s
             channel = self._channel = godot_rl.accept(server, self._game.start_s, has_ended)
-        return channel, channel.hello(self._game.start_s)
+        return channel, channel.hello(deadline - time.monotonic())
 
     def _served(self) -> tuple[Channel, Any]:
         """Wait for a game that speaks the protocol of ML-Agents. Start it first, unless it has ``connect``."""
@@ -148,13 +150,14 @@ class WireSession:
 
     def _connected(self) -> tuple[Channel, Any]:
         """Connect to a game that is already running; say hello and return the connection and the answer."""
-        stream = ByteStream(_connection(self._game.connect, self._game.start_s))
+        deadline = time.monotonic() + self._game.start_s
+        stream = ByteStream(_connection(self._game.connect, deadline))
         channel = self._channel = JsonLines(stream)
         # The side that connects sends the token: here, this is tltlc.
         token = os.environ.get("TLTL_TOKEN", "")
         # This is no request: the game may have sent an error already, such as that it is busy.
-        stream.send(json_text.line({"hello": {"tltl": VERSION, "token": token}}), self._game.start_s)
-        message = channel.receive(self._game.start_s, fileio.limits.WIRE_HELLO.size)
+        stream.send(json_text.line({"hello": {"tltl": VERSION, "token": token}}), deadline - time.monotonic())
+        message = channel.receive(deadline - time.monotonic(), fileio.limits.WIRE_HELLO.size)
         body_of(message, "hello")
         return channel, message
 
@@ -236,18 +239,17 @@ class WireSession:
             self._process.end()
 
 
-def _connection(place: str, patience: float) -> socket.socket:
-    """Connect to the game that listens at ``place``, ``HOST:PORT``, within ``patience`` seconds.
+def _connection(place: str, deadline: float) -> socket.socket:
+    """Connect to the game that listens at ``place``, ``HOST:PORT``, before the clock says ``deadline``.
 
     If nothing listens there, try again for a few seconds: a game listens again a moment after its last connection
     has ended, or later if it was lost in a slow step. Raises WireError, TLT0790, if that is in vain.
     """
     host, port = address(place)
-    end = time.monotonic() + patience
-    last_try = time.monotonic() + min(_TO_LISTEN_S, patience)
+    last_try = min(time.monotonic() + _TO_LISTEN_S, deadline)
     while True:
         try:
-            return socket.create_connection((host, port), max(end - time.monotonic(), _PAUSE_S))
+            return socket.create_connection((host, port), max(deadline - time.monotonic(), _PAUSE_S))
         except OSError as error:
             if not isinstance(error, ConnectionRefusedError) or time.monotonic() > last_try:
                 title = f"no game listens at `{place}`: {error.strerror or error}"

@@ -129,3 +129,12 @@ def test_pings_of_a_page_do_not_move_its_deadline(sockets: Sockets, monkeypatch:
     monkeypatch.setattr("tltl_runtime.wire.websocket.time", FastClock(0.4 * HANG_S))
     with pytest.raises(GameSilentError):
         page.channel.receive(HANG_S)
+
+
+def test_the_parts_of_a_packed_message_have_one_deadline(sockets: Sockets, monkeypatch: pytest.MonkeyPatch) -> None:
+    msgpack = pytest.importorskip("msgpack")
+    data = msgpack.packb(bytes(100_000))  # More than tltlc receives in one piece.
+    sockets[1].sendall(len(data).to_bytes(4, "big") + data)
+    monkeypatch.setattr("tltl_runtime.wire.channel.time", FastClock(2 * HANG_S))
+    with pytest.raises(GameSilentError):
+        MessagePackFrames(ByteStream(sockets[0])).receive(HANG_S)
