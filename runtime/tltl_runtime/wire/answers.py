@@ -99,7 +99,7 @@ class StateReader:
             self._signals(body.get("signals")),
             self._observation(body.get("observation", {})),
             ended,
-            None if cause is None else a_text(cause, "state.cause"),
+            None if cause is None or cause == "" else a_text(cause, "state.cause"),
             _positions(body.get("positions")) if self._has_positions else {},
         )
 

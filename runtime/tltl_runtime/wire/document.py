@@ -33,8 +33,10 @@ def a_text(value: Any, path: str) -> str:
 
     Raises MalformedMessageError unless it is a text of printable characters, and not empty.
     """
-    if not isinstance(value, str) or not value or not value.isprintable():
+    if not isinstance(value, str):
         raise wrong(path, "a text", value)
+    if not value or not value.isprintable():
+        raise wrong(path, "a text of printable characters, and not empty", value)
     return value
 
 

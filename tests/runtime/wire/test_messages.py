@@ -75,7 +75,13 @@ def test_a_hello_is_read() -> None:
         ("hello/tltl", None, "sent `hello.tltl` as null, but it must be the version of the protocol, 1"),
         ("hello/tltl", True, "sent `hello.tltl` as true, but it must be the version of the protocol, 1"),
         ("hello/token", 3, "sent `hello.token` as 3, but it must be a text"),
-        ("hello/name", "a\nb", 'sent `hello.name` as "a\N{REPLACEMENT CHARACTER}b", but it must be a text'),
+        (
+            "hello/name",
+            "a\nb",
+            'sent `hello.name` as "a\N{REPLACEMENT CHARACTER}b", '
+            "but it must be a text of printable characters, and not empty",
+        ),
+        ("hello/name", "", 'sent `hello.name` as "", but it must be a text of printable characters, and not empty'),
         ("hello/clock_hz", -1, "sent `hello.clock_hz` as -1, but it must be from 1e-09 to 1e+09"),
         ("hello/encoding", "pickle", 'sent `hello.encoding` as "pickle", but it must be `json` or `msgpack`'),
         ("hello/signals", [], "sent `hello.signals` as a list, but it must be an object"),
@@ -106,6 +112,10 @@ def test_a_state_is_read() -> None:
     assert state.signals == {"position": 3.0, "seen": False, "moves": 0.5}
     assert state.signals["seen"] is False and not state.ended and state.cause is None
     assert np.array_equal(state.observation, np.array([3], np.float32)) and state.positions == {"player": (3.0, 0.0)}
+
+
+def test_an_empty_cause_is_an_unknown_one() -> None:
+    assert answers.StateReader(hello_from(HELLO)).read(changed(STATE, "state/cause", "")).cause is None
 
 
 @pytest.mark.parametrize(
