@@ -34,9 +34,10 @@ import numpy as np
 
 from tltl_runtime.wire import protobuf
 from tltl_runtime.wire.channel import Channel
-from tltl_runtime.wire.errors import NOT_STARTED, GameGoneError, GameSilentError, MalformedMessageError, wire_error
+from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMessageError
 from tltl_runtime.wire.hello import VERSION
 from tltl_runtime.wire.protobuf import Fields, field
+from tltl_runtime.wire.server import cannot_listen, listen, place_text
 from tltlc.api import Diagnostic, TltlError, fileio
 
 COMMUNICATION_VERSION: Final = "1.5.0"
@@ -47,6 +48,8 @@ _LOOK_S: Final = 0.05
 """Seconds between two checks whether the game has ended."""
 _TO_SEND_S: Final = 1.0
 """Seconds in which the last answer reaches the game."""
+_OTHER: Final = "`mlagents-learn`"
+"""The program that also uses the ports of ML-Agents."""
 _OK: Final = 200
 _STEP, _RESET, _QUIT = 0, 1, 2
 _SPEED: Final = uuid.UUID("e951342c-4f7e-11ea-b238-784f4387d1f7")
@@ -68,7 +71,7 @@ class MlAgentsChannel(Channel):
     parameters by name.
 
     Raises:
-        WireError: TLT0790, the port is not free.
+        WireError: TLT0790, tltlc cannot listen at the port.
         TltlError: TLT0730, the package ``grpcio`` is not installed.
     """
 
@@ -246,17 +249,17 @@ def _started(host: str, port: int, exchange: Callable[[bytes, Any], bytes]) -> t
     except ModuleNotFoundError:
         title = "games that speak `ml-agents` need the package `grpcio`, which is not installed"
         raise TltlError([Diagnostic("TLT0730", title, help="install it: `pip install grpcio`")]) from None
+    place = place_text(host, port)
     size = fileio.limits.WIRE_MESSAGE.size
     options = (("grpc.so_reuseport", 0), ("grpc.max_receive_message_length", size))
     server = grpc.server(ThreadPoolExecutor(1), options=options)
     handler = grpc.unary_unary_rpc_method_handler(exchange)
     server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(SERVICE, {"Exchange": handler}),))
     try:
-        chosen: int = server.add_insecure_port(f"{host}:{port}")
-    except RuntimeError:
-        title = f"cannot wait for a game at `{host}:{port}`"
-        help_ = "end the other program that uses this port; it may be another tltlc, or `mlagents-learn`"
-        raise wire_error(NOT_STARTED, title, help_) from None
+        chosen: int = server.add_insecure_port(place)
+    except RuntimeError as error:
+        listen(host, port, _OTHER).close()  # This says why the port cannot be used; gRPC does not.
+        raise cannot_listen(place, error, _OTHER) from None
     server.start()
     return server, chosen
 

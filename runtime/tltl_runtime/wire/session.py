@@ -20,6 +20,7 @@ from tltl_runtime.wire.hello import JSON, MSGPACK, VERSION, Hello, hello_from
 from tltl_runtime.wire.listener import Listener
 from tltl_runtime.wire.ml_agents import MlAgentsChannel
 from tltl_runtime.wire.requests import CloseRequest, Refusal
+from tltl_runtime.wire.server import listen
 from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame, address
 from tltlc.api import fileio
 
@@ -111,8 +112,7 @@ class WireSession:
 
     def _awaited(self) -> tuple[Channel, Any]:
         """Wait for a game that speaks the protocol of Godot RL Agents. Start it first, unless it has ``connect``."""
-        server = _server(self._game.connect)
-        with server:
+        with listen(*self._place(), "Godot RL Agents") as server:
             if self._game.process:
                 words = godot_rl.with_arguments(self._game.process, server.getsockname()[1])
                 self._process = GameProcess(words, self._game.folder, {})
@@ -124,13 +124,16 @@ class WireSession:
     def _served(self) -> tuple[Channel, Any]:
         """Wait for a game that speaks the protocol of ML-Agents. Start it first, unless it has ``connect``."""
         game = self._game
-        host, port = address(game.connect) if game.connect else ("127.0.0.1", 0)
-        channel = MlAgentsChannel(host, port, dict(game.parameters))
+        channel = MlAgentsChannel(*self._place(), dict(game.parameters))
         self._channel = channel
         if game.process:
             self._process = GameProcess(ml_agents.with_arguments(game.process, channel.port), game.folder, {})
         has_ended = self._process.has_ended if self._process else lambda: False
         return channel, channel.hello(game.start_s, has_ended)
+
+    def _place(self) -> tuple[str, int]:
+        """Return the host and the port at which tltlc waits for the game; the port 0 stands for a free one."""
+        return address(self._game.connect) if self._game.connect else ("127.0.0.1", 0)
 
     def _started(self) -> tuple[Channel, Any]:
         """Start the game, and wait until it connects; return the connection and the game's first message."""
@@ -256,13 +259,3 @@ def _connection(place: str, deadline: float) -> socket.socket:
                 help_ = "start the game first; it may also be busy with another tltlc"
                 raise wire_error(errors.NOT_STARTED, title, help_) from None
         time.sleep(_PAUSE_S)
-
-
-def _server(place: str) -> socket.socket:
-    """Return a socket that listens at ``place``, ``HOST:PORT``, or on a free port of 127.0.0.1 if it is empty."""
-    try:
-        return socket.create_server(address(place) if place else ("127.0.0.1", 0))
-    except OSError as error:
-        title = f"cannot wait for a game at `{place}`: {error.strerror or error}"
-        help_ = "end the other program that uses this port; it may be another tltlc, or Godot RL Agents"
-        raise wire_error(errors.NOT_STARTED, title, help_) from None

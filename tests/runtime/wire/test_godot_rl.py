@@ -111,11 +111,22 @@ def test_games_that_start_at_once_have_different_seeds() -> None:
     assert places == {1.0, 2.0}
 
 
-def test_a_game_that_is_started_by_hand_connects() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-    game = WireGame("row", GAMES, connect=f"127.0.0.1:{port}", start_s=HANG_S, protocol=GODOT_RL)
-    words = [sys.executable, str(PLAYER), f"--port={port}"]
+def free_place(host: str) -> tuple[int, str]:
+    """Return a free port of a host, and ``HOST:PORT``; skip the test if the machine has no IPv6."""
+    try:
+        server = socket.create_server((host, 0), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+    except OSError:
+        pytest.skip("needs IPv6")
+    with server:
+        port: int = server.getsockname()[1]
+    return port, f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "::1"])
+def test_a_game_that_is_started_by_hand_connects(host: str) -> None:
+    port, place = free_place(host)
+    game = WireGame("row", GAMES, connect=place, start_s=HANG_S, protocol=GODOT_RL)
+    words = [sys.executable, str(PLAYER), f"--port={port}", f"--host={host}"]
     code = f"import socket, subprocess, time\nwhile subprocess.run({words!r}, stderr=-3).returncode: time.sleep(0.05)"
     with subprocess.Popen([sys.executable, "-c", code]) as starter:
         env = WireEnv(game)
@@ -205,8 +216,17 @@ def test_the_hash_notices_the_protocol(game: Path) -> None:
 def test_the_port_of_another_program_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         place = f"127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`"):
+        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: .* in use") as caught:
             WireEnv(WireGame("row", GAMES, connect=place, protocol=GODOT_RL))
+    advice = "end the other program that uses this port; it may be another tltlc, or Godot RL Agents"
+    assert caught.value.diagnostics[0].help == advice
+
+
+def test_an_address_of_another_machine_is_reported() -> None:
+    place = "192.0.2.1:5000"  # This address is for documentation only.
+    with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: ") as caught:
+        WireEnv(WireGame("row", GAMES, connect=place, protocol=GODOT_RL))
+    assert (caught.value.diagnostics[0].help or "").startswith("in the game file, give `connect` an address of this")
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ pytest.importorskip("google.protobuf", reason="needs protobuf")
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.wire.test_faults import GAMES, no_new_children
+from tests.runtime.wire.test_godot_rl import free_place
 from tests.waiting import HANG_S
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.scene_env import make_base_env
@@ -96,11 +97,12 @@ def test_a_step_may_be_several_actions() -> None:
     env.close()
 
 
-def test_a_game_in_the_editor_connects() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-    with subprocess.Popen([sys.executable, str(PLAYER), "--mlagents-port", str(port)]) as game:
-        env = WireEnv(WireGame("row", GAMES, connect=f"127.0.0.1:{port}", start_s=HANG_S, protocol=ML_AGENTS))
+@pytest.mark.parametrize("host", ["127.0.0.1", "::1"])
+def test_a_game_in_the_editor_connects(host: str) -> None:
+    port, place = free_place(host)
+    words = [sys.executable, str(PLAYER), "--mlagents-port", str(port), f"--host={place.rpartition(':')[0]}"]
+    with subprocess.Popen(words) as game:
+        env = WireEnv(WireGame("row", GAMES, connect=place, start_s=HANG_S, protocol=ML_AGENTS))
         assert env.reset()[0]["VectorSensor_size2"][0] in (1, 2)
         env.close()
         assert game.wait(HANG_S) == 0
@@ -150,8 +152,17 @@ def test_a_picture_as_png_is_refused() -> None:
 def test_the_port_of_another_program_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         place = f"127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`"):
+        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: .* in use") as caught:
             WireEnv(WireGame("row", GAMES, connect=place, protocol=ML_AGENTS))
+    advice = "end the other program that uses this port; it may be another tltlc, or `mlagents-learn`"
+    assert caught.value.diagnostics[0].help == advice
+
+
+def test_an_address_of_another_machine_is_reported() -> None:
+    place = "192.0.2.1:5000"  # This address is for documentation only.
+    with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: ") as caught:
+        WireEnv(WireGame("row", GAMES, connect=place, protocol=ML_AGENTS))
+    assert (caught.value.diagnostics[0].help or "").startswith("in the game file, give `connect` an address of this")
 
 
 def test_a_missing_package_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

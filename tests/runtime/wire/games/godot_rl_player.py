@@ -11,7 +11,7 @@ Facts, from ``addons/godot_rl_agents/sync.gd`` of https://github.com/edbeeching/
   with one item for each agent; bytes of pictures are hexadecimal digits;
 - when the connection ends, it quits.
 
-Usage: python godot_rl_player.py --port=N [--length=5] [--agents=1] [--old] [--fault=WORD]
+Usage: python godot_rl_player.py --port=N [--host=127.0.0.1] [--length=5] [--agents=1] [--old] [--fault=WORD]
 """
 
 from __future__ import annotations
@@ -106,5 +106,5 @@ if __name__ == "__main__":
         sys.exit("there is no display")
     if FAULT == "silent":
         threading.Event().wait()
-    with socket.create_connection(("127.0.0.1", int(OPTIONS.get("port", "11008")))) as to_trainer:
+    with socket.create_connection((OPTIONS.get("host", "127.0.0.1"), int(OPTIONS.get("port", "11008")))) as to_trainer:
         Game(to_trainer).play()

@@ -10,7 +10,8 @@ of the fields), with the library protobuf and not with the code of tltlc. How th
 - at the end of an episode, the agent is in the list twice: ``done`` with the last observation, and with the first
   one of the next episode. RESET ends the episode, too.
 
-Usage: python ml_agents_player.py --mlagents-port N [--lazy] [--agents=2] [--behaviors=2] [--fault=WORD] [--start=N]
+Usage: python ml_agents_player.py --mlagents-port N [--host=HOST] [--lazy] [--agents=2] [--behaviors=2] [--fault=WORD]
+       [--start=N]
 """
 
 from __future__ import annotations
@@ -180,7 +181,7 @@ if __name__ == "__main__":
         sys.exit("there is no display")
     if FAULT == "silent":
         threading.Event().wait()
-    with grpc.insecure_channel(f"127.0.0.1:{PORT}") as to_trainer:
+    with grpc.insecure_channel(f"{OPTIONS.get('host', '127.0.0.1')}:{PORT}") as to_trainer:
         call = to_trainer.unary_unary(
             "/communicator_objects.UnityToExternalProto/Exchange",
             request_serializer=(lambda _: b"\xff\xff")
