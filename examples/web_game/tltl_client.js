@@ -270,7 +270,7 @@ function refusal(message, token) {
  *
  *     const recorder = new Recorder("traces", ["position", "at_goal"], { clockHz: 10 });
  *     recorder.begin();
- *     recorder.sample({ position: 0, at_goal: false });    // at the start, then after each tick
+ *     recorder.sample({ position: 1, at_goal: false });    // after each tick
  *     recorder.end();
  *
  * Before Node 20.16, give the option `fs`, which is `await import("node:fs")`.

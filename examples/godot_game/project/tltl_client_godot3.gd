@@ -539,7 +539,7 @@ class Digits:
 #
 #     var recorder = Tltl.Recorder.new("user://traces", ["speed", "at_goal"], 60)
 #     recorder.begin()
-#     recorder.sample({"speed": 0.0, "at_goal": false})  # at the start, then after each tick
+#     recorder.sample({"speed": 0.5, "at_goal": false})  # after each tick
 #     recorder.end()
 class Recorder:
 	extends Reference

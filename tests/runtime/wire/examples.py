@@ -11,9 +11,9 @@ from tests.runtime.wire.conversation import Game, contains
 PAGE = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8")
 
 
-def code_of_page(language: str) -> str:
-    """Return the block of code in this language on the page."""
-    (block,) = re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+def code_of_page(language: str, word: str = "recorder") -> str:
+    """Return the block of code in this language on the page that contains ``word``."""
+    (block,) = (code for code in re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) if word in code)
     return str(block)
 
 
@@ -48,7 +48,11 @@ def check_example(command: list[str]) -> None:
 
 
 def check_traces_of_page(folder: Path) -> None:
-    """Check the one trace that the example of the page has recorded in a folder."""
+    """Check the one trace that the example of the page has recorded in a folder: it begins after the first tick."""
     (path,) = folder.iterdir()
-    rows = path.read_text(encoding="utf-8").splitlines()
-    assert rows == ["time,position,at_goal", *(f"{i / 10:g},{i},{str(i == 5).lower()}" for i in range(6))]
+    header, *lines = path.read_text(encoding="utf-8").splitlines()
+    rows = [line.split(",") for line in lines]
+    assert header == "time,position,at_goal"
+    assert [(float(time), float(position), at_goal) for time, position, at_goal in rows] == [
+        (tick / 10, tick + 1, str(tick == 4).lower()) for tick in range(5)
+    ]

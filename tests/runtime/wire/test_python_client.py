@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.wire import conversation
+from tests.runtime.wire import conversation, examples
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
 from tltl_runtime.wire.clients import tltl_client
@@ -83,6 +84,31 @@ def test_a_recorded_trace_is_judged(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder)]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert "1 of 2 accepted" in result.stdout, result.stderr
+
+
+def test_the_example_of_the_page_is_judged_as_the_play_of_an_agent(tmp_path: Path) -> None:
+    """The player begins at home, which is no part of the trace, so that it does not break `avoid`."""
+    variables = {**os.environ, "PYTHONPATH": str(Path(tltl_client.__file__).parent)}
+    words = [sys.executable, "-c", examples.code_of_page("python")]
+    subprocess.run(words, cwd=tmp_path, env=variables, timeout=HANG_S, check=True)
+    examples.check_traces_of_page(tmp_path / "traces")
+    spec = tmp_path / "leave.tltl"
+    spec.write_text(
+        "clock 10 Hz\nsignal position: number in [0, 10]\nsignal at_goal: bool\n"
+        "spec leave {\n  avoid position < 1\n  reach at_goal\n  limit 10 s\n}\n",
+        encoding="utf-8",
+    )
+    words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(tmp_path / "traces")]
+    result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+@pytest.mark.parametrize(
+    "client", sorted(Path(tltl_client.__file__).parent.glob("*[Cc]lient*.*")), ids=lambda path: path.name
+)
+def test_each_client_says_that_a_sample_follows_a_tick(client: Path) -> None:
+    (line,) = (line for line in client.read_text(encoding="utf-8").splitlines() if "after each tick" in line)
+    assert re.search(r"ample\(.*(//|--|#) after each tick$", line)
 
 
 def test_a_recorder_overwrites_no_trace(tmp_path: Path) -> None:

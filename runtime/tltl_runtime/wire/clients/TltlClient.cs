@@ -663,7 +663,7 @@ namespace Tltl
     /// <code>
     /// var recorder = new Recorder("traces", new[] {"position", "at_goal"}, clockHz: 10);
     /// recorder.Begin();
-    /// recorder.Sample(new Message {{"position", 0}, {"at_goal", false}}); // at the start, then after each tick
+    /// recorder.Sample(new Message {{"position", 1}, {"at_goal", false}}); // after each tick
     /// recorder.End();
     /// </code>
     /// </remarks>

@@ -283,8 +283,8 @@ int tltl_play(const tltl_game *game);
 //     tltl_recorder recorder;
 //     tltl_recorder_init(&recorder, "traces", signals, 3, 10);
 //     tltl_recorder_begin(&recorder);
-//     double values[3] = {0, 0, 0};                 // of all signals, in order
-//     tltl_recorder_sample(&recorder, values);      // at the start, then after each tick
+//     double values[3] = {1, 1, 0};                 // of all signals, in order
+//     tltl_recorder_sample(&recorder, values);      // after each tick
 //     tltl_recorder_end(&recorder);
 typedef struct {
     char error[512];

@@ -681,7 +681,7 @@ Recorder.__index = Recorder
 ---
 ---     local recorder = tltl_client.Recorder("traces", {"position", "at_goal"}, 10)
 ---     recorder:begin()
----     recorder:sample({position = 0, at_goal = false})    -- at the start, then after each tick
+---     recorder:sample({position = 1, at_goal = false})    -- after each tick
 ---     recorder:finish()
 ---
 --- `sample` raises an error if a number is not finite, or a signal is missing.

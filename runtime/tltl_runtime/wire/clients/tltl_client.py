@@ -298,7 +298,7 @@ class Recorder:
 
         recorder = tltl_client.Recorder("traces", ["position", "at_goal"], clock_hz=10)
         recorder.begin()
-        recorder.sample({"position": 0, "at_goal": False})    # at the start, then after each tick
+        recorder.sample({"position": 1, "at_goal": False})    # after each tick
         recorder.end()
 
     Raises ValueError, in ``sample``, if a number is not finite, and KeyError if a signal is missing.
