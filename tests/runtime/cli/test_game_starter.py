@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -32,6 +33,45 @@ IN_PROCESSES = {
     "unreal": ["./hall"],
 }
 """The games in other processes, and the command of each that can run here: LÖVE needs a screen."""
+UNITY = """
+namespace UnityEngine
+{
+    public class MonoBehaviour { }
+    public enum KeyCode { UpArrow, DownArrow, LeftArrow, RightArrow }
+    public struct Rect { public Rect(float x, float y, float width, float height) { } }
+    public static class GUI { public static void Label(Rect place, string text) { } }
+    public static class Input
+    {
+        public static KeyCode? pressed;
+        public static bool GetKeyDown(KeyCode key) { return key == pressed; }
+    }
+    public static class Random { public static int Range(int least, int bound) { return least; } }
+    public static class QualitySettings { public static int vSyncCount; }
+    public static class Application { public static void Quit(int status) { } }
+}
+
+internal static class Person
+{
+    private static void Main(string[] words)
+    {
+        var hall = new HallBehaviour();
+        Call(hall, "Start");
+        if (words.Length > 0)
+        {
+            UnityEngine.Input.pressed = UnityEngine.KeyCode.UpArrow;
+            Call(hall, "Update");
+        }
+        Call(hall, "OnDestroy");
+    }
+
+    private static void Call(HallBehaviour hall, string name)
+    {
+        var flags = System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.NonPublic;
+        typeof(HallBehaviour).GetMethod(name, flags).Invoke(hall, null);
+    }
+}
+"""
+"""A stand-in for the parts of Unity that the starter uses, and a person who moves once if there is an argument."""
 _COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
 
 
@@ -154,6 +194,79 @@ def test_a_person_is_recorded_in_the_starter_in_python(tltlc: Run, made: Callabl
     result = tltlc("monitor", "hall.tltl", "traces")
     assert result.status in (0, 1), result.err
     assert "trace-0001.csv" in result.out
+
+
+@pytest.mark.parametrize(("kind", "words"), [("python", [sys.executable, "record.py"]), ("unreal", ["./hall"])])
+def test_a_walk_in_the_terminal_becomes_a_trace_if_the_player_moves(
+    tltlc: Run,  # noqa: F811
+    made: Callable[[str], list[str]],
+    kind: str,
+    words: list[str],
+) -> None:
+    made(kind)
+    for keys in ("q\n", "w\nq\n", "q\n"):
+        subprocess.run(words, input=keys, capture_output=True, text=True, timeout=HANG_S, check=True)
+    check_one_trace(tltlc, Path("traces"))
+
+
+def test_a_walk_in_unity_becomes_a_trace_if_the_player_moves(tltlc: Run, made: Callable[[str], list[str]]) -> None:  # noqa: F811
+    """Unity is not here; a stand-in for its library is."""
+    made("unity")
+    Path("Unity.cs").write_text(UNITY, encoding="utf-8")
+    sources = ["Assets/Tltl/TltlClient.cs", "Assets/Hall/Hall.cs", "Assets/Hall/HallBehaviour.cs", "Unity.cs"]
+    compile_it(f"mcs -out:person.exe {' '.join(sources)}")
+    for words in ([], ["move"], []):
+        subprocess.run(["mono", "person.exe", *words], timeout=HANG_S, check=True)
+    check_one_trace(tltlc, Path("traces"))
+
+
+@pytest.mark.skipif(shutil.which("love") is None, reason="love is not installed")
+def test_a_walk_in_love_becomes_a_trace_if_the_player_moves(
+    tltlc: Run,  # noqa: F811
+    made: Callable[[str], list[str]],
+    tmp_path: Path,
+) -> None:
+    made("love")
+    modules = ("audio", "graphics", "joystick", "sound", "touch", "video", "window")
+    conf = Path("conf.lua").read_text(encoding="utf-8")
+    without_screen = "".join(f"t.modules.{name} = false\n" for name in modules)
+    Path("conf.lua").write_text(conf.replace("  if os", f"{without_screen}  if os"), encoding="utf-8")
+    game = Path("main.lua").read_text(encoding="utf-8")
+    for move in ("", 'love.keypressed("up")', ""):
+        person = f"\nfunction love.update() {move} love.event.quit() end\n"
+        Path("main.lua").write_text(game + person, encoding="utf-8")
+        variables = {**os.environ, "XDG_DATA_HOME": str(tmp_path / "data")}
+        subprocess.run(["love", "."], env=variables, timeout=HANG_S, check=True)
+    check_one_trace(tltlc, tmp_path / "data" / "love" / "hall" / "traces")
+
+
+@pytest.mark.skipif(shutil.which("godot3-server") is None, reason="needs godot3-server")
+def test_a_walk_in_godot_becomes_a_trace_if_the_player_moves(
+    tltlc: Run,  # noqa: F811
+    made: Callable[[str], list[str]],
+    tmp_path: Path,
+) -> None:
+    made("godot")
+    game = Path("hall.gd").read_text(encoding="utf-8")
+    variables = {**os.environ, "XDG_DATA_HOME": str(tmp_path / "data")}
+    for frame in (99, 2, 99):
+        person = (
+            "\n\nfunc _process(_delta) -> void:\n"
+            f'\tif Engine.get_physics_frames() == {frame}:\n\t\tInput.action_press("ui_up")\n'
+            "\tif Engine.get_physics_frames() > 4:\n\t\tget_tree().quit()\n"
+        )
+        Path("hall.gd").write_text(game + person, encoding="utf-8")
+        words = ["godot3-server", "--path", ".", "--fixed-fps", "10", "--disable-render-loop"]
+        subprocess.run(words, env=variables, timeout=HANG_S, check=True)
+    (folder,) = (tmp_path / "data").rglob("traces")
+    check_one_trace(tltlc, folder)
+
+
+def check_one_trace(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    """Check that a folder has one trace, which can be judged."""
+    assert [path.name for path in folder.iterdir()] == ["trace-0001.csv"]
+    result = tltlc("monitor", "hall.tltl", folder)
+    assert "trace-0001.csv: not accepted: " in result.out, result.err
 
 
 @pytest.mark.parametrize("kind", game_starter.kinds())

@@ -93,7 +93,7 @@ func mark(cell: Vector2) -> String:
 func begin_by_hand() -> void:
 	randomize()
 	reset("hall", "v0", randi())
-	recorder.begin()
+	recorder.end()  # the next move begins a trace
 
 
 func play_by_hand() -> void:

@@ -14,7 +14,7 @@ end
 
 local function begin()
   now = hall:reset("hall", "v0", love.math.random(0, 2 ^ 31))
-  recorder:begin()
+  recorder:finish() -- the next move begins a trace
 end
 
 function love.load()

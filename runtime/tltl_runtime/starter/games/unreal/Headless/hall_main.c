@@ -18,7 +18,7 @@ static int play_by_hand(void) {
     char key;
     int y;
     if (!hall_begin(&hall, "levels/hall.txt", (uint64_t)time(NULL))) return 1;
-    if (!tltl_recorder_init(&recorder, "traces", hall_signals, 3, 10) || !tltl_recorder_begin(&recorder)) return 1;
+    if (!tltl_recorder_init(&recorder, "traces", hall_signals, 3, 10)) return 1;
     do {
         for (y = hall.row_count - 1; y >= 0; --y) {
             const char *row = hall.rows[hall.row_count - 1 - y];
@@ -33,7 +33,10 @@ static int play_by_hand(void) {
                 values[0] = hall.has_key;
                 values[1] = hall_mark(&hall, hall.x, hall.y) == 'D';
                 values[2] = hall_mark(&hall, hall.x, hall.y) == '^';
-                tltl_recorder_sample(&recorder, values);
+                if (!tltl_recorder_sample(&recorder, values)) {  // the first one begins the trace
+                    fprintf(stderr, "%s\n", recorder.error);
+                    return 1;
+                }
             }
     } while (!feof(stdin) && key != 'q' && hall_mark(&hall, hall.x, hall.y) != '^');
     tltl_recorder_end(&recorder);

@@ -45,7 +45,7 @@ public sealed class HallBehaviour : MonoBehaviour
     private void Begin()
     {
         _hall.Reset("hall", "v0", UnityEngine.Random.Range(0, int.MaxValue));
-        _recorder.Begin();
+        _recorder.End(); // the next move begins a trace
     }
 
     private void PlayByHand()
