@@ -16,6 +16,8 @@ from runpy import run_path
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.regression.page import chromium
+from tests.runtime.wire.test_web_game import served
 from tests.waiting import HANG_S
 from tltl_runtime.cli.support import game_starter
 from tltl_runtime.gymnasium_games.game_file import read_game_file
@@ -267,6 +269,32 @@ def check_one_trace(tltlc: Run, folder: Path) -> None:  # noqa: F811
     assert [path.name for path in folder.iterdir()] == ["trace-0001.csv"]
     result = tltlc("monitor", "hall.tltl", folder)
     assert "trace-0001.csv: not accepted: " in result.out, result.err
+
+
+@pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
+def test_in_the_page_a_new_walk_begins_after_a_saved_one(
+    made: Callable[[str], list[str]],
+    tmp_path: Path,
+) -> None:
+    made("web")
+    with served(Path.cwd()) as address, chromium.browser() as browser:
+        page = browser.new_page()
+        page.set_default_timeout(chromium.HANG_MS)
+        page.add_init_script("Math.random = () => 0;")
+        page.goto(f"{address}/index.html")
+        page.wait_for_function("document.getElementById('map').textContent.includes('@')")
+        start = page.text_content("#map")
+        for number in (1, 2):
+            assert page.is_disabled("#save")
+            page.keyboard.press("ArrowRight")
+            assert page.text_content("#map") != start
+            with page.expect_download() as download:
+                page.click("#save")
+            assert download.value.suggested_filename == f"hall-trace-000{number}.csv"
+            download.value.save_as(tmp_path / "traces" / f"{number}.csv")
+            page.wait_for_function("start => document.getElementById('map').textContent === start", arg=start)
+    traces = [path.read_text(encoding="utf-8") for path in (tmp_path / "traces").iterdir()]
+    assert traces == ["time,has_key,at_door,on_spikes\n0,false,false,false\n"] * 2
 
 
 @pytest.mark.parametrize("kind", game_starter.kinds())

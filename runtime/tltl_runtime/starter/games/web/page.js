@@ -19,20 +19,31 @@ function draw(game) {
 async function playByHand() {
   const game = new Hall(read);
   const recorder = new Recorder("hall", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
-  let now = await game.reset("hall", "v0", Math.floor(Math.random() * 2 ** 31));
-  recorder.begin();
-  draw(game);
+  const help = element("text").textContent;
+  let now = null;
+  async function begin() {
+    now = null; // until the level is read, no key moves the player
+    now = await game.reset("hall", "v0", Math.floor(Math.random() * 2 ** 31));
+    element("text").textContent = help;
+    draw(game);
+  }
   addEventListener("keydown", (event) => {
     const action = KEYS.indexOf(event.key);
-    if (action < 0 || now.ended) return;
+    if (action < 0 || !now || now.ended) return;
     event.preventDefault();
     now = game.step(action);
-    recorder.sample(now.signals);
+    recorder.sample(now.signals); // the first one begins the trace
+    element("save").disabled = false;
     draw(game);
     if (now.signals.has_key) element("text").textContent = now.signals.at_door ? "You are out!" : "You have the key.";
     if (now.ended) element("text").textContent = "You fell on the spikes.";
   });
-  element("save").addEventListener("click", () => recorder.download());
+  element("save").addEventListener("click", () => {
+    recorder.download();
+    element("save").disabled = true;
+    return begin();
+  });
+  await begin();
 }
 
 if (isStartedByTltlc()) await play(new Hall(read));
