@@ -116,8 +116,10 @@ export function isStartedByTltlc() {
  * Connect to tltlc and answer its requests, until it closes the connection.
  *
  * If tltlc refuses the game, or has not started it, the message goes to the console, and the exit status of Node will
- * be 1. If the game is started first and tltlc connects to it, pass a client:
- * `play(game, await listen(gameHello(game), 5000))`.
+ * be 1. If the game is started first and tltlc connects to it, pass a client, and play again after each connection. The
+ * method `close` of the game is called at the end of each:
+ *
+ *     for (;;) await play(game, await listen(gameHello(game), 5000));
  */
 export async function play(game, client = null) {
   let problem = "";

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.wire import conversation, examples
+from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
 from tltl_runtime.wire.clients import tltl_client
@@ -61,6 +62,14 @@ def test_without_tltlc_the_game_says_why_it_ends() -> None:
     )
     assert result.returncode == 1
     assert result.stderr == "tltlc must start this game: the variable TLTL_PORT is not set\n"
+
+
+def test_a_game_that_listens_as_the_page_says_is_played_again_and_again(tmp_path: Path) -> None:
+    loop = examples.code_of_page("python", "listen").replace("5000", "int(sys.argv[2])")
+    script = tmp_path / "game.py"
+    head = f"import sys\nsys.path.insert(0, {str(GAMES)!r})\nfrom counter import Counter\ngame = Counter()\n"
+    script.write_text(head + loop, encoding="utf-8")
+    check_listening([sys.executable, str(script)])
 
 
 def test_a_recorded_trace_is_judged(tmp_path: Path) -> None:

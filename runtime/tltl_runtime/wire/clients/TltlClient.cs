@@ -282,9 +282,11 @@ namespace Tltl
         /// </summary>
         /// <remarks>
         /// If tltlc refuses the game, or has not started it, the status is 1, and standard error says why. If the
-        /// game is started first and tltlc connects to it, pass a <paramref name="client"/>:
-        /// <c>TltlClient.Play(game, TltlClient.Listen(TltlClient.GameHello(game), 5000))</c>. A game that is
-        /// IDisposable is disposed at the end.
+        /// game is started first and tltlc connects to it, pass a <paramref name="client"/>, and play again after
+        /// each connection. A game that is IDisposable is disposed at the end of each: the next one needs a new game.
+        /// <code>
+        /// while (TltlClient.Play(game, TltlClient.Listen(TltlClient.GameHello(game), 5000)) == 0) { }
+        /// </code>
         /// </remarks>
         public static int Play(IGame game, Client client = null)
         {

@@ -219,7 +219,11 @@ typedef struct {
 // and TLTL_TOKEN.  Whether this succeeds or not, the client is to be closed at the end.
 int tltl_connect(tltl_client *client, const tltl_hello *hello, int port, const char *token);
 // Wait on a port of 127.0.0.1 until tltlc connects.  Use this if the game file has `connect = "127.0.0.1:PORT"`.  If
-// the token is not empty, tltlc must send the same one.  While one tltlc plays, no other can connect.
+// the token is not empty, tltlc must send the same one.  While one tltlc plays, no other can connect.  Listen again
+// after each connection:
+//
+//     tltl_hello hello = tltl_game_hello(&game);
+//     while (tltl_listen(&client, &hello, 5000, NULL) && tltl_serve(&game, &client) == 0) {}
 int tltl_listen(tltl_client *client, const tltl_hello *hello, int port, const char *token);
 // Wait for the next request.  0 if tltlc has closed the connection, or refuses this game.
 int tltl_next_request(tltl_client *client, tltl_request *request);

@@ -616,7 +616,11 @@ end
 
 --- Connect to tltlc and answer its requests, until it closes the connection. If tltlc refuses the game, or has not
 --- started it, the process ends with a message. If the game is started first and tltlc connects to it, pass a
---- `client`: `play(game, listen(game_hello(game), 5000))`.
+--- `client`, and play again after each connection. The method `close` of the game is called at the end of each:
+---
+---     while true do
+---       tltl_client.play(game, tltl_client.listen(tltl_client.game_hello(game), 5000))
+---     end
 function tltl_client.play(game, client)
   local went_well, failure = xpcall(function()
     client = client or tltl_client.Client(tltl_client.game_hello(game))

@@ -100,8 +100,11 @@ def play(game: Any, client: Client | None = None) -> None:
     """Connect to tltlc and answer its requests, until it closes the connection.
 
     If tltlc refuses the game, or has not started it, the process ends with a message. If the game is
-    started first and tltlc connects to it, pass a ``client``:
-    ``play(game, listen(game_hello(game), 5000))``.
+    started first and tltlc connects to it, pass a ``client``, and play again after each connection. The
+    method ``close`` of the game is called at the end of each::
+
+        while True:
+            play(game, listen(game_hello(game), 5000))
     """
     try:
         client = client or Client(game_hello(game))
