@@ -55,15 +55,15 @@ def page_command(folder: Path, page: str) -> list[str]:
     return [sys.executable, "-c", start, str(folder), NODE, "tltl_client.js", page, BROWSER]
 
 
-def processes_with(text: str) -> list[int]:
-    """Return the ids of the processes whose command contains a text, on Linux."""
+def processes_with(text: str, file: str) -> list[int]:
+    """Return the ids of the processes with a text in a file of /proc, such as ``cmdline`` or ``environ``, on Linux."""
     ids = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:
-            command = (entry / "cmdline").read_bytes()
+            data = (entry / file).read_bytes()
         except OSError:
             continue
-        if text.encode() in command and int(entry.name) != os.getpid():
+        if text.encode() in data and int(entry.name) != os.getpid():
             ids.append(int(entry.name))
     return ids
 
@@ -75,15 +75,25 @@ def test_the_client_passes_the_conversation_in_node(folder: Path) -> None:
 
 
 @needs_browser
-def test_the_client_passes_the_conversation_in_a_page(folder: Path) -> None:
+def test_the_client_passes_the_conversation_in_a_page(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("websockets")
-    # Its name is in the address of the page, and so in the command of the browser.
-    page = "counter_of_this_test.html"
-    (folder / "index.html").rename(folder / page)
+    # The browsers inherit this variable.
+    monkeypatch.setenv("GAME_OF_THIS_TEST", str(folder))
     lines: list[str] = []
-    assert conversation.check(page_command(folder, page), lines.append), "\n".join(lines)
+    assert conversation.check(page_command(folder, "index.html"), lines.append), "\n".join(lines)
     assert len(lines) == len(conversation.EXCHANGES) + len(conversation.REFUSALS) + 10
-    until(lambda: not processes_with(page), "the end of all browsers")
+    until(lambda: not processes_with(f"GAME_OF_THIS_TEST={folder}", "environ"), "the end of all browsers")
+
+
+@needs_browser
+def test_no_command_contains_the_token(folder: Path) -> None:
+    """Every user of a machine can read all commands."""
+    pytest.importorskip("websockets")
+    token = "the-token-of-this-test"
+    with conversation.Game(page_command(folder, "index.html"), token) as game:
+        assert game.receive()["hello"]["token"] == token
+        assert processes_with(token, "environ")
+        assert not processes_with(token, "cmdline")
 
 
 def test_without_tltlc_the_game_says_why_it_ends(folder: Path) -> None:

@@ -686,7 +686,8 @@ async function serveFolder(folder, secret, end) {
 /**
  * Open a page in a browser; return a function that ends it. If the browser ends by itself, `end` gets the reason.
  *
- * The browser ends with this process, even if this process is killed, because it reads a pipe from it.
+ * The browser gets the address, which contains the token, through a pipe: every user of the machine can read its command
+ * line. It ends with this process, even if this process is killed, because it reads the pipe.
  */
 async function startBrowser(browser, address, end) {
   const { spawn } = await builtin("child_process");
@@ -699,7 +700,7 @@ async function startBrowser(browser, address, end) {
   // As root, Chromium does not start with its sandbox; the page is the user's own.
   if (process.getuid?.() === 0) words.push("--no-sandbox");
   if (profile) words.push(`--user-data-dir=${profile}`);
-  words.push("--remote-debugging-pipe", address);
+  words.push("--remote-debugging-pipe", "about:blank");
   const child = spawn(browser, words, { stdio: ["ignore", "ignore", "pipe", "pipe", "pipe"] });
   const last = [];
   let rest = "";
@@ -715,6 +716,7 @@ async function startBrowser(browser, address, end) {
     last.splice(0, last.length - 10);
   });
   for (const pipe of child.stdio.slice(3)) pipe.on("error", () => {}).resume?.();
+  child.stdio[3].write(`${JSON.stringify({ id: 1, method: "Target.createTarget", params: { url: address } })}\0`);
   const gone = new Promise((resolve) => {
     child.once("error", (error) => {
       end(`cannot start ${browser}: ${error.message}`);
