@@ -703,15 +703,23 @@ async function startBrowser(browser, address, end) {
   words.push("--remote-debugging-pipe", "about:blank");
   const child = spawn(browser, words, { stdio: ["ignore", "ignore", "pipe", "pipe", "pipe"] });
   const last = [];
+  let entry = null; // lines of the page's console, until the message ends
   let rest = "";
   child.stderr.setEncoding("utf8").on("data", (text) => {
     const lines = (rest + text).split("\n");
     rest = lines.pop();
     for (const line of lines) {
-      // [1127/114500.123456:INFO:CONSOLE(12)] "message", source: http://… (12)
-      const [, message] = /^\[[^\]]*:CONSOLE[^\]]*\] "(.*)", source: .*$/.exec(line) ?? [];
-      if (message !== undefined) console.error(message);
-      else last.push(line);
+      // [1127/114500.123456:INFO:CONSOLE(12)] "message of one or more lines", source: http://… (12)
+      const begin = entry === null ? /^\[[^\]]*:CONSOLE[^\]]*\] "/.exec(line) : null;
+      if (entry === null && !begin) {
+        last.push(line);
+        continue;
+      }
+      entry = begin ? line.slice(begin[0].length) : `${entry}\n${line}`;
+      const [, message] = /^([^]*)", source: .*\(\d+\)$/.exec(entry) ?? [];
+      if (message === undefined) continue;
+      console.error(message);
+      entry = null;
     }
     last.splice(0, last.length - 10);
   });
@@ -726,7 +734,7 @@ async function startBrowser(browser, address, end) {
       resolve();
       // The last lines of its standard error may still be on their way.
       const reason = `the browser ended by itself: ${signal ?? `exit status ${status}`}`;
-      setTimeout(() => end([...last, rest, reason].filter(Boolean).join("\n")), 200);
+      setTimeout(() => end([...last, entry, rest, reason].filter(Boolean).join("\n")), 200);
     });
   });
   return async () => {

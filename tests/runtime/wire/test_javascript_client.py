@@ -161,6 +161,18 @@ def test_an_error_in_a_page_is_shown(folder: Path) -> None:
     assert "x is NaN, and numbers must be finite" in (caught.value.diagnostics[0].help or "")
 
 
+@needs_browser
+def test_all_lines_of_a_message_on_the_console_are_shown(folder: Path) -> None:
+    pytest.importorskip("websockets")
+    game = (folder / "counter.js").read_text(encoding="utf-8")
+    messages = """console.error("first\\n\\"second\\", source: third\\nfourth");\nconsole.log("fifth");\n"""
+    (folder / "counter.js").write_text(messages + game, encoding="utf-8")
+    with conversation.Game(page_command(folder, "index.html")) as playing:
+        playing.receive()
+        until(lambda: "fifth" in playing.stderr(), "the message on the console")
+        assert playing.stderr() == 'first\n"second", source: third\nfourth\nfifth'
+
+
 RECORD = """
 import { Recorder } from "./tltl_client.js";
 const recorder = new Recorder("traces", ["near(a, b)", "seen"], { clockHz: 60 });
