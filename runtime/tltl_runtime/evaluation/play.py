@@ -7,6 +7,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
+from tltl_runtime.game.recorder import recorded_step_s
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
 from tltlc.api import Diagnostic, TltlError, label_text
@@ -49,7 +50,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         progress=info["progress"],
         reward=reward,
         steps=steps,
-        seconds=steps * env.get_wrapper_attr("tltl_clock_s"),
+        seconds=steps * recorded_step_s(env),
         state=info["state"],
         unmet=info["unmet"],
         label=label_text(fspa, info["unmet"]),

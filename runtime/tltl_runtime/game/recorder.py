@@ -49,6 +49,14 @@ def judging_wrapper(env: gymnasium.Env[Any, Any]) -> TltlEnv:
     return layer
 
 
+def recorded_step_s(env: gymnasium.Env[Any, Any]) -> float:
+    """Return how long a step takes in summaries and recordings, in seconds: ``tltl_clock_s`` of ``env``.
+
+    It is 1 if the environment has no clock.
+    """
+    return float(env.get_wrapper_attr("tltl_clock_s")) if env.has_wrapper_attr("tltl_clock_s") else 1.0
+
+
 def recorded_end(last: Step | None, success: bool) -> End:
     """Return how an episode ended; ``last`` is its last step, or None if it has no steps.
 

@@ -11,7 +11,7 @@ from gymnasium.utils import RecordConstructorArgs
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.geometry import Point
 from tltl_runtime.game.outline import LevelOutline
-from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end
+from tltl_runtime.game.recorder import EpisodeRecorder, judging_wrapper, recorded_end, recorded_step_s
 from tltl_runtime.gymnasium_games.entity_positions import (
     PLAYER,
     EntityPositions,
@@ -53,7 +53,6 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
             raise RuntimeError("there is no episode before the first reset")
         rows, task, count = self._rows, self._judge.task, len(self._rows.steps)
         last = rows.steps[-1] if rows.steps else None
-        clock_s = self.env.get_wrapper_attr("tltl_clock_s") if self.env.has_wrapper_attr("tltl_clock_s") else 1.0
         return SceneEpisode(
             level=replace(self.env.get_wrapper_attr("level"), outline=rows.outline),
             fspa=task.fspa,
@@ -62,7 +61,7 @@ class SceneRecorder(EpisodeRecorder[SceneEpisode], RecordConstructorArgs):
             seed=rows.seed,
             layout=self._layout,
             actions=np.array(rows.actions, dtype=np.float64).reshape(count, self._layout.width),
-            times=np.arange(count + 1) * clock_s,
+            times=np.arange(count + 1, dtype=np.float64) * recorded_step_s(self.env),
             positions=np.array(rows.player, dtype=np.float64) if rows.player else None,
             signals=np.array(rows.signals, dtype=np.float64).reshape(count + 1, len(self._names)),
             atoms=np.array(rows.atoms, dtype=np.float64).reshape(count, len(task.fspa.atoms)),

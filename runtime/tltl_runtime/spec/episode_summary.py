@@ -24,10 +24,10 @@ class EpisodeSummary:
     rewards of all ``steps`` in the reward mode ``progress``, even if a training uses another mode.
     ``unmet`` is the automaton's state at the end, or its state before a violation.
 
-    ``verdict`` is the verdict of the last step. ``seconds`` is the game time. ``state`` is the
-    automaton's state at the end. ``label`` says in English what remained to be done in the state
-    ``unmet``. These four are None in training and in the cases of regression tests, whose files do
-    not contain them.
+    ``verdict`` is the verdict of the last step. ``seconds`` is the game time; a step
+    counts as 1 s if the game has no clock. ``state`` is the automaton's state at the end. ``label``
+    says in English what remained to be done in the state ``unmet``. These four are None in training
+    and in the cases of regression tests, whose files do not contain them.
     """
 
     index: int

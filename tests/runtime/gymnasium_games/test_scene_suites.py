@@ -94,6 +94,24 @@ def test_a_case_without_a_scene_has_the_name_of_the_first_scene(folder: Path) ->
     assert [suite_case.name for suite_case in read_suite(folder / "first.toml").cases] == ["short:v0"]
 
 
+def test_a_game_without_a_clock_is_evaluated_recorded_and_tested(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    (folder / "timeless.game.toml").write_text(games.GAME.replace('clock = "10 Hz"\n', ""))
+    scene = ("--game", "timeless.game.toml:short")
+    options = ("--episodes", 3, "--record", "all", "--out", "timeless", "--json", "timeless.json")
+    result = tltlc("evaluate", "run", *scene, *options)
+    assert result.status == 0, result.err
+    episodes = json.loads((folder / "timeless.json").read_text())["episodes"]
+    assert all(episode["seconds"] == episode["steps"] > 0 for episode in episodes)
+    recorded = [GAME.read_episode(path) for path in sorted((folder / "timeless").glob("*-sampled.episode.npz"))]
+    assert [episode.times[-1] for episode in recorded] == [episode["seconds"] for episode in episodes]
+    (folder / "timeless.toml").write_text(case("timeless.game.toml", "timeless"))
+    for command in (("baseline",), ("regress", "--fresh", "--json", "timeless.json")):
+        result = tltlc(*command, "timeless.toml", "--workers", 1)
+        assert result.status in (0, 1), result.err
+    (report,) = json.loads((folder / "timeless.json").read_text())["cases"]
+    assert report["pass_rate"] is not None
+
+
 @pytest.mark.slow
 def test_a_baseline_with_which_no_case_can_pass_says_so(tltlc: Run, folder: Path) -> None:  # noqa: F811
     strict = "thresholds = { pass_rate = 0.999 }\n"
