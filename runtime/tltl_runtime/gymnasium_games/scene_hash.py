@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
+from itertools import pairwise
 from os.path import relpath
 from pathlib import Path
 
@@ -68,12 +70,13 @@ def game_files(game: GameFile) -> dict[str, bytes]:
     """Return the contents of the files in a game's folder that the game consists of, by name.
 
     These are the Python files that the game imports. For a game in another process, they are the files
-    that its command names, and the Python files that these import. Names are relative to the folder.
+    that its command names, also as modules (``-m MODULE``), and the Python files that these import.
+    Names are relative to the folder.
 
     Raises:
         TltlError: TLT0001 or TLT0004, a file cannot be read or is too large.
     """
-    contents = python_files(game.folder, _named_modules(game))
+    contents = python_files(game.folder, (*_named_modules(game), *_run_modules(game)))
     for word in game.wire.process if game.wire else ():
         file = game.folder / word
         if not fileio.is_file(file) or not file.resolve().is_relative_to(game.folder.resolve()):
@@ -87,7 +90,7 @@ def game_files(game: GameFile) -> dict[str, bytes]:
 
 def possible_files(game: GameFile) -> list[Path]:
     """Return the paths of the Python files that a game may import, whether they exist or not."""
-    return possible_python_files(game.folder, _named_modules(game))
+    return possible_python_files(game.folder, (*_named_modules(game), *_run_modules(game)))
 
 
 def _package_versions(game: GameFile) -> dict[str, str]:
@@ -108,6 +111,17 @@ def _named_modules(game: GameFile) -> list[str]:
     functions = [function.module for function in (game.python, game.signals) if function]
     registering, colon, _ = (game.gymnasium or "").partition(":")
     return [*game.modules, *functions, *([registering] if colon else [])]
+
+
+def _run_modules(game: GameFile) -> Iterator[str]:
+    """Yield the modules that the command of a game in another process runs: those after ``-m``.
+
+    Python runs the module ``__main__`` of a package.
+    """
+    words = game.wire.process if game.wire else ()
+    for option, word in pairwise(words):
+        if option == "-m" and all(map(str.isidentifier, word.split("."))):
+            yield from (word, f"{word}.__main__")
 
 
 def _name(folder: Path, file: Path) -> str:

@@ -15,7 +15,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.scene_env import make_base_env
-from tltl_runtime.gymnasium_games.scene_hash import file_hashes, scene_hash
+from tltl_runtime.gymnasium_games.scene_hash import file_hashes, possible_files, scene_hash
 from tltl_runtime.wire.errors import WireError
 from tltlc.api import TltlError
 
@@ -105,6 +105,29 @@ def test_the_hash_notices_the_code_and_the_variant(tmp_path: Path) -> None:
     assert before != scene_hash(game, "short", "trap")
     assert [name for name, _ in file_hashes(game, "short")] == ["counter.game.toml", "floors.py", "tower.py"]
     (tmp_path / "floors.py").write_text("COUNT = 4\n")
+    assert scene_hash(game, "short") != before
+
+
+@pytest.mark.parametrize("module", ["tower", "tower.play"])
+def test_the_hash_notices_the_code_of_a_module_that_is_run(tmp_path: Path, module: str) -> None:
+    (tmp_path / "tower" / "play").mkdir(parents=True)
+    files = [tmp_path / f"{module.replace('.', '/')}/__main__.py", tmp_path / "floors.py"]
+    files[0].write_text("import floors\n")
+    files[1].write_text("COUNT = 3\n")
+    game = read_game_file(write(tmp_path, "python3", "-m", module, "-m", "/dev"))
+    names = ["counter.game.toml", *sorted(file.relative_to(tmp_path).as_posix() for file in files)]
+    assert [name for name, _ in file_hashes(game, "short")] == names
+    assert {*files, tmp_path / "tower.py"} <= set(possible_files(game))
+    before = scene_hash(game, "short")
+    files[1].write_text("COUNT = 4\n")
+    assert scene_hash(game, "short") != before
+
+
+def test_the_hash_notices_a_module_in_one_file(tmp_path: Path) -> None:
+    (tmp_path / "tower.py").write_text("COUNT = 3\n")
+    game = read_game_file(write(tmp_path, "python3", "-m", "tower"))
+    before = scene_hash(game, "short")
+    (tmp_path / "tower.py").write_text("COUNT = 4\n")
     assert scene_hash(game, "short") != before
 
 
