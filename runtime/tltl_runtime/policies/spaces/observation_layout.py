@@ -26,8 +26,11 @@ MAX_CELLS: Final = 1 << 18
 """The greatest number of cells of an image or grid, all planes together."""
 _GRID_SIDE: Final = 32
 """An integer array is a grid of categories if both sides are shorter than this, because no camera is so coarse."""
-_LEADING_PLANES: Final = 4
-"""An array of three axes has its planes first if its first axis is at most this long, and its last is longer."""
+_MOST_PLANES: Final = 4
+"""An array of three axes has its planes first if its last axis is longer than this, and its first is not.
+
+The first axis of an array of zeros and ones may have any length, because maps have a plane for each type of thing.
+"""
 _WIDEST: Final = 1e6
 """Bounds that are farther apart than this count as no bounds, because they say nothing about the values."""
 
@@ -156,7 +159,7 @@ def _box(space: spaces.Box, key: str, path: tuple[str, ...]) -> ObservationPart:
     if is_plane and min(shape) > 0 and 0 < high - low <= _WIDEST:
         _check_count(path, prod(shape), MAX_CELLS)
         is_map = is_whole and (low, high) == (0.0, 1.0) and len(shape) == 3
-        planes_first = len(shape) == 3 and (is_map or shape[0] <= _LEADING_PLANES < shape[2])
+        planes_first = len(shape) == 3 and (is_map or shape[0] <= _MOST_PLANES) and shape[2] > _MOST_PLANES
         shape = shape if len(shape) == 3 else (*shape, 1)
         sides = shape[1:] if planes_first else shape[:2]
         if is_whole and not is_map and max(sides) < _GRID_SIDE and low >= 0 and high <= 255:

@@ -120,6 +120,8 @@ KINDS: dict[str, tuple[spaces.Space[Any], str, tuple[int, ...]]] = {
     "a grid": (spaces.Box(0, 255, (7, 7, 3), np.uint8), "grid", (7, 7, 3)),
     "a grid of integers": (spaces.Box(0, 4, (5, 9), np.int64), "grid", (5, 9, 1)),
     "a map": (spaces.Box(0, 1, (6, 9, 9), np.uint8), "image", (6, 9, 9)),
+    "black and white": (spaces.Box(0, 1, (84, 84, 1), np.uint8), "image", (84, 84, 1)),
+    "planes of zeros and ones": (spaces.Box(0, 1, (10, 10, 4), np.int8), "image", (10, 10, 4)),
     "planes of bools": (spaces.Box(0, 1, (10, 10, 4), np.bool_), "image", (10, 10, 4)),
     "heights without bounds": (spaces.Box(-np.inf, np.inf, (5, 5, 1), np.float32), "numbers", (25,)),
     "a choice": (spaces.Discrete(5, start=2), "categories", (1,)),
@@ -139,7 +141,8 @@ def test_the_kind_of_a_part(name: str) -> None:
 def test_the_planes_of_a_map_and_of_stacked_images_come_first() -> None:
     for name in ("stacked images", "a map"):
         assert observation_layout(KINDS[name][0])[0].planes_first
-    assert not observation_layout(KINDS["a grid"][0])[0].planes_first
+    for name in ("a grid", "black and white", "planes of zeros and ones"):
+        assert not observation_layout(KINDS[name][0])[0].planes_first
 
 
 def test_bounds_that_say_nothing_are_none() -> None:
