@@ -38,6 +38,9 @@ TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
 Other keys are returned only at a reset and at the end of an episode.
 """
 
+TIMEOUT_S: Final = 60.0
+"""For so many seconds a worker may be silent, unless ``timeout`` says another time."""
+
 _ALL: Final = slice(None)
 _SEEDS: Final = 2**31
 
@@ -96,7 +99,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         autoreset: AutoresetMode | str = AutoresetMode.SAME_STEP,
         info: Mapping[str, DTypeLike] | None = None,
         on_death: Literal["stop", "replace"] = "stop",
-        timeout: float = 60.0,
+        timeout: float = TIMEOUT_S,
     ) -> None:
         autoreset = AutoresetMode(autoreset)
         check_arguments(functions, workers, names, autoreset, on_death)

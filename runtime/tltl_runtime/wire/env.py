@@ -160,6 +160,11 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return self._current().signals
 
     @property
+    def game(self) -> WireGame:
+        """How the game is started or found, and its deadlines."""
+        return self._game
+
+    @property
     def observation(self) -> Any:
         """The observation after the last reset or step."""
         return self._current().observation

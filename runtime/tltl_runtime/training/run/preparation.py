@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from math import ceil
+from typing import Any, Literal
 
 import gymnasium
 import numpy as np
@@ -46,8 +47,10 @@ from tltl_runtime.training.run.initial_policy import read_initial_policy
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_before_training
 from tltl_runtime.training.run.spaces import TrainingSpaces, env_function
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
-from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.vector.env import TIMEOUT_S, TLTL_INFO
+from tltl_runtime.wire.lost_episodes import MOST_IN_A_ROW
 from tltl_runtime.wire.surviving_env import surviving
+from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import Diagnostic, TltlError
 
 
@@ -83,18 +86,36 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
 def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorEnv:
     """Make the vector environment in which this process trains, and searches if ``spaces.searches``."""
     settings, rollout = run.settings, run.settings.rollout
+    workers: int | Literal["ray"] = "ray" if rollout.pool == "ray" else rollout.workers or cores()
+    # Nobody knows yet how many cores of a cluster are free: a single worker may step all environments.
+    share = rollout.envs if workers == "ray" else ceil(rollout.envs / min(workers, rollout.envs))
+    options: dict[str, Any] = {}
+    if spaces.wire:
+        options["timeout"] = TIMEOUT_S + share * _command_s(run, spaces, spaces.wire)
     return make_vec(
         run.level,
         run.variant,
         rollout.envs,
-        "ray" if rollout.pool == "ray" else rollout.workers or cores(),
+        workers,
         spec=run.fspa,
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
         wrapper=_wrapper(run, spaces.plan) if spaces.searches else surviving,
         info={**TLTL_INFO, "cell": np.int64} if spaces.searches else TLTL_INFO,
+        **options,
     )
+
+
+def _command_s(run: TrainingRun, spaces: TrainingSpaces, wire: WireGame) -> float:
+    """Return how long an environment of a game in another process may take for a command, in seconds.
+
+    The command may be a step that ends an episode. To begin the next one, the game may have to be
+    started several times. A search then replays an episode, which is at most as long as the limit of
+    the spec.
+    """
+    replayed = (run.fspa.limit_steps or 0) if spaces.searches else 0
+    return (MOST_IN_A_ROW + 1) * (wire.start_s + wire.step_s) + (1 + replayed) * wire.step_s
 
 
 def _wrapper(run: TrainingRun, plan: SearchPlan | None) -> Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]]:

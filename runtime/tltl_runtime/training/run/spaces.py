@@ -11,6 +11,8 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.search_plan import SearchObstacle, SearchPlan, search_plan
 from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import TrainingRun
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import record, replace
 
 
@@ -20,12 +22,14 @@ class TrainingSpaces:
 
     ``layouts`` say how observations and actions become arrays; None if the network uses them
     without conversion. ``searches`` says whether the training searches for demonstrations, and
-    ``plan`` how, or why not. It is None if the settings ask for no search.
+    ``plan`` how, or why not. It is None if the settings ask for no search. ``wire`` has the deadlines
+    of a game in another process; None for another game.
     """
 
     layouts: SpaceLayouts | None
     searches: bool
     plan: SearchPlan | None = None
+    wire: WireGame | None = None
 
 
 def training_spaces(run: TrainingRun) -> TrainingSpaces:
@@ -40,9 +44,10 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
         layouts = space_layouts(env.observation_space, env.action_space, run.sensors)
         _, info = env.reset(seed=run.seed)
         plan = search_plan(env, game_of(run.level), has_cells="cell" in info) if run.settings.searches else None
+        wire = env.unwrapped.game if isinstance(env.unwrapped, WireEnv) else None
     finally:
         env.close()
-    return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan)
+    return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan, wire)
 
 
 def spaces_of(spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> TrainingSpaces:
