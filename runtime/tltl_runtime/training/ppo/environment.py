@@ -148,15 +148,15 @@ class TrainingEnv(VecEnv):
         return self._replayed_before + (self._episodes.replayed if self._episodes else 0)
 
     def restart_episodes(self) -> None:
-        """Begin new episodes in all environments, for example after a search has used them.
-
-        The environment must have a curriculum.
-        """
-        assert self._episodes is not None
-        assert self.curriculum is not None
-        self._replayed_before += self._episodes.replayed
-        self._episodes = EpisodesInProgress(self.env, self.curriculum.draw)
-        self._observation = self._tensors(self._episodes.observation)
+        """Begin new episodes in all environments, for example after a search has used them."""
+        if self._episodes and self.curriculum:
+            self._replayed_before += self._episodes.replayed
+            self._episodes = EpisodesInProgress(self.env, self.curriculum.draw)
+            observation = self._episodes.observation
+        else:
+            observation, infos = self.env.reset()
+            self._add_faults(infos)
+        self._observation = self._tensors(observation)
 
     def pop_finished(self) -> tuple[EpisodeSummary, ...]:
         """Return the summaries of the episodes that ended since the last call, in order of their ends."""

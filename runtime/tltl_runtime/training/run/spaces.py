@@ -13,7 +13,7 @@ from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.wire_game import WireGame
-from tltlc.api import record, replace
+from tltlc.api import Diagnostic, TltlError, record, replace
 
 
 @record
@@ -23,31 +23,43 @@ class TrainingSpaces:
     ``layouts`` say how observations and actions become arrays; None if the network uses them
     without conversion. ``searches`` says whether the training searches for demonstrations, and
     ``plan`` how, or why not. It is None if the settings ask for no search. ``wire`` has the deadlines
-    of a game in another process; None for another game.
+    of a game in another process; None for another game. Unless the game ``plays_at_once``, it plays
+    for one environment at a time.
     """
 
     layouts: SpaceLayouts | None
     searches: bool
     plan: SearchPlan | None = None
     wire: WireGame | None = None
+    plays_at_once: bool = True
 
 
 def training_spaces(run: TrainingRun) -> TrainingSpaces:
     """Make an environment of the training, examine its spaces and its info, and close it.
 
     Raises:
-        TltlError: TLT0844, policies do not support its spaces; the errors of ``make_env`` and of the
-            game.
+        TltlError: TLT0844, policies do not support its spaces; TLT0862, there are several environments,
+            and the game plays for one at a time; the errors of ``make_env`` and of the game.
     """
-    env = env_function(run)()
+    game, env = game_of(run.level), env_function(run)()
     try:
+        plays_at_once = game.plays_at_once(env)
+        if not plays_at_once and run.settings.rollout.envs > 1:
+            raise _one_environment_error(run)
         layouts = space_layouts(env.observation_space, env.action_space, run.sensors)
         _, info = env.reset(seed=run.seed)
-        plan = search_plan(env, game_of(run.level), has_cells="cell" in info) if run.settings.searches else None
+        plan = search_plan(env, game, has_cells="cell" in info) if run.settings.searches else None
         wire = env.unwrapped.game if isinstance(env.unwrapped, WireEnv) else None
     finally:
         env.close()
-    return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan, wire)
+    return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan, wire, plays_at_once)
+
+
+def _one_environment_error(run: TrainingRun) -> TltlError:
+    envs = run.settings.rollout.envs
+    title = f"the game of `{run.level}` plays for one environment at a time, and the training has {envs}"
+    help_ = "set `envs = 1` under `[rollout]`, or write `process` in place of `connect`: then tltlc starts the game"
+    return TltlError([Diagnostic("TLT0862", title, help=help_)])
 
 
 def spaces_of(spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> TrainingSpaces:

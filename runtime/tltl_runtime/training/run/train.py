@@ -120,7 +120,7 @@ def train(
         new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
             new_runner.load_actor(initial.weights())
-        training = _Training(run, group, new_runner, checkpoint, searched, on_search, spaces.plan)
+        training = _Training(run, group, new_runner, checkpoint, searched, on_search, spaces)
         yield from training.reports()
 
 
@@ -145,9 +145,9 @@ class _Training:
         checkpoint: Checkpoint | None,
         searched: SearchProgress | None,
         on_search: SearchCallback,
-        plan: SearchPlan | None,
+        spaces: TrainingSpaces,
     ) -> None:
-        self._plan = plan
+        self._plan, self._plays_at_once = spaces.plan, spaces.plays_at_once
         self._run, self._group, self._runner, self._on_search = run, group, runner, on_search
         self._stop = run.settings.stop
         # The card is made now: later changes of the level's file are not part of this training.
@@ -300,12 +300,17 @@ class _Training:
         Call this method only after the last ``windows * episodes`` episodes of the training met the
         spec.
         """
-        confirmation = None
+        confirmation, env = None, self._runner.env
+        if not self._plays_at_once:
+            # The game can play the new episodes only after the environments have left it.
+            env.env.call("close")
         if self._group.rank == 0:
             policy = policy_of(self._card, best.actor)
             confirmation = confirm(self._run, policy, stream(self._run, self._group, Purpose.CONFIRMATION, iteration))
         confirmation = self._group.broadcast(confirmation)
         assert confirmation is not None
+        if not self._plays_at_once and not confirmation.passed:
+            env.restart_episodes()
         return confirmation
 
     def _report(
