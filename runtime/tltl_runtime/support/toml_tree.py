@@ -12,7 +12,7 @@ from typing import Any, Final
 from tltlc.api import Label, SourceFile, Span, fileio, record
 
 _HELP: Final = 'write values as in `at = [1.0, 2.0, 0.0]`, and texts as in `asset = "corridor"`'
-_KEY: Final = r"(?:[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*')"
+_KEY: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
 _DOTTED: Final = re.compile(rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*")
 _BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _VALUE_PART: Final = re.compile(
@@ -107,10 +107,18 @@ def _dotted_path(
     path = around
     keys = re.findall(_KEY, dotted)
     for number, key in enumerate(keys):
-        path = (*path, key.strip("\"'"))
+        path = (*path, _name(key))
         if number < len(keys) - 1 and path in counts:
             path = (*path, counts[path])
     return path
+
+
+def _name(key: str) -> str:
+    """Return the name that a key stands for: the text of a quoted key, with its escapes decoded."""
+    if key[0] not in "\"'":
+        return key
+    (name,) = fileio.parse_toml(SourceFile("", f"{key} = 0"), "TLT0801", "")
+    return name
 
 
 def _end(pattern: re.Pattern[str], text: str, position: int) -> int:

@@ -1,0 +1,39 @@
+"""Labels of values in TOML files: each points at the key of its value."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltl_runtime.support.toml_tree import Tree, read_tree
+from tltlc.core.source import SourceFile
+
+
+def texts_of(tree: Tree) -> dict[str, str]:
+    """Return the text at the label of each value, by key, also of those in tables."""
+    texts = {}
+    for key, entry in tree.items():
+        span = entry.label.span
+        texts[key] = entry.label.source.text[span.start : span.end]
+        texts |= texts_of(entry.value) if isinstance(entry.value, dict) else {}
+    return texts
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("a-1", "a-1"),
+        ('"a b"', "a b"),
+        (r'"a\tb"', "a\tb"),
+        (r'"a\"b]=c"', 'a"b]=c'),
+        (r'"\u00e9\U0001F600"', "\u00e9\U0001f600"),
+        (r"'a\tb'", r"a\tb"),
+        ("\"'a'\"", "'a'"),
+        ('""', ""),
+    ],
+)
+def test_the_label_of_a_value_is_its_key_however_it_is_quoted(key: str, name: str) -> None:
+    source = SourceFile("it.toml", f"{key} = 1\nz = 2\n[t.{key}]\nx = 3\n")
+    tree = read_tree(source)
+    table = tree.pop("t").value
+    assert texts_of(tree) == {name: key, "z": "z"}
+    assert texts_of(table) == {name: f"t.{key}", "x": "x"}
