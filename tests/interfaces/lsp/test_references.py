@@ -117,6 +117,16 @@ def test_a_name_that_would_capture_another_is_rejected() -> None:
     assert set(texts_after_rename("x in (door", "gate", text=harmless)) == {"main"}
 
 
+def test_a_name_that_is_used_but_not_declared_is_rejected_for_that() -> None:
+    text = "signal dark: bool\nsignal seen: bool\nspec a = G dark & F seen & F noise\n"
+    for name, expected in (
+        ("noise", "stands in .*main.tltl`, where it means nothing yet"),
+        ("seen", "means something"),
+    ):
+        with pytest.raises(TltlError, match=f"TLT0771: `{name}` already {expected}"):
+            texts_after_rename("dark:", name, text=text)
+
+
 def test_names_of_a_library_cannot_be_renamed() -> None:
     text = (
         "import stealth\nentity s1\nsignal health: ratio in [0, 1]\nspec a = F near(s1) & G alive & F health > 50 %\n"

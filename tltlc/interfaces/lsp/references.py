@@ -167,13 +167,18 @@ def _check_free(symbol: Symbol, name: str, changes: list[tuple[Document, list[Ed
         texts[location_of(document.source)] = apply_edits(document.source.text, edits)
     for document, edits in changes:
         after = Document(document.source.with_text(texts[location_of(document.source)]), document.project, texts)
-        if _name_targets(document, edits) != _name_targets(after, edits, shift=True) or _errors(after) > _errors(
-            document
-        ):
-            where = document.source.name
+        where, before, now = (
+            document.source.name,
+            _name_targets(document, edits),
+            _name_targets(after, edits, shift=True),
+        )
+        if _errors(after) > _errors(document) or not set(before) <= set(now):
             raise _rename_error(
                 f"`{name}` already means something else in `{where}`", "choose a name that is not taken"
             )
+        if before != now:
+            title = f"`{name}` already stands in `{where}`, where it means nothing yet"
+            raise _rename_error(title, "choose another name, or correct this one there first")
     importing = (
         [] if symbol.kind in _LOCAL else [document for document in workspace.all() if may_import(document.source.text)]
     )
