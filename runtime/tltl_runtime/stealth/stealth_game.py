@@ -175,7 +175,10 @@ class StealthGame(Game[StealthLevel, Episode]):
         return reach_warnings(level, fspa)
 
     def level_fault(self, error: RuntimeError) -> TltlError | None:
-        """Return the error TLT0806 if ``error`` says that the player has left the level's bounds, else None."""
+        """Return an error of the level if ``error`` says that the player has left it or has no room, else None.
+
+        It is TLT0806 if the player has left the level's bounds, and TLT0807 if there is no room at the start.
+        """
         return player_fault(error)
 
     def make_env(

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 def level_faults() -> Iterator[None]:
     """Within this context, raise TltlError in place of a RuntimeError that a level has caused.
 
-    In the stealth game, this is TLT0806: a player has left the level. Other errors, such as those of
-    a physics engine, are bugs and propagate.
+    In the stealth game, this is TLT0806, a player has left the level, or TLT0807, there is no room at
+    the start. Other errors, such as those of a physics engine, are bugs and propagate.
     """
     try:
         yield

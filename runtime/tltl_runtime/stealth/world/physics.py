@@ -68,6 +68,10 @@ class WorldError(RuntimeError):
         return type(self), self._arguments
 
 
+class NoRoomError(WorldError):
+    """Raised if something stands where the player starts."""
+
+
 class World:
     """The bodies of a level, in a pybullet client of their own.
 
@@ -253,7 +257,7 @@ class World:
         """Return a position for the player's feet at the beginning of an episode.
 
         It is a random place at most ``spread`` metres from the level's start, or without ``rng``
-        exactly the start. Raises WorldError if the player has no room there, even after 100 random
+        exactly the start. Raises NoRoomError if the player has no room there, even after 100 random
         tries.
         """
         x, y, z = self.level.start.position
@@ -265,7 +269,7 @@ class World:
                 feet = (x + distance * cos(angle), y + distance * sin(angle), z)
             if self.has_room(feet, self.kind.height):
                 return feet
-        raise WorldError(self.level, 0, "player", f"there is no room at the start ({x:g}, {y:g}, {z:g})")
+        raise NoRoomError(self.level, 0, "player", f"there is no room at the start ({x:g}, {y:g}, {z:g})")
 
     def _put(self, crouching: bool, feet: Point, velocity: Point) -> None:
         if self._capsules.put(crouching, feet, velocity):

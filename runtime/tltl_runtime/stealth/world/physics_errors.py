@@ -12,15 +12,18 @@ _PHYSICS: Final = "tltl_runtime.stealth.world.physics"
 
 
 def player_fault(error: RuntimeError) -> TltlError | None:
-    """Return the diagnostic TLT0806 if ``error`` is a WorldError about the player, else None.
+    """Return a diagnostic of the level if ``error`` is a WorldError about the player, else None.
 
-    For a level that was read from a file, such an error means that the player has left the level's
-    bounds; this is a fault of the level. Other errors of the physics are not the level's fault.
+    It is TLT0806 if the player has left the level's bounds, and TLT0807 if there is no room for the
+    player at the start. Other errors of the physics are not the level's fault.
     """
     if _PHYSICS not in sys.modules:
         return None
-    from tltl_runtime.stealth.world.physics import WorldError
+    from tltl_runtime.stealth.world.physics import NoRoomError, WorldError
 
+    if isinstance(error, NoRoomError):
+        help_ = "move the start away from what stands there, or reduce its `spread`"
+        return TltlError([Diagnostic("TLT0807", str(error), help=help_)])
     if not isinstance(error, WorldError) or error.body != "player":
         return None
     help_ = "make its bounds higher than a jump (1 m) leads; `tltlc check --level` says how high that is"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import random
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.mover_path import MoverPath
 from tltl_runtime.stealth.world.physics import World, WorldError
+from tltl_runtime.stealth.world.physics_errors import player_fault
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 from tltlc.core.record import replace
 
@@ -266,9 +268,16 @@ def test_check_names_a_missing_wall(opened: list[World]) -> None:
         world.check()
 
 
+def code_of(error: WorldError) -> str:
+    fault = player_fault(error)
+    assert fault is not None
+    return fault.diagnostics[0].code
+
+
 def test_a_start_inside_a_wall_is_rejected() -> None:
-    with pytest.raises(WorldError, match="no room at the start"):
+    with pytest.raises(WorldError, match="no room at the start") as caught:
         World(arena(wall("wall", (-1.0, -1.0, 0.0), (1.0, 1.0, 2.0))))
+    assert code_of(pickle.loads(pickle.dumps(caught.value))) == "TLT0807"
 
 
 def test_leaving_the_bounds_is_an_error_with_the_step(opened: list[World]) -> None:
@@ -278,6 +287,7 @@ def test_leaving_the_bounds_is_an_error_with_the_step(opened: list[World]) -> No
     with pytest.raises(WorldError, match=r"step \d+, player: .* outside the level's bounds") as caught:
         walk(world, EAST, 60)
     assert caught.value.step == world.steps
+    assert code_of(caught.value) == "TLT0806"
 
 
 def test_starts_are_spread_around_the_start(opened: list[World]) -> None:
