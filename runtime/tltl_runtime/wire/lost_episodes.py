@@ -56,7 +56,7 @@ class LossLimit:
         self._played = self._lost = self._in_a_row = 0
 
     def add_played(self) -> None:
-        """Count an episode that was played to its end."""
+        """Count an episode that was played until it ended or was cut off."""
         self._played, self._in_a_row = self._played + 1, 0
 
     def add_lost(self, fault: Diagnostic) -> None:

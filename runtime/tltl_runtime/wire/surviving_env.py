@@ -36,13 +36,20 @@ class SurvivingEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._limit = LossLimit(_MOST)
         self._faults: list[Diagnostic] = []
         self._last: tuple[Any, dict[str, Any]] = None, {}
+        self._is_played = False
+        """Whether the episode has had a step, and has neither ended nor been lost."""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode. If the game is lost before the episode has begun, begin the next one.
 
+        An episode that this reset cuts off after a step or more counts as played.
+
         Raises:
             WireError: too many episodes were lost, or too many in a row.
         """
+        if self._is_played:
+            self._limit.add_played()
+            self._is_played = False
         was_lost = bool(self._faults)
         while True:
             try:
@@ -66,11 +73,13 @@ class SurvivingEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         try:
             observation, reward, terminated, truncated, info = self.env.step(action)
         except WireError as error:
+            self._is_played = False
             self._add(error)
             observation, info = self._last
             return observation, 0.0, False, True, {**info, LOST: True}
         self._last = observation, info
-        if terminated or truncated:
+        self._is_played = not (terminated or truncated)
+        if not self._is_played:
             self._limit.add_played()
         return observation, reward, terminated, truncated, info
 

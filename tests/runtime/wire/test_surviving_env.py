@@ -103,14 +103,28 @@ def test_an_episode_that_cannot_begin_is_followed_by_another(spec: str, tmp_path
     env.close()
 
 
-def test_a_game_that_is_always_lost_is_an_error(spec: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("resets", [1, 2])
+def test_a_game_that_is_always_lost_is_an_error(spec: str, tmp_path: Path, resets: int) -> None:
     with no_game_is_left():
         env = surviving(partial(judged, spec, mortal(tmp_path, "all")))
         with pytest.raises(WireError, match="ended with exit status 3 instead of answering `step`"):
             for _ in range(MOST_IN_A_ROW + 1):
-                env.reset()
+                for _ in range(resets):
+                    env.reset()
                 env.step(STAY)
         env.close()
+
+
+def test_episodes_that_are_cut_off_by_a_reset_count_as_played(spec: str, tmp_path: Path) -> None:
+    env = surviving(partial(judged, spec, mortal(tmp_path, *range(2, 24, 2))))
+    lost = []
+    with pytest.raises(WireError, match="ended with exit status 3 instead of answering `step`"):
+        for _ in range(24):
+            env.reset()
+            lost.append(env.step(STAY)[4].get(LOST, False))
+    # Never two in a row, but the eleventh of 22 episodes is one too many.
+    assert lost == [False, True] * 10 + [False]
+    env.close()
 
 
 def test_an_environment_of_this_process_is_not_wrapped() -> None:
