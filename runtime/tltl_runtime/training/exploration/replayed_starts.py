@@ -8,9 +8,9 @@ the same state again, and the agent continues from there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 import gymnasium
 import numpy as np
@@ -20,6 +20,12 @@ from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Ro
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
 from tltlc.api import record, replace
+
+OTHER_SEED: Final = "other_seed"
+"""The key of a reset's info that has the seed of an episode whose game was lost on the way to its start.
+
+The episode begins at the level's start instead, with this seed.
+"""
 
 
 @record
@@ -113,7 +119,8 @@ class EpisodesInProgress:
     The environments of ``env`` are :class:`ReplayedStartEnv`. ``draw`` is called for the start of
     each new episode. The constructor begins the first episodes; ``observation`` is the batch of
     their first observations. ``starts`` and ``actions`` have an entry for each environment: the
-    start of its current episode, and all actions of the episode, including the replayed ones.
+    start of its current episode, and all actions of the episode, including the replayed ones. If an
+    environment says with ``OTHER_SEED`` that its episode begins elsewhere, ``starts`` has that start.
     ``replayed`` counts all replayed actions.
 
     Raises:
@@ -128,9 +135,11 @@ class EpisodesInProgress:
         self.starts = list(self._next)
         self.actions: list[list[Row]] = [[] for _ in self._next]
         self.replayed = 0
+        self._other_seeds: dict[int, int] = {}
         self._send_starts(range(env.num_envs))
         with self._starts_in_errors():
-            self.observation, _ = env.reset()
+            self.observation, infos = env.reset()
+        self._other_seeds = _other_seeds(infos)
         self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[Any]) -> tuple[Any, ...]:
@@ -142,7 +151,9 @@ class EpisodesInProgress:
         for past_actions, action in zip(self.actions, actions.tolist(), strict=True):
             past_actions.append(action)
         with self._starts_in_errors():
-            return self._env.step(self._encoding.values(actions))
+            results = self._env.step(self._encoding.values(actions))
+        self._other_seeds = _other_seeds(results[-1])
+        return results
 
     def start_next(self, mask: NDArray[np.bool_]) -> None:
         """Record that the environments in ``mask`` [num_envs] have begun their next episodes.
@@ -152,6 +163,7 @@ class EpisodesInProgress:
         rows = np.flatnonzero(mask).tolist()
         if rows:
             self._advance(rows)
+            self._begin_elsewhere()
             self._send_starts(rows)
 
     def cut_off(self, mask: NDArray[np.bool_]) -> Any:
@@ -162,7 +174,9 @@ class EpisodesInProgress:
         rows = np.flatnonzero(mask).tolist()
         self._advance(rows)
         with self._starts_in_errors():
-            observation, _ = self._env.reset(options={"reset_mask": mask})
+            observation, infos = self._env.reset(options={"reset_mask": mask})
+        self._other_seeds = _other_seeds(infos)
+        self._begin_elsewhere()
         self._send_starts(rows)
         return observation
 
@@ -181,6 +195,12 @@ class EpisodesInProgress:
             self.actions[row] = [list(action) for action in start.actions]
             self.replayed += len(start.actions)
             self._next[row] = self._draw()
+
+    def _begin_elsewhere(self) -> None:
+        """Set the starts of the episodes whose games were lost on the way."""
+        for row, seed in self._other_seeds.items():
+            self.starts[row], self.actions[row] = EpisodeStart(seed), []
+        self._other_seeds = {}
 
     @contextmanager
     def _starts_in_errors(self) -> Iterator[None]:
@@ -205,3 +225,8 @@ class EpisodesInProgress:
             next_starts[row] = self._next[row].seed, self._encoding.flat(self._next[row].actions)
         with self._starts_in_errors():
             self._env.set_attr("next_start", next_starts)
+
+
+def _other_seeds(infos: Mapping[str, Any]) -> dict[int, int]:
+    """Return the seeds of the episodes that begin elsewhere than they should, by environment."""
+    return {row: int(infos[OTHER_SEED][row]) for row in np.flatnonzero(infos.get(f"_{OTHER_SEED}", ())).tolist()}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import gymnasium
+import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.game.game import Game
@@ -14,7 +15,9 @@ from tltl_runtime.policies.spaces.values import flat_action
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.cells import CellGrid, cell_of
+from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED
 from tltl_runtime.training.exploration.snapshots import SnapshotStore, restore, save
+from tltl_runtime.wire.errors import WireError
 from tltlc.api import Diagnostic, TltlError
 
 _SNAPSHOT_INTERVAL: Final = 16
@@ -28,6 +31,9 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     but there is only one environment, because a game may need much memory or a process of its own.
     With ``snapshots``, the game saves its state from time to time; a reset then returns to the last
     saved moment on the way, and replays only the remaining actions.
+
+    If a game in another process is lost on the way, the next reset begins at the level's start with
+    another seed. Its info has this seed, as ``OTHER_SEED``.
 
     ``info`` gains ``cell``, by ``grid``. ``game`` says where the player is. ``make`` makes the
     environment.
@@ -43,7 +49,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._store = SnapshotStore() if snapshots else None
         self._next_start: tuple[int, NDArray[Any]] | None = None
         self._seed, self._actions, self._unsaved = 0, b"", 0
-        self._has_begun = False
+        self._has_begun = self._is_elsewhere = False
 
     @property
     def next_start(self) -> tuple[int, NDArray[Any]] | None:
@@ -57,7 +63,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def next_start(self, next_start: tuple[int, NDArray[Any]] | None) -> None:
         # A vector environment sets the attribute of all its environments at once, with None for most of them.
         if next_start is not None:
-            self._next_start = next_start
+            self._next_start, self._is_elsewhere = next_start, False
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode where ``next_start`` leads; return observation and info there.
@@ -66,12 +72,29 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
         Raises:
             TltlError: TLT0783, the episode ends on the way, so the game does not play it again.
+            WireError: the game is lost on the way.
         """
         if self._next_start is None:
             observation, info = self._play.reset(seed=seed, options=options)
             return observation, self._with_cell(info)
         self._seed, flat = self._next_start
-        values = [self._encoding.value(action) for action in flat]
+        try:
+            observation, info = self._go_to_start([self._encoding.value(action) for action in flat])
+        except WireError:
+            # The game may be lost on this way each time.
+            self._next_start, self._is_elsewhere = (_other_seed(self._seed), flat[:0]), True
+            raise
+        return observation, {**self._with_cell(info), **({OTHER_SEED: self._seed} if self._is_elsewhere else {})}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Take a step; ``info`` says in which cell the player then is."""
+        observation, reward, terminated, truncated, info = self._play.step(action)
+        if self._next_start is not None and not (terminated or truncated):
+            self._record(action, observation, info)
+        return observation, reward, terminated, truncated, self._with_cell(info)
+
+    def _go_to_start(self, values: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
+        """Go where the actions ``values`` lead from the seed; return the observation and the info there."""
         observation, info, done = self._nearest(values)
         for value in values[done:]:
             observation, _, terminated, truncated, info = self._play.step(value)
@@ -80,14 +103,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             self._record(value, observation, info)
         if self._unsaved:
             self._save(observation, info)
-        return observation, self._with_cell(info)
-
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Take a step; ``info`` says in which cell the player then is."""
-        observation, reward, terminated, truncated, info = self._play.step(action)
-        if self._next_start is not None and not (terminated or truncated):
-            self._record(action, observation, info)
-        return observation, reward, terminated, truncated, self._with_cell(info)
+        return observation, info
 
     def _nearest(self, actions: Sequence[Any]) -> tuple[Any, dict[str, Any], int]:
         """Go to the nearest known moment before the end of ``actions``, or to the start.
@@ -136,6 +152,10 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def _with_cell(self, info: dict[str, Any]) -> dict[str, Any]:
         position = None if self._grid.side is None else self._game.player_position(self._play)
         return {**info, "cell": cell_of(self._grid, position, self._play.sample)}
+
+
+def _other_seed(seed: int) -> int:
+    return int(np.random.default_rng(seed).integers(2**31))
 
 
 def _not_repeated_error(seed: int, count: int) -> TltlError:

@@ -2,8 +2,9 @@
 
 FILE counts the episodes over all processes of the game. In the episodes with these numbers, from 1, the
 first step has the FAULT: ``exit``, ``crash``, ``hang`` or ``garbage``. ``all`` stands for all numbers. The
-fault ``reset`` is an error in place of the answer to a reset. With the fault ``chance``, all
-episodes begin by chance, whatever the seed. With its first fault, the game makes the file FILE.fault.
+fault ``reset`` is an error in place of the answer to a reset. So is ``seed``, where the numbers are those
+of seeds. With the fault ``chance``, all episodes begin by chance, whatever the seed. With its first
+fault, the game makes the file FILE.fault.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ class Mortal(Counter):
         with self.file.open("ab", buffering=0) as file:
             file.write(b"x")
             number = file.tell()
-        self.is_last = str(number) in self.numbers or "all" in self.numbers
-        if self.is_last and self.fault == "reset":
+        self.is_last = str(seed if self.fault == "seed" else number) in self.numbers or "all" in self.numbers
+        if self.is_last and self.fault in ("reset", "seed"):
             raise tltl_client.Refusal("no such map")
         if self.fault == "chance":
             seed = secrets.randbelow(4)

@@ -1,0 +1,91 @@
+"""Searches and trainings whose game, in another process, is lost now and then."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+
+from tests.runtime.training.test_search_any_game import CORNERS, write_counter
+from tests.runtime.wire.processes import no_game_is_left
+from tests.waiting import HANG_S
+from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.training.exploration.cells import position_grid
+from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart
+from tltl_runtime.training.exploration.returning_env import ReturningEnv
+from tltl_runtime.vector import WorkerVectorEnv, make_vec
+from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.wire.surviving_env import surviving
+
+MORTAL = Path(__file__).parents[1] / "wire" / "games" / "mortal.py"
+LEFT, STAY, RIGHT = range(3)
+
+
+@pytest.fixture(autouse=True)
+def _no_process_is_left() -> Iterator[None]:
+    with no_game_is_left():
+        yield
+
+
+def mortal(tmp_path: Path, fault: str, *numbers: int | str) -> str:
+    """Write the game file of a counter that dies, and return its scene; the episodes are counted beside it."""
+    folder = tmp_path / "game"
+    folder.mkdir()
+    words = [sys.executable, str(MORTAL), fault, str(tmp_path / "episodes"), *map(str, numbers)]
+    return write_counter(folder, f"process = {json.dumps(words)}\nstart_s = {HANG_S}\nstep_s = {HANG_S}")
+
+
+def returning(make: Callable[[], TltlEnv]) -> gymnasium.Env[Any, Any]:
+    grid = position_grid(CORNERS, [])
+    return surviving(partial(ReturningEnv, make, game=GAME, grid=grid, snapshots=True))
+
+
+@contextmanager
+def vector_env(level: str, num_envs: int = 1) -> Iterator[WorkerVectorEnv]:
+    env = make_vec(level, "v0", num_envs, 1, wrapper=returning, info={**TLTL_INFO, "cell": np.int64}, timeout=HANG_S)
+    try:
+        yield env
+    finally:
+        env.close()
+
+
+def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -> None:
+    lost, good = EpisodeStart(666, [[LEFT]] * 3), EpisodeStart(5, [[STAY]])
+    starts = iter([lost, good, lost, lost, good, good, good])
+
+    def at(episodes: EpisodesInProgress, observation: Any) -> bool:
+        """Whether the episode is where its seed and actions lead."""
+        position = 1 + episodes.starts[0].seed % 4 + sum(action - 1 for (action,) in episodes.actions[0])
+        is_there: bool = observation["observation"].tolist() == [[position]]
+        return is_there
+
+    with vector_env(mortal(tmp_path, "seed", 666)) as env:
+        episodes = EpisodesInProgress(env, lambda: next(starts))
+        assert at(episodes, episodes.observation)
+        (other,) = episodes.starts
+        assert (other.seed != 666, other.segment, episodes.actions) == (True, None, [[]])
+        everywhere = np.array([True])
+        # The next start is good, and is still used.
+        observation = episodes.cut_off(everywhere)
+        assert episodes.starts == [good] and at(episodes, observation)
+        assert at(episodes, episodes.step(np.array([[STAY]]))[0])
+        assert episodes.actions == [[[STAY], [STAY]]]
+        observation = episodes.cut_off(everywhere)
+        assert episodes.starts == [other] and at(episodes, observation)
+        # An episode that ends is followed by one with a lost start, too.
+        over = np.array([False])
+        while not over.any():
+            observation, _, terminated, truncated, _ = episodes.step(np.array([[RIGHT]]))
+            over = terminated | truncated
+        assert episodes.starts == [other] and episodes.actions[0]
+        episodes.start_next(over)
+        assert episodes.starts == [other] and episodes.actions == [[]] and at(episodes, observation)
