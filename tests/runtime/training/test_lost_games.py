@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -20,11 +21,11 @@ from tests.waiting import HANG_S
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.cells import position_grid
-from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart
+from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, EpisodesInProgress, EpisodeStart
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
-from tltl_runtime.wire.surviving_env import surviving
+from tltl_runtime.wire.surviving_env import FAULTS, LOST, surviving
 
 MORTAL = Path(__file__).parents[1] / "wire" / "games" / "mortal.py"
 LEFT, STAY, RIGHT = range(3)
@@ -89,3 +90,44 @@ def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -
         assert episodes.starts == [other] and episodes.actions[0]
         episodes.start_next(over)
         assert episodes.starts == [other] and episodes.actions == [[]] and at(episodes, observation)
+
+
+def episodes_begun(tmp_path: Path) -> int:
+    """Return how many resets all processes of the game have answered."""
+    return (tmp_path / "episodes").stat().st_size
+
+
+def saved_start(env: gymnasium.Env[Any, Any]) -> dict[str, Any]:
+    """Begin an episode after twenty steps of seed 2; return its info."""
+    env.set_wrapper_attr("next_start", (2, np.full((20, 1), STAY)))
+    observation, info = env.reset()
+    assert observation["observation"] == 3 or OTHER_SEED in info
+    return info
+
+
+def test_a_game_that_was_started_again_saves_snapshots_again(tmp_path: Path) -> None:
+    env = returning(partial(GAME.make_env, mortal(tmp_path, "exit", 2)))
+    saved_start(env)
+    env.set_wrapper_attr("next_start", (3, np.zeros((0, 1), np.int64)))
+    env.reset()
+    assert env.step(STAY)[4][LOST]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(3):
+            saved_start(env)
+    # One before the loss, the lost one, and one after it: two resets have returned to snapshots.
+    assert episodes_begun(tmp_path) == 3
+    env.close()
+
+
+def test_a_game_that_is_lost_at_a_snapshot_loses_one_start(tmp_path: Path) -> None:
+    env = returning(partial(GAME.make_env, mortal(tmp_path, "restore")))
+    assert FAULTS not in saved_start(env)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        info = saved_start(env)
+        assert info[OTHER_SEED] != 2 and [fault.code for fault in info[FAULTS]] == ["TLT0791"]
+        for _ in range(3):
+            assert FAULTS not in saved_start(env)
+    assert episodes_begun(tmp_path) == 3
+    env.close()

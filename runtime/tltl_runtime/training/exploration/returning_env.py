@@ -17,7 +17,7 @@ from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.cells import CellGrid, cell_of
 from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED
 from tltl_runtime.training.exploration.snapshots import SnapshotStore, restore, save
-from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.errors import REPORTED, WireError
 from tltlc.api import Diagnostic, TltlError
 
 _SNAPSHOT_INTERVAL: Final = 16
@@ -33,7 +33,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     saved moment on the way, and replays only the remaining actions.
 
     If a game in another process is lost on the way, the next reset begins at the level's start with
-    another seed. Its info has this seed, as ``OTHER_SEED``.
+    another seed. Its info has this seed, as ``OTHER_SEED``. The snapshots of a lost game are forgotten.
 
     ``info`` gains ``cell``, by ``grid``. ``game`` says where the player is. ``make`` makes the
     environment.
@@ -83,14 +83,19 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         except WireError:
             # The game may be lost on this way each time.
             self._next_start, self._is_elsewhere = (_other_seed(self._seed), flat[:0]), True
+            self._forget_snapshots()
             raise
         return observation, {**self._with_cell(info), **({OTHER_SEED: self._seed} if self._is_elsewhere else {})}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Take a step; ``info`` says in which cell the player then is."""
-        observation, reward, terminated, truncated, info = self._play.step(action)
-        if self._next_start is not None and not (terminated or truncated):
-            self._record(action, observation, info)
+        """Take a step; ``info`` says in which cell the player then is. Raises WireError if the game is lost."""
+        try:
+            observation, reward, terminated, truncated, info = self._play.step(action)
+            if self._next_start is not None and not (terminated or truncated):
+                self._record(action, observation, info)
+        except WireError:
+            self._forget_snapshots()
+            raise
         return observation, reward, terminated, truncated, self._with_cell(info)
 
     def _go_to_start(self, values: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
@@ -108,7 +113,11 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def _nearest(self, actions: Sequence[Any]) -> tuple[Any, dict[str, Any], int]:
         """Go to the nearest known moment before the end of ``actions``, or to the start.
 
-        Return the observation and the info there, and how many actions lead there.
+        Return the observation and the info there, and how many actions lead there. If the game does not
+        return to a snapshot, warn with TLT0784, and use no snapshots from now on.
+
+        Raises:
+            WireError: the game is lost.
         """
         saved = None
         if self._store is not None and self._has_begun:
@@ -118,7 +127,11 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             problem = None
             try:
                 problem = restore(self._play, moment)
-            except Exception as error:  # The game's own code, or a game in another process that was started again.
+            except WireError as error:
+                if error.diagnostics[0].code != REPORTED:
+                    raise
+                problem = error.diagnostics[0].title
+            except Exception as error:  # The code of the game may raise anything.
                 problem = str(error) or type(error).__name__
             if problem is None:
                 self._unsaved = 0
@@ -145,6 +158,11 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         if self._store is not None and not self._store.is_used_up:
             self._store.add(self._seed, self._actions, save(self._play, observation, info))
             self._unsaved = 0
+
+    def _forget_snapshots(self) -> None:
+        """Forget the snapshots of a game that was lost: the next reset starts it again."""
+        if self._store is not None:
+            self._store = SnapshotStore()
 
     def _bytes(self, action: Any) -> bytes:
         return flat_action(self._encoding.layout, action).tobytes()

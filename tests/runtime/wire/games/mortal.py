@@ -3,8 +3,9 @@
 FILE counts the episodes over all processes of the game. In the episodes with these numbers, from 1, the
 first step has the FAULT: ``exit``, ``crash``, ``hang`` or ``garbage``. ``all`` stands for all numbers. The
 fault ``reset`` is an error in place of the answer to a reset. So is ``seed``, where the numbers are those
-of seeds. With the fault ``chance``, all episodes begin by chance, whatever the seed. With its first
-fault, the game makes the file FILE.fault.
+of seeds. With the fault ``snapshot`` or ``restore``, the first such request of all processes ends the game.
+With the fault ``chance``, all episodes begin by chance, whatever the seed. With its first fault, the game
+makes the file FILE.fault.
 """
 
 from __future__ import annotations
@@ -42,6 +43,23 @@ class Mortal(Counter):
         if self.fault == "chance":
             seed = secrets.randbelow(4)
         return super().reset(scene, variant, seed)
+
+    def snapshot(self) -> int:
+        """Keep the state, or end."""
+        self.end_once("snapshot")
+        return super().snapshot()
+
+    def restore(self, id: int) -> dict[str, Any]:  # noqa: A002
+        """Return to a snapshot, or end."""
+        self.end_once("restore")
+        return super().restore(id)
+
+    def end_once(self, fault: str) -> None:
+        """End if this is the fault, and its first time."""
+        mark = self.file.with_suffix(".fault")
+        if self.fault == fault and not mark.exists():
+            mark.touch()
+            os._exit(3)
 
     def step(self, action: int) -> dict[str, Any]:
         """Have the fault, if it is time."""
