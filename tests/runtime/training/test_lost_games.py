@@ -8,21 +8,28 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
+import torch
 
 from tests.runtime.training.test_search_any_game import CORNERS, write_counter
 from tests.runtime.wire.processes import no_game_is_left
 from tests.waiting import HANG_S
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+from tltl_runtime.policies.spaces.layouts import space_layouts
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.cells import position_grid
 from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, EpisodesInProgress, EpisodeStart
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
+from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
+from tltl_runtime.training.exploration.search import SuccessfulEpisode
+from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.wire.surviving_env import FAULTS, LOST, surviving
@@ -131,3 +138,36 @@ def test_a_game_that_is_lost_at_a_snapshot_loses_one_start(tmp_path: Path) -> No
             assert FAULTS not in saved_start(env)
     assert episodes_begun(tmp_path) == 3
     env.close()
+
+
+class TwoStarts(ReverseCurriculum):
+    """A curriculum of one demonstration. Starts at the level's start and in its segment take turns."""
+
+    def __init__(self) -> None:
+        super().__init__(1, np.random.default_rng(0), ActionEncoding(gymnasium.spaces.Discrete(3)))
+        self.add(SuccessfulEpisode(2, [[STAY], [RIGHT]], end=1))
+        self.start_rate = 0.5
+        self._starts = cycle([EpisodeStart(2), EpisodeStart(2, segment=(1, 0), max_decisions=2)])
+
+    def draw(self) -> EpisodeStart:
+        return next(self._starts)
+
+
+def test_a_lost_episode_teaches_the_curriculum_nothing(tmp_path: Path) -> None:
+    curriculum = TwoStarts()
+    with vector_env(mortal(tmp_path, "exit", 1, 2), 2) as vector:
+        layouts = space_layouts(vector.single_observation_space, vector.single_action_space)
+        env = TrainingEnv(vector, 0, curriculum=curriculum, limit_steps=40, layouts=layouts)
+        before = curriculum.state()
+        _, rewards, dones, extras = env.step(torch.tensor([[STAY]] * 2))
+        assert dones.all() and extras["time_outs"].all() and not extras["successes"].any()
+        assert rewards.tolist() == [0.0, 0.0]
+        np.testing.assert_equal(curriculum.state(), before)
+        assert not curriculum.failures and env.pop_finished() == ()
+        lost = env.pop_lost()
+        assert lost is not None and lost.count == 2
+        # The second environment has the limit of its start, which teaches.
+        for _ in range(2):
+            *_, dones, _ = env.step(torch.tensor([[STAY]] * 2))
+        assert dones.tolist() == [False, True]
+        assert curriculum.rates[1].tolist() == [pytest.approx(0.45)]

@@ -51,7 +51,8 @@ class TrainingEnv(VecEnv):
     limit.
 
     An episode that is lost with its game (:class:`~tltl_runtime.wire.surviving_env.SurvivingEnv`) is
-    cut off. It is neither a success nor a failure, so it is not among the finished episodes.
+    cut off. It is neither a success nor a failure, so it is not among the finished episodes, and the
+    curriculum does not learn from it.
 
     Raises:
         TypeError: without ``layouts``, the observation space is not a Dict, or the action space is
@@ -115,7 +116,8 @@ class TrainingEnv(VecEnv):
         results = self._episodes.step(rows) if self._episodes else self.env.step(self._actions.values(rows))
         observation, reward, terminated, truncated, infos = results
         is_over = terminated | truncated
-        summaries = self._summaries(infos["final_info"], _played(infos, is_over)) if is_over.any() else {}
+        played = _played(infos, is_over)
+        summaries = self._summaries(infos["final_info"], played) if played.size else {}
         self._add_faults(infos)
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
         for row, episode in summaries.items():
@@ -125,7 +127,7 @@ class TrainingEnv(VecEnv):
         if self._episodes and self.curriculum:
             ends = {row: end_of(infos["final_info"], row) for row, episode in summaries.items() if episode.success}
             states = {row: episode.unmet for row, episode in summaries.items()}
-            cut = _update_curriculum(self.curriculum, self._episodes, is_over, ends, states)
+            cut = _update_curriculum(self.curriculum, self._episodes, played, is_over, ends, states)
             summaries = {
                 row: episode for row, episode in summaries.items() if self._episodes.starts[row].segment is None
             }
@@ -196,7 +198,7 @@ class TrainingEnv(VecEnv):
 
 def _played(infos: Mapping[str, Any], is_over: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return the rows of the episodes that are over, without those that were lost with their games."""
-    lost = infos["final_info"].get(LOST)
+    lost = infos.get("final_info", {}).get(LOST)
     return np.flatnonzero(is_over if lost is None else is_over & ~lost)
 
 
@@ -217,20 +219,23 @@ def _plain_shapes(env: WorkerVectorEnv) -> tuple[dict[str, tuple[int, ...]], tup
 def _update_curriculum(
     curriculum: ReverseCurriculum,
     episodes: EpisodesInProgress,
+    played: NDArray[np.int64],
     is_over: NDArray[np.bool_],
     ends: Mapping[int, int],
     states: Mapping[int, int],
 ) -> NDArray[np.bool_]:
-    """Update the curriculum with all episodes that are over or have reached their limit of decisions.
+    """Update the curriculum with all episodes that were played or have reached their limit of decisions.
 
-    ``ends`` maps the index of each environment whose episode met the spec to the atoms that were
-    true at the end (:func:`~tltl_runtime.training.exploration.search.end_of`). ``states`` maps the
-    index of each environment whose episode is over to the automaton state in which it ended. Return
-    the mask [num_envs] of the episodes that have reached their limit of decisions, and that the
-    caller must cut off.
+    ``played`` are the environments whose episodes are over, without those that were lost, and
+    ``is_over`` [num_envs] is the mask of all whose episodes are over. ``ends`` maps the index of each
+    environment whose episode met the spec to the atoms that were true at the end
+    (:func:`~tltl_runtime.training.exploration.search.end_of`). ``states`` maps the index of each
+    environment in ``played`` to the automaton state in which its episode ended. Return the mask
+    [num_envs] of the episodes that have reached their limit of decisions, and that the caller must
+    cut off.
     """
     used_up = np.array([episodes.is_spent(row) for row in range(len(is_over))]) & ~is_over
-    for row in [*np.flatnonzero(is_over).tolist(), *np.flatnonzero(used_up).tolist()]:
+    for row in [*played.tolist(), *np.flatnonzero(used_up).tolist()]:
         curriculum.record_episode(episodes.starts[row], episodes.actions[row], ends.get(row), states.get(row))
     return used_up
 
