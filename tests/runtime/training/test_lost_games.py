@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 import torch
 
-from tests.runtime.training.test_search_any_game import CORNERS, write_counter
+from tests.runtime.training.test_search_any_game import CORNERS, run_of, write_counter
 from tests.runtime.wire.processes import no_game_is_left
 from tests.waiting import HANG_S
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
@@ -30,8 +30,11 @@ from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
 from tltl_runtime.training.ppo.environment import TrainingEnv
+from tltl_runtime.training.run.spaces import training_spaces
+from tltl_runtime.training.run.train import train
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.wire.errors import WireError
 from tltl_runtime.wire.surviving_env import FAULTS, LOST, surviving
 
 MORTAL = Path(__file__).parents[1] / "wire" / "games" / "mortal.py"
@@ -100,7 +103,7 @@ def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -
 
 
 def episodes_begun(tmp_path: Path) -> int:
-    """Return how many resets all processes of the game have answered."""
+    """Return how many resets all processes of the game have been asked for."""
     return (tmp_path / "episodes").stat().st_size
 
 
@@ -171,3 +174,20 @@ def test_a_lost_episode_teaches_the_curriculum_nothing(tmp_path: Path) -> None:
             *_, dones, _ = env.step(torch.tensor([[STAY]] * 2))
         assert dones.tolist() == [False, True]
         assert curriculum.rates[1].tolist() == [pytest.approx(0.45)]
+
+
+@pytest.mark.parametrize(("fault", "numbers"), [("reset", (1, 2)), ("snapshot", ()), ("restore", ())])
+def test_a_game_that_is_lost_while_it_is_measured_is_measured_again(
+    tmp_path: Path, fault: str, numbers: tuple[int, ...]
+) -> None:
+    spaces = training_spaces(run_of(tmp_path / "run", mortal(tmp_path, fault, *numbers)))
+    assert spaces.plan is not None
+    assert (spaces.plan.obstacle, spaces.plan.snapshots, spaces.searches) == (None, True, True)
+
+
+def test_a_game_that_is_lost_at_each_reset_is_not_trained(tmp_path: Path) -> None:
+    run = run_of(tmp_path / "run", mortal(tmp_path, "reset", "all"))
+    with pytest.raises(WireError, match="reports: no such map"):
+        next(train(run))
+    assert not run.folder.exists()
+    assert episodes_begun(tmp_path) == 3

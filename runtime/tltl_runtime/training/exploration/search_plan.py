@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from copy import deepcopy
 from typing import Any, Final, Literal
 
@@ -41,7 +42,10 @@ _STEPS: Final = 200
 _REPEAT_PROBABILITY: Final = 0.7
 """The probability that an action is that of the step before, so that the player gets around."""
 _MEASUREMENTS: Final = 3
-"""A game that is lost while it is measured is started and measured again, this many times in all."""
+"""A game that is lost while it is measured is started and measured again, this many times in all.
+
+Its first reset is tried so many times, too.
+"""
 _RESTORES: Final = 4
 """So many snapshots are restored, each in another episode."""
 _BEFORE_SNAPSHOT: Final = 20
@@ -91,6 +95,18 @@ class _Moment:
     sample: dict[str, Any]
     ended: bool
     position: Point | None
+
+
+def first_info(env: TltlEnv, seed: int) -> dict[str, Any]:
+    """Begin an episode, and return its info; if the game is lost, try it again with the next seeds.
+
+    Raises:
+        TltlError: the game raises an exception, or is lost each time (WireError).
+    """
+    for attempt in range(_MEASUREMENTS - 1):
+        with suppress(WireError):
+            return env.reset(seed=seed + attempt)[1]
+    return env.reset(seed=seed + _MEASUREMENTS - 1)[1]
 
 
 def search_plan(env: TltlEnv, game: Game[Any, Any], *, has_cells: bool) -> SearchPlan:
@@ -191,7 +207,11 @@ def _difference(kind: ObstacleKind, first: Sequence[_Moment], second: Sequence[_
 
 
 def _restore_obstacle(env: TltlEnv, game: Game[Any, Any]) -> SearchObstacle | None:
-    """Restore snapshots; return the first difference from what was saved, None if there is none."""
+    """Restore snapshots; return the first difference from what was saved, None if there is none.
+
+    Raises:
+        WireError: the game is lost.
+    """
     for seed in range(_SEED + 1, _SEED + 1 + _RESTORES):
         actions = _actions(env, seed, _BEFORE_SNAPSHOT + _AFTER_SNAPSHOT)
         observation, info = env.reset(seed=seed)
@@ -202,11 +222,15 @@ def _restore_obstacle(env: TltlEnv, game: Game[Any, Any]) -> SearchObstacle | No
         later = actions[_BEFORE_SNAPSHOT:]
         try:
             moment = save(env, observation, info)
+        except WireError:
+            raise
         except Exception as error:  # The code of the game may raise anything.
             return SearchObstacle("restore", problem=f"`tltl_snapshot` raises {type(error).__name__}: {error}")
         expected = _go_on(env, game, later)
         try:
             name = restore(env, moment)
+        except WireError:
+            raise
         except Exception as error:
             return SearchObstacle("restore", problem=f"`tltl_restore` raises {type(error).__name__}: {error}")
         if name is not None:

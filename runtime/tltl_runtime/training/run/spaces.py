@@ -8,7 +8,7 @@ from functools import partial
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.training.exploration.search_plan import SearchObstacle, SearchPlan, search_plan
+from tltl_runtime.training.exploration.search_plan import SearchObstacle, SearchPlan, first_info, search_plan
 from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.wire.env import WireEnv
@@ -39,7 +39,8 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
 
     Raises:
         TltlError: TLT0844, policies do not support its spaces; TLT0862, there are several environments,
-            and the game plays for one at a time; the errors of ``make_env`` and of the game.
+            and the game plays for one at a time; the errors of ``make_env`` and of the game, which may
+            also be lost at each reset (WireError).
     """
     game, env = game_of(run.level), env_function(run)()
     try:
@@ -47,7 +48,7 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
         if not plays_at_once and run.settings.rollout.envs > 1:
             raise _one_environment_error(run)
         layouts = space_layouts(env.observation_space, env.action_space, run.sensors)
-        _, info = env.reset(seed=run.seed)
+        info = first_info(env, run.seed)
         plan = search_plan(env, game, has_cells="cell" in info) if run.settings.searches else None
         wire = env.unwrapped.game if isinstance(env.unwrapped, WireEnv) else None
     finally:
