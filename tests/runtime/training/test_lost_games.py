@@ -29,6 +29,7 @@ from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, Episod
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
+from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.spaces import training_spaces
 from tltl_runtime.training.run.train import train
@@ -190,4 +191,32 @@ def test_a_game_that_is_lost_at_each_reset_is_not_trained(tmp_path: Path) -> Non
     with pytest.raises(WireError, match="reports: no such map"):
         next(train(run))
     assert not run.folder.exists()
+    assert episodes_begun(tmp_path) == 3
+
+
+def imitation_of(level: str) -> SelfImitation:
+    """Return the self-imitation of one demonstration, seven steps to the goal from seed 2."""
+    curriculum = ReverseCurriculum(1, np.random.default_rng(0), ActionEncoding(gymnasium.spaces.Discrete(3)))
+    curriculum.add(SuccessfulEpisode(2, [[RIGHT]] * 7, end=1))
+    return SelfImitation(partial(GAME.make_env, level), curriculum)
+
+
+def test_a_demonstration_is_replayed_again_if_the_game_is_lost(tmp_path: Path) -> None:
+    self_imitation = imitation_of(mortal(tmp_path, "exit", 1, 2))
+    for _ in range(2):
+        batch = self_imitation.draw()
+        assert batch is not None
+        observations, actions = batch
+        assert {*observations["observation"].flatten().tolist()} == {*range(3, 10)}
+        assert len(actions) == len(observations["observation"])
+    self_imitation.close()
+    assert episodes_begun(tmp_path) == 3
+
+
+def test_a_demonstration_in_which_the_game_is_always_lost_is_not_imitated(tmp_path: Path) -> None:
+    self_imitation = imitation_of(mortal(tmp_path, "exit", "all"))
+    with pytest.warns(UserWarning, match="TLT0791: the game .*: the demonstration of seed 2 is not imitated"):
+        assert self_imitation.draw() is None
+    assert self_imitation.draw() is None
+    self_imitation.close()
     assert episodes_begun(tmp_path) == 3

@@ -9,6 +9,7 @@ al., Self-imitation learning, ICML 2018. The imitation baseline is another metho
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
@@ -25,15 +26,20 @@ from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.observation_encoding import ObservationEncoding
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
+from tltl_runtime.wire.errors import WireError
 
 BATCH: Final = 256
 """The number of decisions that are drawn for one optimiser step."""
+_REPLAYS: Final = 3
+"""A demonstration in which the game is lost is replayed so many times in all."""
 
 
 class SelfImitation:
     """Draws batches of decisions to imitate from the demonstrations of ``curriculum``.
 
     To get the observations, it replays the demonstrations in an environment that ``make`` returns.
+    If a game in another process is lost there, it is started again. A demonstration in which it is lost
+    each time is not imitated; a warning says so.
     ``layouts`` say how observations become arrays; None if the network uses them without
     conversion.
     """
@@ -47,9 +53,10 @@ class SelfImitation:
         self._make, self._curriculum = make, curriculum
         self._observations_encoding = ObservationEncoding(layouts)
         self._env: gymnasium.Env[Any, Any] | None = None
-        self._observed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]]]] = {}
+        self._observed: dict[int, tuple[SuccessfulEpisode, Mapping[str, NDArray[Any]] | None]] = {}
         """The demonstrations and their observations, by the ``id`` of the demonstration.
 
+        The observations are None if the game was lost each time.
         The demonstrations are kept so that their ``id`` stays valid.
         """
 
@@ -71,11 +78,14 @@ class SelfImitation:
         for demonstration, _ in decisions:
             if id(demonstration) not in self._observed:
                 self._observed[id(demonstration)] = demonstration, self._observations(demonstration)
-        rows = [(self._observed[id(demonstration)][1], index) for demonstration, index in decisions]
-        observations = {name: np.stack([values[name][index] for values, index in rows]) for name in rows[0][0]}
-        actions = torch.tensor(
-            [demonstration.actions[index] for demonstration, index in decisions], dtype=torch.float32
-        )
+        rows = []
+        for demonstration, index in decisions:
+            if (values := self._observed[id(demonstration)][1]) is not None:
+                rows.append((values, demonstration.actions, index))
+        if not rows:
+            return None
+        observations = {name: np.stack([values[name][index] for values, _, index in rows]) for name in rows[0][0]}
+        actions = torch.tensor([actions[index] for _, actions, index in rows], dtype=torch.float32)
         return self._observations_encoding.tensors(observations), actions
 
     def close(self) -> None:
@@ -83,11 +93,23 @@ class SelfImitation:
         if self._env is not None:
             self._env.close()
 
-    def _observations(self, demonstration: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
+    def _observations(self, demonstration: SuccessfulEpisode) -> Mapping[str, NDArray[Any]] | None:
         """Return the observations before the decisions of a demonstration: arrays by key.
 
-        The arrays are [n, ...] for n decisions.
+        The arrays are [n, ...] for n decisions. Return None, with a warning, if the game is lost each time.
         """
+        for _ in range(_REPLAYS):
+            try:
+                return self._replayed(demonstration)
+            except WireError as error:
+                lost = error.diagnostics[0]
+        warnings.warn(
+            f"{lost.code}: {lost.title}: the demonstration of seed {demonstration.seed} is not imitated", stacklevel=2
+        )
+        return None
+
+    def _replayed(self, demonstration: SuccessfulEpisode) -> Mapping[str, NDArray[Any]]:
+        """Replay a demonstration; return its observations. Raises WireError if the game is lost."""
         self._env = self._env or self._make()
         encoding = ActionEncoding(self._env.action_space)
         first, _ = self._env.reset(seed=demonstration.seed)
