@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import gymnasium
@@ -86,6 +86,11 @@ class SurvivingEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def _add(self, error: WireError) -> None:
         self._limit.add_lost(error.diagnostics[0])
         self._faults.append(error.diagnostics[0])
+
+
+def faults_in(infos: Mapping[str, Any]) -> list[Diagnostic]:
+    """Return what happened to the games that were lost, as the infos of a vector environment say it."""
+    return [fault for faults in infos.get(FAULTS, ()) for fault in faults or ()]
 
 
 def surviving(make: Callable[[], gymnasium.Env[Any, Any]]) -> gymnasium.Env[Any, Any]:

@@ -29,6 +29,7 @@ from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, Episod
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import SuccessfulEpisode
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.run.spaces import training_spaces
@@ -86,6 +87,7 @@ def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -
         (other,) = episodes.starts
         assert (other.seed != 666, other.segment, episodes.actions) == (True, None, [[]])
         everywhere = np.array([True])
+        assert [fault.code for fault in episodes.faults] == ["TLT0793"]
         # The next start is good, and is still used.
         observation = episodes.cut_off(everywhere)
         assert episodes.starts == [good] and at(episodes, observation)
@@ -93,6 +95,7 @@ def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -
         assert episodes.actions == [[[STAY], [STAY]]]
         observation = episodes.cut_off(everywhere)
         assert episodes.starts == [other] and at(episodes, observation)
+        assert len(episodes.faults) == 2
         # An episode that ends is followed by one with a lost start, too.
         over = np.array([False])
         while not over.any():
@@ -101,6 +104,7 @@ def test_a_start_that_is_lost_each_time_is_replaced_by_another(tmp_path: Path) -
         assert episodes.starts == [other] and episodes.actions[0]
         episodes.start_next(over)
         assert episodes.starts == [other] and episodes.actions == [[]] and at(episodes, observation)
+        assert len(episodes.faults) == 3
 
 
 def episodes_begun(tmp_path: Path) -> int:
@@ -220,3 +224,18 @@ def test_a_demonstration_in_which_the_game_is_always_lost_is_not_imitated(tmp_pa
     assert self_imitation.draw() is None
     self_imitation.close()
     assert episodes_begun(tmp_path) == 3
+
+
+def test_episodes_that_are_lost_in_the_search_are_reported(tmp_path: Path) -> None:
+    run = run_of(tmp_path / "run", mortal(tmp_path, "exit", 1002, 1003), exploration__steps=400)
+
+    def count_on(plan: SearchPlan) -> None:
+        """Let the first episode of the search be number 1001."""
+        assert plan.obstacle is None
+        (tmp_path / "episodes").write_bytes(b"x" * 1000)
+
+    training = train(run, on_plan=count_on)
+    report = next(training)
+    training.close()
+    assert report.searched is not None and report.lost is not None
+    assert report.lost.text.startswith("2 episodes were lost: the game `counter.game.toml` ended with exit status 3")

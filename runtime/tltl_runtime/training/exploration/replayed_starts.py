@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Row
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
-from tltlc.api import record, replace
+from tltl_runtime.wire.surviving_env import faults_in
+from tltlc.api import Diagnostic, record, replace
 
 OTHER_SEED: Final = "other_seed"
 """The key of a reset's info that has the seed of an episode whose game was lost on the way to its start.
@@ -121,14 +122,17 @@ class EpisodesInProgress:
     their first observations. ``starts`` and ``actions`` have an entry for each environment: the
     start of its current episode, and all actions of the episode, including the replayed ones. If an
     environment says with ``OTHER_SEED`` that its episode begins elsewhere, ``starts`` has that start.
-    ``replayed`` counts all replayed actions.
+    ``replayed`` counts all replayed actions. What happens to games that are lost is added to ``faults``.
 
     Raises:
         WorkerError: from any method, a worker was lost; the error names the seeds of the episodes.
     """
 
-    def __init__(self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart]) -> None:
+    def __init__(
+        self, env: WorkerVectorEnv, draw: Callable[[], EpisodeStart], faults: list[Diagnostic] | None = None
+    ) -> None:
         self._env = env
+        self.faults: list[Diagnostic] = [] if faults is None else faults
         self._draw = draw
         self._encoding = ActionEncoding(env.single_action_space)
         self._next = [draw() for _ in range(env.num_envs)]
@@ -139,7 +143,7 @@ class EpisodesInProgress:
         self._send_starts(range(env.num_envs))
         with self._starts_in_errors():
             self.observation, infos = env.reset()
-        self._other_seeds = _other_seeds(infos)
+        self._note_losses(infos)
         self.start_next(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[Any]) -> tuple[Any, ...]:
@@ -152,7 +156,7 @@ class EpisodesInProgress:
             past_actions.append(action)
         with self._starts_in_errors():
             results = self._env.step(self._encoding.values(actions))
-        self._other_seeds = _other_seeds(results[-1])
+        self._note_losses(results[-1])
         return results
 
     def start_next(self, mask: NDArray[np.bool_]) -> None:
@@ -175,7 +179,7 @@ class EpisodesInProgress:
         self._advance(rows)
         with self._starts_in_errors():
             observation, infos = self._env.reset(options={"reset_mask": mask})
-        self._other_seeds = _other_seeds(infos)
+        self._note_losses(infos)
         self._begin_elsewhere()
         self._send_starts(rows)
         return observation
@@ -195,6 +199,11 @@ class EpisodesInProgress:
             self.actions[row] = [list(action) for action in start.actions]
             self.replayed += len(start.actions)
             self._next[row] = self._draw()
+
+    def _note_losses(self, infos: Mapping[str, Any]) -> None:
+        """Note which games were lost, and which of the episodes that have just begun begin elsewhere."""
+        self.faults += faults_in(infos)
+        self._other_seeds = _other_seeds(infos)
 
     def _begin_elsewhere(self) -> None:
         """Set the starts of the episodes whose games were lost on the way."""

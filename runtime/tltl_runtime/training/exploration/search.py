@@ -29,7 +29,7 @@ from tltl_runtime.policies.spaces.values import batch_row
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Actions
 from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
-from tltlc.api import record
+from tltlc.api import Diagnostic, record
 
 _REPEAT_PROBABILITY = 0.9
 """The probability that a choice or a number of an action stays the same in the next decision.
@@ -149,7 +149,7 @@ class TrajectorySearch:
     With ``failures``, the search starts in these episodes and explores only the automaton states in
     which they failed. Without ``failures``, it starts at the level's start. If there is a
     ``policy``, it plays the first episode of each environment; random actions then continue from
-    the cells that it reached.
+    the cells that it reached. What happens to games that are lost is added to ``faults``.
     """
 
     def __init__(
@@ -159,9 +159,11 @@ class TrajectorySearch:
         seed: np.random.SeedSequence,
         failures: Sequence[FailedEpisode] = (),
         policy: PolicyFunction | None = None,
+        faults: list[Diagnostic] | None = None,
     ) -> None:
         self._env = env
         self._policy = policy
+        self._faults = faults
         self._exploration = exploration
         self._failures = list(failures)
         self._states = {failure.state for failure in failures}
@@ -173,7 +175,7 @@ class TrajectorySearch:
     def run(self) -> Iterator[SearchProgress]:
         """Search until the settings' limits; yield the progress from time to time, and once at the end."""
         began = reported = time.perf_counter()
-        episodes = EpisodesInProgress(self._env, self._draw)
+        episodes = EpisodesInProgress(self._env, self._draw, self._faults)
         action = self._random_actions()
         decisions_left = np.full(self._env.num_envs, _RANDOM_DECISIONS)
         by_policy = np.full(self._env.num_envs, self._policy is not None)

@@ -24,7 +24,7 @@ from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.imitation.imitation_data import ImitationData
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.wire.lost_episodes import LostEpisodes
-from tltl_runtime.wire.surviving_env import FAULTS, LOST
+from tltl_runtime.wire.surviving_env import LOST, faults_in
 from tltlc.api import Diagnostic, TltlError
 
 
@@ -52,7 +52,8 @@ class TrainingEnv(VecEnv):
 
     An episode that is lost with its game (:class:`~tltl_runtime.wire.surviving_env.SurvivingEnv`) is
     cut off. It is neither a success nor a failure, so it is not among the finished episodes, and the
-    curriculum does not learn from it.
+    curriculum does not learn from it. ``faults`` says what happened to the games that were lost since
+    :meth:`pop_lost` was last called; the list may begin with what happened in a search.
 
     Raises:
         TypeError: without ``layouts``, the observation space is not a Dict, or the action space is
@@ -70,6 +71,7 @@ class TrainingEnv(VecEnv):
         extra_penalty: Callable[[int], float] | None = None,
         limit_steps: int | None = None,
         layouts: SpaceLayouts | None = None,
+        faults: list[Diagnostic] | None = None,
     ) -> None:
         self.shapes, self.branches = _plain_shapes(env) if layouts is None else (layouts.shapes, ())
         self.env = env
@@ -88,12 +90,15 @@ class TrainingEnv(VecEnv):
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
         self._replayed_before = 0
-        self._episodes = EpisodesInProgress(env, curriculum.draw) if curriculum else None
+        self.faults: list[Diagnostic] = [] if faults is None else faults
+        self._episodes = EpisodesInProgress(env, curriculum.draw, self.faults) if curriculum else None
         self._finished: list[EpisodeSummary] = []
-        self._faults: list[Diagnostic] = []
-        observation, infos = (self._episodes.observation, {}) if self._episodes else env.reset(seed=seed)
-        self._add_faults(infos)
-        self._observation = self._tensors(observation)
+        if self._episodes:
+            self._observation = self._tensors(self._episodes.observation)
+        else:
+            observation, infos = env.reset(seed=seed)
+            self.faults += faults_in(infos)
+            self._observation = self._tensors(observation)
         self._limit_steps = limit_steps
         self._episode_count = 0
 
@@ -118,7 +123,8 @@ class TrainingEnv(VecEnv):
         is_over = terminated | truncated
         played = _played(infos, is_over)
         summaries = self._summaries(infos["final_info"], played) if played.size else {}
-        self._add_faults(infos)
+        if not self._episodes:
+            self.faults += faults_in(infos)
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
         for row, episode in summaries.items():
             successes[row] = episode.success
@@ -153,11 +159,11 @@ class TrainingEnv(VecEnv):
         """Begin new episodes in all environments, for example after a search has used them."""
         if self._episodes and self.curriculum:
             self._replayed_before += self._episodes.replayed
-            self._episodes = EpisodesInProgress(self.env, self.curriculum.draw)
+            self._episodes = EpisodesInProgress(self.env, self.curriculum.draw, self.faults)
             observation = self._episodes.observation
         else:
             observation, infos = self.env.reset()
-            self._add_faults(infos)
+            self.faults += faults_in(infos)
         self._observation = self._tensors(observation)
 
     def pop_finished(self) -> tuple[EpisodeSummary, ...]:
@@ -167,12 +173,10 @@ class TrainingEnv(VecEnv):
 
     def pop_lost(self) -> LostEpisodes | None:
         """Return the number of episodes that were lost with their games since the last call; None without any."""
-        faults, self._faults = self._faults, []
-        return LostEpisodes(len(faults), faults[0]) if faults else None
-
-    def _add_faults(self, infos: Mapping[str, Any]) -> None:
-        """Add what happened to the games that were lost, as the infos of resets say it."""
-        self._faults += [fault for faults in infos.get(FAULTS, ()) for fault in faults or ()]
+        lost = LostEpisodes(len(self.faults), self.faults[0]) if self.faults else None
+        # A search and the episodes in progress add to the same list.
+        self.faults.clear()
+        return lost
 
     def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
         """Return the summaries of the episodes that ended in these rows, by row."""

@@ -188,12 +188,13 @@ def prepare_environment(
     so that resuming does not repeat episodes.
     """
     progress, curriculum, self_imitation = None, None, None
+    faults: list[Diagnostic] = []
     iteration = checkpoint.iteration if checkpoint else 0
     if spaces.searches:
         encoding = ActionEncoding(vector_env.single_action_space)
         curriculum = _curriculum(run, group, checkpoint, encoding)
         progress = search_before_training(
-            run, group, vector_env, curriculum, checkpoint, on_search, _policy_function(run, group, initial)
+            run, group, vector_env, curriculum, checkpoint, on_search, _policy_function(run, group, initial), faults
         )
         if run.settings.exploration.imitation:
             self_imitation = SelfImitation(env_function(run), curriculum, spaces.layouts)
@@ -210,6 +211,7 @@ def prepare_environment(
         penalty_rise(run),
         limit_steps,
         spaces.layouts,
+        faults,
     )
     return env, progress
 

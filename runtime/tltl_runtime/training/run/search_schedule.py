@@ -12,6 +12,7 @@ from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.vector import WorkerVectorEnv
+from tltlc.api import Diagnostic
 
 SearchCallback = Callable[[SearchProgress], None]
 """A function that is called from time to time with the progress of a search."""
@@ -25,22 +26,23 @@ def search_before_training(
     checkpoint: Checkpoint | None,
     on_search: SearchCallback,
     policy: PolicyFunction | None,
+    faults: list[Diagnostic],
 ) -> SearchProgress | None:
     """Search for demonstrations before the training, and add them to ``curriculum``.
 
     ``env`` has the environments of this process. ``policy``, if there is one, plays their first
-    episodes. Return the progress of the search, or None if no search is needed. With a
-    ``checkpoint``, a search is needed only if the earlier search was interrupted, for example by
-    the limit of minutes, before it found a demonstration, and if time is left now.
+    episodes. What happens to games that are lost is added to ``faults``. Return the progress of the
+    search, or None if no search is needed. With a ``checkpoint``, a search is needed only if the
+    earlier search was interrupted, for example by the limit of minutes, before it found a
+    demonstration, and if time is left now.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
         if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(seconds):
             return None
-    search = TrajectorySearch(
-        env, run.settings.exploration, stream(run, group, Purpose.SEARCH, iteration), policy=policy
-    )
+    seed = stream(run, group, Purpose.SEARCH, iteration)
+    search = TrajectorySearch(env, run.settings.exploration, seed, policy=policy, faults=faults)
     return _run_search(run, search, curriculum, seconds, on_search)
 
 
@@ -55,7 +57,7 @@ def search_after_standstill(
     if env.curriculum is None or not env.curriculum.failures:
         return None
     seed = stream(run, group, Purpose.SEARCH, state.iteration)
-    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.curriculum.failures)
+    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.curriculum.failures, faults=env.faults)
     progress = _run_search(run, search, env.curriculum, state.seconds, on_search)
     env.restart_episodes()
     return progress
