@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import torch
 
+from tests.runtime.training.runs import checkpoint_of
 from tests.runtime.training.test_search_any_game import CORNERS, run_of, write_counter
 from tests.runtime.wire.processes import no_game_is_left
 from tests.waiting import HANG_S
@@ -38,6 +39,8 @@ from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.wire.errors import WireError
 from tltl_runtime.wire.surviving_env import FAULTS, LOST, surviving
+from tltlc.api import TltlError
+from tltlc.core.record import replace
 
 MORTAL = Path(__file__).parents[1] / "wire" / "games" / "mortal.py"
 LEFT, STAY, RIGHT = range(3)
@@ -239,3 +242,23 @@ def test_episodes_that_are_lost_in_the_search_are_reported(tmp_path: Path) -> No
     training.close()
     assert report.searched is not None and report.lost is not None
     assert report.lost.text.startswith("2 episodes were lost: the game `counter.game.toml` ended with exit status 3")
+
+
+def test_a_training_with_a_search_does_not_resume_without_one(tmp_path: Path) -> None:
+    # The game is lost in all three measurements of the resumed training, and then no more.
+    level = mortal(tmp_path, "exit", 1002, 1003, 1004)
+    run = run_of(tmp_path / "run", level, exploration__steps=40, stop__steps=64)
+    list(train(run))
+    files = {path: path.read_bytes() for path in run.folder.iterdir()}
+    longer = replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=128)))
+    (tmp_path / "episodes").write_bytes(b"x" * 1000)
+    with pytest.raises(TltlError) as caught:
+        next(train(longer, resume=True))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0864"
+    assert "its training began with a search, and now the game cannot be searched: the game" in diagnostic.title
+    assert f"continue with `tltlc train --resume {run.folder}`" in (diagnostic.help or "")
+    changed = [path.name for path, before in files.items() if path.read_bytes() != before]
+    assert changed == ["run.json"] and len([*run.folder.iterdir()]) == len(files)
+    (*_, report) = train(longer, resume=True)
+    assert report.stop == "steps" and "way_seeds" in checkpoint_of(longer).processes[0]

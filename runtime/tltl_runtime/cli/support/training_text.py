@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-import numpy as np
-
 from tltl_runtime.support.number_text import duration, number, share
 from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings
-from tltl_runtime.training.exploration.search_plan import THE_END, THE_OBSERVATION, SearchObstacle, SearchPlan
+from tltl_runtime.training.exploration.search_plan import SearchPlan, obstacle_text
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.settings import Stop
 from tltl_runtime.training.imitation.demonstrations import Attempt, ImitationSummary
@@ -73,39 +71,6 @@ def no_search_line(plan: SearchPlan | None) -> str:
     """Say in one line, at the end of a training, why it began without a search."""
     reason = "" if plan is None or plan.obstacle is None else f", because {obstacle_text(plan.obstacle)}"
     return f"it began without a search for demonstrations{reason}: see docs/games.md"
-
-
-def obstacle_text(obstacle: SearchObstacle) -> str:
-    """Say in a clause why a game is not searched."""
-    if obstacle.kind == "one at a time":
-        return "the game is running already, and plays for one environment at a time"
-    if obstacle.kind == "earlier":
-        return "it was begun so"
-    if obstacle.problem:
-        return obstacle.problem
-    steps = f"{obstacle.step} step{'s' * (obstacle.step != 1)}"
-    if obstacle.kind == "plays":
-        return f"equal seeds and actions give different plays: {_difference_text(obstacle)} after {steps}"
-    after = f", {steps} later" if obstacle.step else ""
-    return f"`tltl_restore` does not give back what `tltl_snapshot` saved: {_difference_text(obstacle)}{after}"
-
-
-def _difference_text(obstacle: SearchObstacle) -> str:
-    if obstacle.name == THE_END:
-        return "one of the episodes ends"
-    if obstacle.name == THE_OBSERVATION:
-        return "the observation differs"
-    first, second = _value_text(obstacle.first), _value_text(obstacle.second)
-    tense = "was" if obstacle.kind == "restore" else "is"
-    return f"`{obstacle.name}` {tense} {first}, and then {second}"
-
-
-def _value_text(value: object) -> str:
-    if value is None:
-        return "missing"
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    return f"{value!r:.40}" if isinstance(value, str) else f"{float(value):g}"  # type: ignore[arg-type]
 
 
 def search_line(progress: SearchProgress) -> str:

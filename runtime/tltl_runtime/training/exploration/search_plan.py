@@ -97,6 +97,21 @@ class _Moment:
     position: Point | None
 
 
+def obstacle_text(obstacle: SearchObstacle) -> str:
+    """Say in a clause why a game is not searched."""
+    if obstacle.kind == "one at a time":
+        return "the game is running already, and plays for one environment at a time"
+    if obstacle.kind == "earlier":
+        return "it was begun so"
+    if obstacle.problem:
+        return obstacle.problem
+    steps = f"{obstacle.step} step{'s' * (obstacle.step != 1)}"
+    if obstacle.kind == "plays":
+        return f"equal seeds and actions give different plays: {_difference_text(obstacle)} after {steps}"
+    after = f", {steps} later" if obstacle.step else ""
+    return f"`tltl_restore` does not give back what `tltl_snapshot` saved: {_difference_text(obstacle)}{after}"
+
+
 def first_info(env: TltlEnv, seed: int) -> dict[str, Any]:
     """Begin an episode, and return its info; if the game is lost, try it again with the next seeds.
 
@@ -238,3 +253,21 @@ def _restore_obstacle(env: TltlEnv, game: Game[Any, Any]) -> SearchObstacle | No
         if obstacle := _difference("restore", expected, _go_on(env, game, later)):
             return obstacle
     return None
+
+
+def _difference_text(obstacle: SearchObstacle) -> str:
+    if obstacle.name == THE_END:
+        return "one of the episodes ends"
+    if obstacle.name == THE_OBSERVATION:
+        return "the observation differs"
+    first, second = _value_text(obstacle.first), _value_text(obstacle.second)
+    tense = "was" if obstacle.kind == "restore" else "is"
+    return f"`{obstacle.name}` {tense} {first}, and then {second}"
+
+
+def _value_text(value: object) -> str:
+    if value is None:
+        return "missing"
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    return f"{value!r:.40}" if isinstance(value, str) else f"{float(value):g}"  # type: ignore[arg-type]

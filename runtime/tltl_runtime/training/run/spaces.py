@@ -8,9 +8,15 @@ from functools import partial
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
 from tltl_runtime.spec.wrapper import TltlEnv
-from tltl_runtime.training.exploration.search_plan import SearchObstacle, SearchPlan, first_info, search_plan
+from tltl_runtime.training.exploration.search_plan import (
+    SearchObstacle,
+    SearchPlan,
+    first_info,
+    obstacle_text,
+    search_plan,
+)
 from tltl_runtime.training.files.checkpoint import Checkpoint
-from tltl_runtime.training.files.run_file import TrainingRun
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, resume_command
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import Diagnostic, TltlError, record, replace
@@ -75,6 +81,25 @@ def spaces_of(spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> Training
         return spaces
     plan = replace(spaces.plan, obstacle=SearchObstacle("earlier"))
     return replace(spaces, searches=False, plan=plan)
+
+
+def check_search(run: TrainingRun, spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> None:
+    """Check that a training that resumes can still use the demonstrations of its checkpoint.
+
+    Raises:
+        TltlError: TLT0864, the checkpoint is of a training with a search, and the plan has an obstacle.
+    """
+    obstacle = spaces.plan.obstacle if spaces.plan else None
+    if checkpoint is None or obstacle is None or "way_seeds" not in checkpoint.processes[0]:
+        return
+    reason = f"its training began with a search, and now the game cannot be searched: {obstacle_text(obstacle)}"
+    help_ = (
+        f"let the game play as it did when the training began, and continue with `{resume_command(run.folder)}`: the "
+        "checkpoint stays as it is"
+    )
+    raise TltlError(
+        [Diagnostic("TLT0864", f"cannot use the checkpoint `{run.folder / CHECKPOINT}`: {reason}", help=help_)]
+    )
 
 
 def env_function(run: TrainingRun) -> Callable[[], TltlEnv]:

@@ -39,7 +39,7 @@ from tltl_runtime.training.run.preparation import (
 )
 from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
-from tltl_runtime.training.run.spaces import TrainingSpaces, spaces_of, training_spaces
+from tltl_runtime.training.run.spaces import TrainingSpaces, check_search, spaces_of, training_spaces
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.wire.lost_episodes import LostEpisodes, together
@@ -103,6 +103,7 @@ def train(
         stack.enter_context(threads(1))
         # All processes search, or none does.
         spaces = group.broadcast(spaces_of(spaces or _checked_spaces(run), checkpoint))
+        check_search(run, spaces, checkpoint)
         if spaces.plan:
             on_plan(spaces.plan)
         imitation_data = load_imitation_data(run, group, spaces, on_attempt)
