@@ -283,8 +283,10 @@ def test_a_snapshot_that_fails_later_is_replaced_by_a_replay(
 
 def test_an_episode_that_ends_on_the_way_is_an_error(returning: ReturningEnv) -> None:
     returning.next_start = 4, np.zeros((160, 1), np.int64)
-    with pytest.raises(TltlError, match=r"TLT0783: an episode of seed 4 ends within 160 actions"):
+    with pytest.raises(TltlError, match=r"TLT0783: an episode of seed 4 ends within 160 actions") as caught:
         returning.reset()
+    # A training that is resumed keeps its `ways`.
+    assert "begin a new training" in str(caught.value)
 
 
 def test_the_moments_of_an_environment_are_bounded(returning: ReturningEnv, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -178,5 +178,8 @@ def _other_seed(seed: int) -> int:
 
 def _not_repeated_error(seed: int, count: int) -> TltlError:
     title = f"an episode of seed {seed} ends within {count} actions that did not end it before"
-    help_ = "let equal seeds and actions give equal plays, or write `ways = 0` under `[exploration]`: no search"
+    help_ = (
+        "begin a new training, with equal plays for equal seeds and actions, or with `ways = 0` under `[exploration]`: "
+        "no search"
+    )
     return TltlError([Diagnostic("TLT0783", f"{title}: {help_}")])
