@@ -62,7 +62,8 @@ def test_a_window_without_episodes_has_zero_figures() -> None:
 
 @given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))
 def test_loaded_windows_continue(before: list[bool], after: list[bool]) -> None:
-    windows = RecentEpisodes(2, 3, 100)
+    # What the windows have before does not count.
+    windows = _windows(after)
     windows.load(_windows(before).state(), _windows(before).unbroken)
     windows.add(SUCCESS if success else FAILURE for success in after)
     whole = _windows(before + after)

@@ -81,7 +81,8 @@ class RecentEpisodes:
         ]
 
     def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
-        """Restore the episodes that :meth:`state` returned, and ``unbroken``."""
+        """Replace the episodes by those that :meth:`state` returned; restore ``unbroken``."""
+        self._episodes.clear()
         self._episodes.extend(self._summary(index, *fields) for index, fields in enumerate(state))
         self.unbroken = unbroken
 
