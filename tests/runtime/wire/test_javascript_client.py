@@ -173,6 +173,34 @@ def test_all_lines_of_a_message_on_the_console_are_shown(folder: Path) -> None:
         assert playing.stderr() == 'first\n"second", source: third\nfourth\nfifth'
 
 
+@needs_browser
+def test_the_profile_of_a_game_that_was_killed_is_removed_by_the_next_one(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("websockets")
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    # Only the shell needs no profile.
+    browser = folder / "chromium"
+    browser.write_text(f'#!/bin/sh\nexec {BROWSER} "$@"\n', encoding="utf-8")
+    browser.chmod(0o755)
+    words = [*page_command(folder, "index.html")[:-1], str(browser)]
+    with conversation.Game(words) as killed:
+        killed.receive()
+        killed.process.kill()
+        killed.process.wait(HANG_S)
+    until(lambda: not processes_with(f"TMPDIR={temporary}", "environ"), "the end of the browser")
+    (left,) = temporary.glob("tltl-page-*")
+    with conversation.Game(words) as game:
+        game.receive()
+        (profile,) = temporary.glob("tltl-page-*")
+        assert profile != left and profile.stat().st_mode & 0o777 == 0o700
+        game.send({"close": {}})
+        assert game.status() == 0
+    assert not [*temporary.glob("tltl-page-*")]
+
+
 RECORD = """
 import { Recorder } from "./tltl_client.js";
 const recorder = new Recorder("traces", ["near(a, b)", "seen"], { clockHz: 60 });

@@ -691,11 +691,9 @@ async function serveFolder(folder, secret, end) {
  */
 async function startBrowser(browser, address, end) {
   const { spawn } = await builtin("child_process");
-  const { mkdtempSync, rmSync } = await builtin("fs");
-  const { tmpdir } = await builtin("os");
-  const { join } = await builtin("path");
+  const { rmSync } = await builtin("fs");
   // The shell keeps no profile; a browser needs one of its own, or it passes the page on to one that is running.
-  const profile = /headless.shell/.test(browser) ? null : mkdtempSync(join(tmpdir(), "tltl-page-"));
+  const profile = /headless.shell/.test(browser) ? null : await makeProfile();
   const words = ["--headless", "--disable-gpu", "--mute-audio", "--no-first-run", "--enable-logging=stderr"];
   // As root, Chromium does not start with its sandbox; the page is the user's own.
   if (process.getuid?.() === 0) words.push("--no-sandbox");
@@ -738,12 +736,39 @@ async function startBrowser(browser, address, end) {
     });
   });
   return async () => {
-    child.kill("SIGTERM");
+    // The browser ends with its pipe. A signal would end only the script that starts it on some systems.
+    child.stdio[3].destroy();
     const impatience = setTimeout(() => child.kill("SIGKILL"), 2000);
     await gone;
     clearTimeout(impatience);
     if (profile) rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
   };
+}
+
+/** Make a folder for the profile of a browser, and remove those of processes that were killed before they could do it. */
+async function makeProfile() {
+  const { lstatSync, mkdtempSync, readdirSync, rmSync } = await builtin("fs");
+  const { tmpdir } = await builtin("os");
+  const { join } = await builtin("path");
+  for (const name of readdirSync(tmpdir())) {
+    const [, pid] = /^tltl-page-(\d+)-/.exec(name) ?? [];
+    if (!pid || isRunning(Number(pid))) continue;
+    const path = join(tmpdir(), name);
+    try {
+      if (lstatSync(path).uid === (process.getuid?.() ?? 0)) rmSync(path, { recursive: true, force: true });
+    } catch {
+      // Another process removes it at the same time.
+    }
+  }
+  return mkdtempSync(join(tmpdir(), `tltl-page-${process.pid}-`));
+}
+
+function isRunning(pid) {
+  try {
+    return process.kill(pid, 0);
+  } catch (error) {
+    return error.code === "EPERM";
+  }
 }
 
 // No `await` here, so that importers of the module need not wait.
