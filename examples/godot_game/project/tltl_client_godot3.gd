@@ -214,11 +214,11 @@ func _say_hello(game, token: String) -> bool:
 
 # Returns the types of the spaces in a space.
 static func _types(space: Dictionary) -> Array:
-	var found = [space["type"]]
+	var types = [space["type"]]
 	var parts = space.get("spaces", [])
 	for part in (parts.values() if parts is Dictionary else parts):
-		found += _types(part)
-	return found
+		types += _types(part)
+	return types
 
 
 # Returns why the game refuses the first message of tltlc; empty if it accepts it.

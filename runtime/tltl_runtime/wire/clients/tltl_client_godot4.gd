@@ -222,12 +222,12 @@ func _say_hello(game: Object, token: String) -> bool:
 
 # Returns the types of the spaces in a space.
 static func _types(space: Dictionary) -> Array:
-	var found: Array = [space["type"]]
+	var types: Array = [space["type"]]
 	var parts: Variant = space.get("spaces", [])
 	var spaces: Array = parts.values() if parts is Dictionary else parts
 	for part in spaces:
-		found += _types(part)
-	return found
+		types += _types(part)
+	return types
 
 
 # Returns why the game refuses the first message of tltlc; empty if it accepts it.
