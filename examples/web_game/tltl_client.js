@@ -446,7 +446,7 @@ class LineConnection {
   }
 }
 
-/** Messages over WebSocket, from a page. The program that opened the page is told when they end. */
+/** Messages over WebSocket, from a page. When the connection ends, the page tells the program that opened it. */
 class WebConnection {
   #socket;
   #inbox = new Inbox();
