@@ -34,7 +34,7 @@ def test_the_connection_and_the_hello_of_a_running_game_share_a_deadline(monkeyp
                 connection.sendall(json.dumps({"hello": HELLO}).encode() + b"\n")
                 connection.recv(1 << 16)
 
-        game = threading.Thread(target=answer)
+        game = threading.Thread(target=answer, daemon=True)
         game.start()
         monkeypatch.setattr("tltl_runtime.wire.session.time", FastClock(0.3 * HANG_S))
         place = f"127.0.0.1:{server.getsockname()[1]}"

@@ -129,10 +129,13 @@ def test_a_game_that_is_started_by_hand_connects(host: str) -> None:
     words = [sys.executable, str(PLAYER), f"--port={port}", f"--host={host}"]
     code = f"import socket, subprocess, time\nwhile subprocess.run({words!r}, stderr=-3).returncode: time.sleep(0.05)"
     with subprocess.Popen([sys.executable, "-c", code]) as starter:
-        env = WireEnv(game)
-        assert float(env.reset()[0]["level"]) == 2
-        env.close()
-        assert starter.wait(HANG_S) == 0
+        try:
+            env = WireEnv(game)
+            assert float(env.reset()[0]["level"]) == 2
+            env.close()
+            assert starter.wait(HANG_S) == 0
+        finally:
+            starter.kill()
 
 
 @pytest.mark.parametrize(

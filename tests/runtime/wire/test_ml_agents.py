@@ -102,10 +102,13 @@ def test_a_game_in_the_editor_connects(host: str) -> None:
     port, place = free_place(host)
     words = [sys.executable, str(PLAYER), "--mlagents-port", str(port), f"--host={place.rpartition(':')[0]}"]
     with subprocess.Popen(words) as game:
-        env = WireEnv(WireGame("row", GAMES, connect=place, start_s=HANG_S, protocol=ML_AGENTS))
-        assert env.reset()[0]["VectorSensor_size2"][0] in (1, 2)
-        env.close()
-        assert game.wait(HANG_S) == 0
+        try:
+            env = WireEnv(WireGame("row", GAMES, connect=place, start_s=HANG_S, protocol=ML_AGENTS))
+            assert env.reset()[0]["VectorSensor_size2"][0] in (1, 2)
+            env.close()
+            assert game.wait(HANG_S) == 0
+        finally:
+            game.kill()
 
 
 @pytest.mark.parametrize(
