@@ -244,6 +244,7 @@ def test_episodes_that_are_lost_in_the_search_are_reported(tmp_path: Path) -> No
     assert report.lost.text.startswith("2 episodes were lost: the game `counter.game.toml` ended with exit status 3")
 
 
+@pytest.mark.slow
 def test_a_training_with_a_search_does_not_resume_without_one(tmp_path: Path) -> None:
     # The game is lost in all three measurements of the resumed training, and then no more.
     level = mortal(tmp_path, "exit", 1002, 1003, 1004)
