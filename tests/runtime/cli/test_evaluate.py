@@ -292,6 +292,11 @@ def test_a_signal_ends_it_with_a_report_of_the_played_episodes(
             2,
             "error[TLT0700]: `s.toml` is not a spec: if it is a level, write `--level s.toml:v1`",
         ),
+        (
+            ("POLICY", "--spec", "s.game.toml:hall"),
+            2,
+            "error[TLT0700]: `s.game.toml` is not a spec: if it is a scene of your game, write `--game",
+        ),
         (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
         (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),
         (("POLICY", "--out", "-"), 2, "error[TLT0700]: invalid value for '--output'"),

@@ -224,6 +224,32 @@ def test_the_shipped_policy_is_suggested_for_a_copy_of_its_level(tmp_path: Path)
     )
 
 
+@pytest.mark.parametrize(
+    ("keys", "error"),
+    [
+        (
+            'scene = "hall:icy"\npolicy = "navigation"',
+            ("TLT0803", "`hall:icy` is not the name of a scene", 'write `scene = "hall"`, `variant = "icy"`'),
+        ),
+        (
+            'scene = "hall"',
+            (
+                "TLT0853",
+                "no policy comes with the scene `{folder}/lake.game.toml:hall`",
+                'name a policy that you trained, e.g. `policy = "training/hall"`',
+            ),
+        ),
+    ],
+)
+def test_a_scene_needs_keys_of_its_own_for_its_variant_and_its_policy(
+    tmp_path: Path, keys: str, error: tuple[str, str, str]
+) -> None:
+    (tmp_path / "lake.game.toml").write_text('[game]\ngymnasium = "FrozenLake-v1"\n\n[[scene]]\nname = "hall"\n')
+    code, title, help_ = error
+    errors = refused(tmp_path, f'game = "lake.game.toml"\n{keys}')
+    assert errors == [(code, title.format(folder=tmp_path), help_)]
+
+
 @pytest.mark.parametrize("key", ["name", "variant", "reference", "spec", "policy", "overlay", "level"])
 def test_an_empty_text_is_rejected(tmp_path: Path, key: str) -> None:
     keys = {"level": "navigation", key: ""}

@@ -14,7 +14,7 @@ import click
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.interfaces.cli.settings import CompileSettings, check_libraries, compile_settings
-from tltlc.io.project import Project, project_for
+from tltlc.io.project import GAME_SUFFIX, Project, project_for
 from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, read, split
 
 if TYPE_CHECKING:
@@ -68,6 +68,8 @@ def open_input(argument: str, settings: CompileSettings, specs: Sequence[str] = 
     path, name = split(argument)
     if path.endswith(".toml"):
         message = f"`{path}` is not a spec; if it is a level, check it with `tltlc check --level {path}`"
+        if path.endswith(GAME_SUFFIX):
+            message = f"`{path}` is not a spec, but a game file; check it with `tltlc check --game {path}`"
         raise click.UsageError(message, click.get_current_context(silent=True))
     spec_names = (*specs, name) if name else tuple(specs)
     check_libraries(settings.libraries)

@@ -60,7 +60,10 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
     path = fileio.split_spec_name(spec)[0] if spec else ""
     if path.endswith(".toml"):
         suggestions = [f"if it contains settings, write `{settings} {quote(path)}`"] if settings else []
-        suggestions.append(f"if it is a level, write `--level {quote(spec or path)}`")
+        if is_scene(split_level(spec or path)[0]):
+            suggestions = [f"if it is a scene of your game, write `--game {quote(spec or path)}`"]
+        else:
+            suggestions.append(f"if it is a level, write `--level {quote(spec or path)}`")
         raise click.UsageError(f"`{path}` is not a spec: {'; '.join(suggestions)}", click.get_current_context())
 
 

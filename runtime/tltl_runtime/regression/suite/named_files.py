@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.level_name import is_scene
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.shipped import shipped_policies
@@ -94,8 +95,10 @@ def level_with_fitting_policy(level: str) -> str | None:
     """Return a level of the package whose policy may fit ``level``; None if there is no such level.
 
     The policy may fit if the specs of the two levels have the same name and the same file name. Then
-    ``level`` may be an edited copy.
+    ``level`` may be an edited copy. It fits no scene of a game file.
     """
+    if is_scene(level):
+        return None
     game = game_of(level)
     with suppress(TltlError):
         levels_by_spec = {_spec_names(game.load_level(name)): name for name in shipped_policies()}

@@ -305,6 +305,10 @@ def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
         return "", ""
     if not fileio.is_file(folder / file):
         table.log.append(_missing_file_error("game", file, table.label_of("game")))
+    if ":" in scene:
+        name, _, variant = scene.partition(":")
+        title, help_ = f"`{scene}` is not the name of a scene", f'write `scene = "{name}"`, `variant = "{variant}"`'
+        table.log.append(Diagnostic("TLT0803", title, (table.label_of("scene"),), help_))
     ending = f":{scene}" if scene else ""
     return f"{folder / file}{ending}", f"{Path(normpath(file)).as_posix()}{ending}"
 
@@ -361,7 +365,8 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
     if not name or name in shipped_policies():
         shipped = shipped_policy(name or level)
         if shipped is None and level and not table.log:
-            title, label = f"no policy comes with the level `{level}`", table.label_of("level")
+            title = f"no policy comes with the {'scene' if is_scene(level) else 'level'} `{level}`"
+            label = table.label_of("game" if is_scene(level) else "level")
             help_ = f'name a policy that you trained, e.g. `policy = "training/{level_stem(level)}"`'
             if related_level := level_with_fitting_policy(level):
                 help_ += f', or the one for the same spec that comes with tltlc: `policy = "{related_level}"`'
