@@ -110,6 +110,7 @@ def test_limits_end_with_the_bounded_block() -> None:
     assert (result.returncode, result.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_no_exception_handler_can_ignore_the_time_limit() -> None:
     script = (
         "permit(ProcessLimit(memory=0, work_s=1))\n"

@@ -66,6 +66,7 @@ def test_hostile_texts_do_not_become_code(tmp_path: Path, data: st.DataObject) -
             assert programs.run((number, trace_of(samples, [name, "health"]))) == [expected(fspa, samples)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("every", [5, pytest.param(1, marks=pytest.mark.slow)])
 def test_hostile_names_stay_distinct(tmp_path: Path, every: int) -> None:
     """Each atom reads a signal of the same name; the names are awkward ones, and all words of the generated file.

@@ -150,6 +150,7 @@ def test_lists_have_an_empty_line_before_them(page: Path) -> None:
     assert re.findall(r"^(?![-*] |\d+\. |\s).+\n(?:[-*]|\d+\.) .*$", text, re.MULTILINE) == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
 def test_the_search_works_without_a_server(site: Path) -> None:
     wrong: list[str] = []

@@ -58,6 +58,7 @@ def editor(tmp_path: Path) -> Iterator[Neovim]:
     started.end()
 
 
+@pytest.mark.slow
 def test_an_editing_session_works_from_its_first_to_its_last_key(editor: Neovim) -> None:
     editor.keys(":edit main.tltl<CR>")
     editor.until(lambda: editor.lua("vim.bo.filetype") == "tltl", "the file")

@@ -67,6 +67,7 @@ def test_neighbouring_files_are_read_only_if_something_seems_unused(
         analyse(Request(SourceFile(str(tmp_path / "library.tltl"), LIBRARY), (), {}, {}))
 
 
+@pytest.mark.slow
 def test_uses_in_unsaved_texts_count_as_uses(client: Client, tmp_path: Path) -> None:
     write(tmp_path, library=LIBRARY, main=MAIN)
     library = client.open(tmp_path / "library.tltl", LIBRARY)

@@ -72,6 +72,7 @@ def is_answered(server: PlaygroundServer) -> bool:
     return json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()  # type: ignore[no-any-return]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="raises a limit that only POSIX has")
 @pytest.mark.parametrize("data", [b"", b"GET / HT", b"POST /api HTTP/1.1\r\nHost: localhost\r\nA"], ids=repr)
 @pytest.mark.usefixtures("room")

@@ -29,6 +29,8 @@ from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
 
+pytestmark = pytest.mark.slow
+
 CLONING = {"value", "cloning", "discriminator", "discriminator_theirs", "discriminator_agents"}
 GAIL = {"value", "surrogate", "entropy", "discriminator", "discriminator_theirs", "discriminator_agents"}
 

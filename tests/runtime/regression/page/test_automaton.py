@@ -97,6 +97,7 @@ def test_the_picture_has_no_ids_and_no_links(root: ElementTree.Element) -> None:
     assert not any("href" in key for element in root.iter() for key in element.attrib)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("episodes", [samples.navigation, samples.cover_and_hide_met, samples.branching])
 def test_state_names_do_not_cover_distances(episodes: Callable[[], tuple[Episode, ...]]) -> None:
     fspa, empty = episodes()[0].fspa, traffic([])

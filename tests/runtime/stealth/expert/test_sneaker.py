@@ -55,6 +55,7 @@ def test_the_walker_does_not_crouch_and_is_seen() -> None:
     assert crouched == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "variant", "seeds"),
     [
