@@ -119,8 +119,9 @@ def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
     # The parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     end_with_parent()
-    # A program that the game starts would keep the pipe open after the end of this process.
-    os.set_inheritable(connection.fileno(), False)
+    if os.name != "nt":
+        # A program that the game starts would keep the pipe open after the end of this process.
+        os.set_inheritable(connection.fileno(), False)
     player: EpisodePlayer | None = None
     try:
         while True:

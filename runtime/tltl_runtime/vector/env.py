@@ -39,7 +39,7 @@ Other keys are returned only at a reset and at the end of an episode.
 """
 
 TIMEOUT_S: Final = 60.0
-"""For so many seconds a worker may be silent, unless ``timeout`` says another time."""
+"""The seconds for which a worker may be silent, unless ``timeout`` is given."""
 
 _ALL: Final = slice(None)
 _SEEDS: Final = 2**31

@@ -179,8 +179,8 @@ class WireSession:
         """End the game after an error, and return the exception to raise.
 
         This is a WireError if the error is about the game, else the error itself. ``kind`` is the request
-        to which no good answer came, and ``patience`` how many seconds the game had for it. If it is a
-        ``hello`` that breaks the protocol, the game is told why it is refused.
+        to which no good answer came, and ``patience`` how many seconds the game had for it. If the game's
+        ``hello`` breaks the protocol, tltlc first sends the game the reason.
         """
         if kind == "hello" and isinstance(error, MalformedMessageError) and self._game.protocol == TLTL:
             self._say_last(Refusal(str(error)).message())

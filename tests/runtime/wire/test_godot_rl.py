@@ -216,22 +216,6 @@ def test_the_hash_notices_the_protocol(game: Path) -> None:
     assert scene_hash(read_game_file(game), "row") != before
 
 
-def test_the_port_of_another_program_is_reported() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        place = f"127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: .* in use") as caught:
-            WireEnv(WireGame("row", GAMES, connect=place, protocol=GODOT_RL))
-    advice = "end the other program that uses this port; it may be another tltlc, or Godot RL Agents"
-    assert caught.value.diagnostics[0].help == advice
-
-
-def test_an_address_of_another_machine_is_reported() -> None:
-    place = "192.0.2.1:5000"  # This address is for documentation only.
-    with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: ") as caught:
-        WireEnv(WireGame("row", GAMES, connect=place, protocol=GODOT_RL))
-    assert (caught.value.diagnostics[0].help or "").startswith("in the game file, give `connect` an address of this")
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="the player is started by a shell")
 @pytest.mark.usefixtures("game")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -150,22 +149,6 @@ def test_a_picture_as_png_is_refused() -> None:
     env = WireEnv(player("--fault=png"))
     with pytest.raises(WireError, match="sent `CameraSensor` as a PNG: set the compression of this sensor to None"):
         env.reset()
-
-
-def test_the_port_of_another_program_is_reported() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        place = f"127.0.0.1:{server.getsockname()[1]}"
-        with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: .* in use") as caught:
-            WireEnv(WireGame("row", GAMES, connect=place, protocol=ML_AGENTS))
-    advice = "end the other program that uses this port; it may be another tltlc, or `mlagents-learn`"
-    assert caught.value.diagnostics[0].help == advice
-
-
-def test_an_address_of_another_machine_is_reported() -> None:
-    place = "192.0.2.1:5000"  # This address is for documentation only.
-    with pytest.raises(WireError, match=f"TLT0790: cannot wait for a game at `{place}`: ") as caught:
-        WireEnv(WireGame("row", GAMES, connect=place, protocol=ML_AGENTS))
-    assert (caught.value.diagnostics[0].help or "").startswith("in the game file, give `connect` an address of this")
 
 
 def test_a_missing_package_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

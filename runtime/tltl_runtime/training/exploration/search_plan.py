@@ -42,12 +42,9 @@ _STEPS: Final = 200
 _REPEAT_PROBABILITY: Final = 0.7
 """The probability that an action is that of the step before, so that the player gets around."""
 _MEASUREMENTS: Final = 3
-"""A game that is lost while it is measured is started and measured again, this many times in all.
-
-Its first reset is tried so many times, too.
-"""
+"""How often tltlc measures a game at most, and how often it tries its first reset: it starts a lost game again."""
 _RESTORES: Final = 4
-"""So many snapshots are restored, each in another episode."""
+"""How many snapshots are restored, each in another episode."""
 _BEFORE_SNAPSHOT: Final = 20
 _AFTER_SNAPSHOT: Final = 50
 

@@ -31,7 +31,7 @@ from tltl_runtime.wire.errors import WireError
 BATCH: Final = 256
 """The number of decisions that are drawn for one optimiser step."""
 _REPLAYS: Final = 3
-"""A demonstration in which the game is lost is replayed so many times in all."""
+"""How often a demonstration is replayed at most, if the game is lost each time."""
 
 
 class SelfImitation:
