@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any, Final
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.wire.document import a_list, a_number, a_text, an_object, member, wrong
+from tltl_runtime.wire.document import a_number, a_text, an_object, member, wrong
 from tltl_runtime.wire.errors import MalformedMessageError
 from tltl_runtime.wire.hello import POSITIONS, DeclaredSignal, Hello
 from tltl_runtime.wire.json_text import shortened, value_text
@@ -22,6 +23,8 @@ SNAPSHOT: Final = "snapshot"
 SCREENSHOT: Final = "screenshot"
 ERROR: Final = "error"
 _INFINITE: Final = (inf, -inf)
+_NUMBERS: Final = (float, int)
+_LARGEST: Final = sys.float_info.max
 _KINDS: Final = ("hello", STATE, SNAPSHOT, SCREENSHOT, ERROR)
 
 Position = tuple[float, ...]
@@ -153,14 +156,17 @@ def screenshot(message: Any) -> NDArray[np.uint8]:
 
 
 def _positions(value: Any) -> dict[str, Position]:
-    table = an_object(value, "state.positions")
-    points = {}
-    for name, point in table.items():
-        path = member("state.positions", name)
-        if len(a_list(point, path)) not in (2, 3):
-            raise wrong(path, "a list of two or three numbers", point)
-        points[name] = tuple([a_number(number, path) for number in point])
-    return points
+    return {name: _position(name, point) for name, point in an_object(value, "state.positions").items()}
+
+
+def _position(name: str, point: Any) -> Position:
+    # The path is only needed for an error, and to write it takes longer than to read the numbers.
+    if type(point) is not list or len(point) not in (2, 3):
+        raise wrong(member("state.positions", name), "a list of two or three numbers", point)
+    for number in point:
+        if type(number) not in _NUMBERS or not -_LARGEST <= number <= _LARGEST:
+            a_number(number, member("state.positions", name))
+    return tuple(map(float, point))
 
 
 def _other_signals(values: Mapping[str, Any], declared: Mapping[str, DeclaredSignal]) -> MalformedMessageError:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.wire.document import a_list, a_text, a_whole_number, an_object, member, wrong
 from tltl_runtime.wire.errors import MalformedMessageError
+from tltl_runtime.wire.json_text import value_text
 from tltlc.api import fileio
 
 _MOST_AXES: Final = fileio.limits.WIRE_HELLO.depth or 0
@@ -123,14 +124,17 @@ def _float_reader(space: spaces.Box, path: str) -> Reader:
 
     def read(value: Any) -> NDArray[Any]:
         array = _shaped(value, path, space.shape)
-        with np.errstate(over="ignore"):
-            result: NDArray[Any] = array.astype(kind)
+        if array.dtype == kind:
+            result: NDArray[Any] = array.copy()
+        else:
+            with np.errstate(over="ignore"):
+                result = array.astype(kind)
         if not ((result >= low) & (result <= high)).all():
             if not np.isfinite(array).all():
                 raise MalformedMessageError(f"sent `{path}` with a number that is not finite")
             if not np.isfinite(result).all():
                 raise MalformedMessageError(f"sent `{path}` with numbers that are too large for {kind}")
-            raise MalformedMessageError(f"sent `{path}` with numbers outside the declared range")
+            raise _out_of_range(path, array, (result >= low) & (result <= high), space.low, space.high)
         return result
 
     return read
@@ -144,11 +148,24 @@ def _whole_number_reader(space: Space[Any], path: str) -> Reader:
         if array.dtype.kind == "f" and not (np.isfinite(array).all() and (array == np.trunc(array)).all()):
             raise MalformedMessageError(f"sent `{path}` with numbers that are not whole, but declared {space.dtype}")
         # Compare before the conversion, which would wrap numbers around.
-        if not ((array >= low) & (array <= high)).all():
-            raise MalformedMessageError(f"sent `{path}` with numbers outside the declared range")
+        in_range = (array >= low) & (array <= high)
+        if not in_range.all():
+            raise _out_of_range(path, array, in_range, low, high)
         return array.astype(space.dtype)
 
     return read
+
+
+def _out_of_range(
+    path: str, array: NDArray[Any], in_range: NDArray[np.bool_], low: Any, high: Any
+) -> MalformedMessageError:
+    """Return the error for the first number that is not in its range; bounds are one for all, or have the shape."""
+    index = tuple(np.argwhere(~in_range)[0].tolist())
+    least, most = (np.broadcast_to(bound, array.shape)[index] for bound in (low, high))
+    place = path + "".join(f"[{number}]" for number in index)
+    return MalformedMessageError(
+        f"sent {value_text(array[index].item())} as `{place}`, outside its declared range from {least:g} to {most:g}"
+    )
 
 
 def _shaped(value: Any, path: str, shape: tuple[int, ...] | None) -> NDArray[Any]:

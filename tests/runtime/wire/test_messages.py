@@ -128,7 +128,7 @@ def test_an_empty_cause_is_an_unknown_one() -> None:
         ("state/signals/seen", 1, "sent `state.signals.seen` as 1, but it must be true or false"),
         ("state/signals/sen", True, "sent the signal `sen`, which it did not declare; did you mean `seen`?"),
         ("state/signals", {"seen": True}, "did not send the signal `position`, which it declared"),
-        ("state/observation", [11], "sent `state.observation` with numbers outside the declared range"),
+        ("state/observation", [11], "sent 11 as `state.observation[0]`, outside its declared range from 0 to 10"),
         ("state/ended", 0, "sent `state.ended` as 0, but it must be true or false"),
         ("state/cause", 7, "sent `state.cause` as 7, but it must be a text"),
         (
