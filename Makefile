@@ -112,9 +112,9 @@ vscode:
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
 
-# Install the checkers that tests use, each in a folder of its own: gdtoolkit needs another version of lark than tltlc.
+# Install what only tests use, each in a folder of its own: gdtoolkit needs another version of lark than tltlc.
 checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc $(VENV)/pyodide/node_modules/pyodide \
-    $(VENV)/onnxruntime-web/node_modules/onnxruntime-web
+    $(VENV)/onnxruntime-web/node_modules/onnxruntime-web $(VENV)/vizdoom/vizdoom
 
 $(VENV)/gdtoolkit/bin/gdparse:
 	$(PYTHON) -m venv $(VENV)/gdtoolkit
@@ -128,6 +128,10 @@ $(VENV)/pyodide/node_modules/pyodide:
 
 $(VENV)/onnxruntime-web/node_modules/onnxruntime-web:
 	npm install --prefix $(VENV)/onnxruntime-web --silent --no-audit --no-fund --ignore-scripts onnxruntime-web@1.30.0
+
+# Without what it depends on, because pygame-ce would replace the files of pygame.
+$(VENV)/vizdoom/vizdoom: | $(VENV)/bin/python
+	$(PIP) install --no-deps --target $(VENV)/vizdoom vizdoom==1.3.2
 
 clean:
 	rm -rf $(VENV) demo site build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

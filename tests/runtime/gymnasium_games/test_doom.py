@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,9 @@ from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.scene_env import make_scene_env
 
+# The folder of the package ViZDoom, if it is not among the installed packages.
+if folder := os.environ.get("VIZDOOM"):
+    sys.path.append(os.path.dirname(folder))
 pytest.importorskip("vizdoom")
 
 Run = Callable[..., Outcome]
