@@ -1,10 +1,10 @@
 """A description of the encoders that a network has before its fully connected layers.
 
 Numbers are scaled, categories become one-hot vectors, and each image or grid goes through
-convolutions. A number is scaled to [-1, 1] by its bounds; without bounds, by a running mean and
-deviation. An image is scaled to [0, 1]. A cell of a grid holds categories, which are numbers
-without an order. Each category becomes its eight bits. So the network can tell any two categories
-apart, and nobody need list the categories of the game.
+convolutions. A number with bounds within [-1, 1] is scaled to [-1, 1] by them; any other number by a
+running mean and deviation. An image is scaled to [0, 1]. A cell of a grid holds categories, which
+are numbers without an order. Each category becomes its eight bits. So the network can tell any two
+categories apart, and nobody need list the categories of the game.
 
 The first convolution of a grid has no stride, because neighbouring cells mean different things. To
 both grids and images, convolutions with the network's stride are added until the result is at most
@@ -29,6 +29,8 @@ NORMALIZER: Final = "normalizer."
 DEVIATIONS: Final = "distribution.log_deviation"
 """The name of the logarithms of the standard deviations of an action's numbers."""
 
+_LEAST_UNBOUNDED: Final = 0.01
+"""The least running deviation of a number without two bounds."""
 _LONGEST: Final = 10
 """Convolutions with a stride are added until both sides of the result are at most this long, in cells."""
 
@@ -92,13 +94,21 @@ def initial_scale(layouts: SpaceLayouts) -> tuple[list[float], list[float]]:
     return [middle for middle, _ in pairs], [half for _, half in pairs]
 
 
-def unbounded(layouts: SpaceLayouts) -> list[bool]:
-    """Return for each number of an observation whether a running mean and deviation scale it.
+def least_deviations(layouts: SpaceLayouts) -> list[float]:
+    """Return for each number of an observation the least running deviation; 0 if its bounds scale it.
 
-    This is so for a number without two bounds.
+    Bounds within [-1, 1] scale a number. Wider bounds are often far beyond what the game ever reaches, so
+    a running mean and deviation scale such a number. Its deviation is at least a twentieth of half the
+    range, but at most 0.5, so that a flag that is rarely 1 does not become huge.
     """
     bounds = [pair for part in layouts.observation if part.kind == "numbers" for pair in part.bounds]
-    return [low is None or high is None for low, high in bounds]
+    return [_least_deviation(low, high) for low, high in bounds]
+
+
+def _least_deviation(low: float | None, high: float | None) -> float:
+    if low is None or high is None:
+        return _LEAST_UNBOUNDED
+    return 0.0 if low >= -1 and high <= 1 else min((high - low) / 40, 0.5)
 
 
 def encoded_width(layouts: SpaceLayouts, network: Network) -> int:

@@ -16,9 +16,9 @@ from tltl_runtime.policies.spaces.encoder_plan import (
     convolutions,
     encoded_width,
     initial_scale,
+    least_deviations,
     map_parts,
     number_count,
-    unbounded,
 )
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
@@ -94,16 +94,17 @@ class SpaceModel(MLPModel):
 class Normalizer(nn.Module):
     """Scales the numbers of observations [batch, numbers].
 
-    A number with two bounds is scaled to [-1, 1], any other number by a running mean and deviation.
-    A running deviation is at least 1e-2: otherwise a number that has hardly changed so far would
-    become huge as soon as it changes. ``count`` is the number of observations from which the
-    running values were computed.
+    A number with bounds within [-1, 1] is scaled to [-1, 1] by them, any other number by a running mean
+    and deviation. A running deviation has a least value, see
+    :func:`~tltl_runtime.policies.spaces.encoder_plan.least_deviations`: otherwise a number that has
+    hardly changed so far would become huge as soon as it changes. ``count`` is the number of
+    observations from which the running values were computed.
     """
 
     mean: Tensor
     deviation: Tensor
     count: Tensor
-    _running: Tensor
+    _least: Tensor
 
     def __init__(self, layouts: SpaceLayouts) -> None:
         super().__init__()
@@ -111,7 +112,7 @@ class Normalizer(nn.Module):
         self.register_buffer("mean", torch.tensor(middle))
         self.register_buffer("deviation", torch.tensor(half))
         self.register_buffer("count", torch.zeros(1))
-        self.register_buffer("_running", torch.tensor(unbounded(layouts)), persistent=False)
+        self.register_buffer("_least", torch.tensor(least_deviations(layouts)), persistent=False)
 
     def forward(self, numbers: Tensor) -> Tensor:
         """Return the scaled numbers [batch, numbers], clipped to [-FARTHEST, FARTHEST]."""
@@ -123,7 +124,8 @@ class Normalizer(nn.Module):
         With several processes, all must call this method. Source of the formulas: Chan, Golub and
         LeVeque, 1979.
         """
-        if not self._running.any():
+        is_running = self._least > 0
+        if not is_running.any():
             return
         batch = numbers.double()
         added = torch.stack([torch.full_like(batch[0], len(batch)), batch.sum(0), batch.square().sum(0)]).cpu()
@@ -139,8 +141,9 @@ class Normalizer(nn.Module):
             (1 - share) * old + share * variance + share * (1 - share) * torch.where(self.count > 0, delta, 0).square()
         )
         new_mean = torch.where(self.count > 0, self.mean.double() + share * delta, mean)
-        self.mean.copy_(torch.where(self._running, new_mean, self.mean.double()))
-        self.deviation.copy_(torch.where(self._running, mixed.sqrt().clamp(min=1e-2), self.deviation.double()))
+        self.mean.copy_(torch.where(is_running, new_mean, self.mean.double()))
+        new_deviation = torch.maximum(mixed.sqrt(), self._least.double())
+        self.deviation.copy_(torch.where(is_running, new_deviation, self.deviation.double()))
         self.count.copy_(total)
 
 

@@ -142,18 +142,25 @@ def test_sharpening_makes_likely_choices_likelier_and_numbers_less_scattered() -
 
 
 def test_running_scales_are_those_of_all_batches_together() -> None:
-    low, high = np.array([-1.0, -np.inf, 0.0], np.float32), np.array([3.0, np.inf, np.inf], np.float32)
+    low, high = np.array([-1.0, -np.inf, -100.0], np.float32), np.array([0.5, np.inf, 100.0], np.float32)
     layouts = SpaceLayouts(observation_layout(spaces.Box(low, high)), action_layout(MIXED))
     normalizer = Normalizer(layouts)
     generator = torch.Generator().manual_seed(0)
-    batches = [torch.randn(count, 3, generator=generator) * torch.tensor([1.0, 40.0, 0.1]) + 7 for count in (5, 60, 1)]
+    batches = [torch.randn(count, 3, generator=generator) * torch.tensor([1.0, 40.0, 2.0]) + 7 for count in (5, 60, 1)]
     for batch in batches:
         normalizer.update(batch)
     every = torch.cat(batches)
-    torch.testing.assert_close(normalizer.mean, torch.cat([torch.tensor([1.0]), every.mean(0)[1:]]))
+    torch.testing.assert_close(normalizer.mean, torch.cat([torch.tensor([-0.25]), every.mean(0)[1:]]))
     deviation = every.std(0, correction=0)[1:]
-    torch.testing.assert_close(normalizer.deviation, torch.cat([torch.tensor([2.0]), deviation]))
+    torch.testing.assert_close(normalizer.deviation, torch.cat([torch.tensor([0.75]), deviation]))
     assert normalizer.count.item() == len(every)
+
+
+def test_a_flag_that_is_rarely_set_does_not_become_huge() -> None:
+    layouts = SpaceLayouts(observation_layout(spaces.Box(-10, 10, (1,))), action_layout(MIXED))
+    normalizer = Normalizer(layouts)
+    normalizer.update(torch.zeros(100, 1))
+    assert normalizer(torch.ones(1, 1)).item() == pytest.approx(2.0)
 
 
 @pytest.mark.slow
