@@ -146,7 +146,7 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     ) -> Iterator[SceneEpisode]:
         """Yield an episode of the game's own expert, ``tltl_expert``, for each seed."""
         del careful
-        choose = env.get_wrapper_attr("scene_expert")()
+        choose = env.get_wrapper_attr("scene_expert")(env.get_wrapper_attr("task"))
         for seed in seeds:
             observation, _ = env.reset(seed=seed)
             over = False

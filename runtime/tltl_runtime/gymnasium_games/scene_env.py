@@ -22,6 +22,7 @@ from tltl_runtime.gymnasium_games.game_modules import folder_first, import_funct
 from tltl_runtime.gymnasium_games.outline_reader import OutlineError, read_outline
 from tltl_runtime.gymnasium_games.process_games import env_in_process, signals_in_process
 from tltl_runtime.gymnasium_games.value_text import type_text
+from tltl_runtime.spec.task import Task
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
@@ -127,13 +128,15 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         with guarded(self._game, RAISES, "the game's `tltl_cause`", self._label):
             return str(self.env.get_wrapper_attr("tltl_cause")() or "")
 
-    def scene_expert(self) -> Callable[[Any], Any]:
+    def scene_expert(self, task: Task) -> Callable[[Any], Any]:
         """Return the function with which the game's own expert chooses an action for an observation.
 
+        ``tltl_expert`` gets ``task``, the spec that judges the expert, if it has a parameter of that name.
         Both this method and the function raise TltlError, TLT0781, if the game raises an exception.
         """
         with guarded(self._game, RAISES, "the game's `tltl_expert`", self._label):
-            choose = self.env.get_wrapper_attr("tltl_expert")().choose
+            make = self.env.get_wrapper_attr("tltl_expert")
+            choose = (make(task=task) if "task" in (_keywords(make) or ()) else make()).choose
 
         def guarded_choice(observation: Any) -> Any:
             with guarded(self._game, RAISES, "the game's expert", self._label):

@@ -253,6 +253,41 @@ def test_the_expert_of_a_game_demonstrates(tltlc: Run, tmp_path: Path, monkeypat
     assert "2 of 2 demonstrations are in kept" in recorded.out
 
 
+EXPERT_OF_ANY_SPEC = """
+
+class Expert:
+    def __init__(self, fspa):
+        self.fspa = fspa
+
+    def choose(self, observation):
+        state = int(observation["automaton"].argmax())
+        distances = [state.distance for state in self.fspa.states]
+        nearer = [edge for edge in self.fspa.edges_from(state) if distances[edge.target] == distances[state] - 1]
+        wanted = {atom for edge in nearer for prime in edge.guard.primes for atom, holds in prime if holds}
+        return 2 if "has_key" in {self.fspa.atoms[atom].name for atom in wanted} else 1
+
+
+class Guided(Corridor):
+    def tltl_expert(self, skill="high", *, task):
+        assert skill == "high"
+        return Expert(task.fspa)
+
+
+def make(scene, length=5, render_mode=None):
+    return Guided(length, render_mode)
+"""
+
+
+def test_an_expert_gets_the_automaton_of_the_spec(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path, corridor__py=games.GRID + EXPERT_OF_ANY_SPEC)
+    result = tltlc("demonstrate", "corridor.game.toml:short", "--episodes", "2", "-o", "runs")
+    assert result.out.count("success after") == 2, result.err
+    (tmp_path / "key.tltl").write_text("clock 10 Hz signal has_key: bool spec key { reach has_key limit 9 s }")
+    other = tltlc("demonstrate", "corridor.game.toml:short", "--spec", "key.tltl:key", "-o", "keys")
+    assert other.out.count("success after") == 1, other.err
+
+
 def test_a_game_without_an_expert_is_refused(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     monkeypatch.chdir(tmp_path)
     games.write(tmp_path)
