@@ -13,6 +13,7 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.game.level_name import split_level
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def command(
     from tltl_runtime.game.registry import game_of
 
     with cli.Report() as report:
-        file, variant = split_level(level)
+        file, variant = split_level(level_of_scene(level))
         game = game_of(file)
         loaded = game.load_level(file, variant or "v0")
         if film:

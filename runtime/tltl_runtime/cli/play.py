@@ -14,6 +14,7 @@ from tltl_runtime.cli.support.recording_files import RecordingFiles
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.game.registry import STEALTH, game_named, game_of
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     The spec judges you while you play: the screen shows what remains to be done. Each episode is recorded to a file,
     also if you stop it. `tltlc replay FILE` shows a recording.
     """
-    _play(*split_level(level), spec, seed, out, view, crouch)
+    _play(*split_level(level_of_scene(level)), spec, seed, out, view, crouch)
 
 
 def _play(

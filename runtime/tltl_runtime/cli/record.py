@@ -15,6 +15,7 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.game.level_name import level_option, split_level
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import TltlError, cli
 
 if TYPE_CHECKING:
@@ -130,7 +131,7 @@ def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:
     The default variant is ``v0``.
     """
     if level is not None:
-        file, variant = split_level(level)
+        file, variant = split_level(level_of_scene(level))
         return file, variant or "v0"
     if spec is None:
         raise click.UsageError("say what to play: a level, or a --spec that names one", click.get_current_context())

@@ -15,7 +15,8 @@ from tltl_runtime.cli.support.input_files import read_each
 from tltl_runtime.cli.support.level_options import game_option
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_file, summary_format
-from tltl_runtime.game.level_name import split_level
+from tltl_runtime.game.level_name import is_scene, split_level, split_scene
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import cli
 
 if TYPE_CHECKING:
@@ -145,16 +146,22 @@ def _read(game: str | None, path: str) -> RecordedEpisode:
     """Read the recording ``path``.
 
     ``game``, the value of ``--game``, is None or the scene that was recorded, such as
-    ``FILE.game.toml:SCENE``. With it, the episode can be played again.
+    ``FILE.game.toml:SCENE``; without ``:SCENE``, the scene in the recording. With it, the episode can be
+    played again.
     """
     from tltl_runtime.game.registry import game_of_recording
 
     recorded = game_of_recording(path)
-    if game is not None and recorded.recordings_have_levels:
+    episode: RecordedEpisode = recorded.read_episode(Path(path))
+    if game is None:
+        return episode
+    place, variant = split_level(game)
+    level = level_of_scene(place if split_scene(place)[1] else f"{place}:{episode.level.name}")
+    if recorded.recordings_have_levels and is_scene(level):
         message = f"--game is for recordings of scenes of game files, and `{path}` contains its level: leave it out"
         raise click.UsageError(message, click.get_current_context())
-    episode: RecordedEpisode = recorded.read_episode(Path(path))
-    return episode if game is None else recorded.located(episode, *split_level(game))
+    located: RecordedEpisode = recorded.located(episode, level, variant)
+    return located
 
 
 def _check(episode: RecordedEpisode, report: cli.Report) -> dict[str, bool | None]:

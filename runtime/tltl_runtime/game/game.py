@@ -20,7 +20,7 @@ from tltl_runtime.game.level import UnreachableEntity
 from tltl_runtime.game.level_check import LevelCheck
 from tltl_runtime.game.level_files import LevelFiles, LevelT
 from tltl_runtime.game.level_maps import LevelMaps
-from tltl_runtime.game.level_name import Variant
+from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.pictures import Pictures
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
 from tltl_runtime.game.recording_summary import GameFigures
@@ -292,9 +292,14 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return the episode unchanged, because its recording contains the level.
 
         Raises:
-            TltlError: there is no such level, or the episode was played on another one.
+            TltlError: TLT0800, there is no such level, or the episode was played on another one.
         """
-        del level, variant
+        recorded, name = episode.level, self.level_files.level_name(level)
+        wanted = recorded.variant if variant is None else parse_variant(variant).title
+        if (recorded.name, recorded.variant) != (name, wanted):
+            title = f"the recording is of `{recorded.name}:{recorded.variant}`, not of `{name}:{wanted}`"
+            help_ = "name that one, or none: the recording contains its level"
+            raise TltlError([Diagnostic("TLT0800", title, help=help_)])
         return episode
 
     def check_replay(self, episode: EpisodeT) -> tuple[Diagnostic, ...] | None:

@@ -17,6 +17,9 @@ STEALTH: Final = "stealth"
 GYMNASIUM: Final = "gymnasium"
 """The name that stands for all games that game files (``NAME.game.toml``) describe."""
 
+LEVEL_GAMES: Final = (STEALTH,)
+"""The games that a game file can name with ``levels``: its scenes then stand for their levels."""
+
 _MODULES: Final = {
     STEALTH: "tltl_runtime.stealth.stealth_game",
     GYMNASIUM: "tltl_runtime.gymnasium_games.gymnasium_game",

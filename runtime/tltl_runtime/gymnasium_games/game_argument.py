@@ -10,7 +10,7 @@ from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, SUFFIX, GameFi
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
-_ARGUMENT: Final = re.compile(r"(?P<path>.+?\.toml)(?::(?P<scene>[^:/\\]+))?(?::(?P<variant>[^:/\\]+))?\Z", re.DOTALL)
+_ARGUMENT: Final = re.compile(r"(?P<path>.+?\.toml)(?::(?P<scene>[^:/\\]+))?(?::(?P<variant>[^:]+))?\Z", re.DOTALL)
 
 
 @record
@@ -60,9 +60,12 @@ def variant_of(game: GameFile, scene: str, variant: str = FIRST_VARIANT) -> Scen
     """Return a variant of a scene.
 
     Raises:
-        TltlError: TLT0800, there is no such scene or variant.
+        TltlError: TLT0800, there is no such scene or variant, or the scene stands for a level.
     """
     variants = scene_of(game, scene).variants
+    if game.levels is not None:
+        title = f"the scene `{scene}` of `{game.path.name}` stands for a level of the game `{game.levels}`"
+        raise TltlError([Diagnostic("TLT0800", title, help=f"name the level instead: `{scene}`")])
     if variant not in variants:
         title = f"the scene `{scene}` of `{game.path.name}` has no variant `{variant}`"
         raise TltlError([Diagnostic("TLT0800", title, help=suggestion(variant, variants))])

@@ -5,18 +5,19 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.game.level import LevelSpec, parse_level_spec
+from tltl_runtime.game.registry import LEVEL_GAMES, game_named
 from tltl_runtime.gymnasium_games.key_names import COMMANDS, NAMES
+from tltl_runtime.gymnasium_games.scene_options import read_options
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.support.toml_tree import Entry, Tree, read_tree
+from tltl_runtime.support.toml_tree import Entry, read_tree
 from tltl_runtime.wire.wire_game import PROTOCOLS, START_S, STEP_S, TLTL, WireGame, address
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 
@@ -28,7 +29,7 @@ _LEAST_S, _MOST_S = 0.001, 86_400.0
 """The range of the deadlines ``start_s`` and ``step_s``, in seconds."""
 _HELP: Final = 'write values as in `clock = "10 Hz"` and `options = { size = 6 }`'
 _MODULE: Final = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z", re.ASCII)
-_MAKERS: Final = ("gymnasium", "python", "process", "connect")
+_MAKERS: Final = ("gymnasium", "python", "process", "connect", "levels")
 """The keys of ``[game]`` that say how the environment is made. A game file has exactly one of them."""
 _OF_PROCESSES: Final = ("protocol", "start_s", "step_s")
 """The keys of ``[game]`` that only games in other processes may have."""
@@ -76,9 +77,11 @@ class GameScene:
 class GameFile:
     """A game, as its file at ``path`` describes it.
 
-    One of three fields says how the environment is made; the others are None. ``gymnasium`` is the id of
+    One of four fields says how the environment is made; the others are None. ``gymnasium`` is the id of
     a registered environment, ``python`` a function that returns the environment, and ``wire`` a game in
-    another process. ``modules`` are imported before that, so that they can register the id.
+    another process. ``levels`` is the name of a game of this package: each scene stands for one of its
+    levels, and has no variants of its own (:func:`~tltl_runtime.gymnasium_games.level_scenes.level_of_scene`).
+    ``modules`` are imported before the environment is made, so that they can register the id.
 
     ``signals`` is a function from an environment to its signals, or from an observation if the game
     speaks another protocol than ``tltl``; None if the environment has a method ``tltl_signals``.
@@ -94,6 +97,7 @@ class GameFile:
     gymnasium: str | None
     python: FunctionName | None
     wire: WireGame | None
+    levels: str | None
     modules: tuple[str, ...]
     signals: FunctionName | None
     clock_s: float | None
@@ -158,16 +162,21 @@ class _Reader:
     def game(self, table: CheckedTable) -> GameFile | None:
         """Read the whole file; return None if it has no table ``[game]``."""
         game = table.table("game")
-        scenes = self._scenes(table.tables("scene"), game.label if game else table.label)
+        tables = table.tables("scene")
+        scenes = self._scenes(tables, game.label if game else table.label)
         table.report_unknown_keys({**dict.fromkeys(_GAME_KEYS, "[game]"), **dict.fromkeys(_SCENE_KEYS, "[[scene]]")})
         if game is None:
             return None
+        if "levels" in game.entries:
+            _check_level_keys(game, tables)
+            self._check_levels(game, tables)
         _check_makers(game)
         result = GameFile(
             path=self._path,
             gymnasium=game.text("gymnasium", "") or None,
             python=_function(game, "python"),
             wire=self._wire(game),
+            levels=game.text("levels", "", one_of=LEVEL_GAMES) or None,
             modules=_modules(game),
             signals=_function(game, "signals"),
             clock_s=_clock_s(game),
@@ -179,6 +188,16 @@ class _Reader:
         )
         game.report_unknown_keys(dict.fromkeys(_SCENE_KEYS, "[[scene]]"))
         return result
+
+    def _check_levels(self, game: CheckedTable, scenes: list[CheckedTable]) -> None:
+        """Log an error for each scene whose level does not exist."""
+        levels = game.entries["levels"].value
+        known = game_named(levels).level_files.names() if levels in LEVEL_GAMES else ()
+        for scene in [scene for scene in scenes if known and "name" in scene.entries]:
+            name = str(scene.entries["name"].value)
+            if fileio.is_plain_name(name) and name not in known and not fileio.is_file(self._folder / f"{name}.toml"):
+                title = f"there is no level `{name}`: none comes with tltlc, and there is no file `{name}.toml`"
+                game.log.append(Diagnostic("TLT0805", title, (scene.label_of("name"),), suggestion(name, known)))
 
     def _wire(self, game: CheckedTable) -> WireGame | None:
         """Read how a game in another process is started or found.
@@ -247,7 +266,7 @@ class _Reader:
         options = table.table("options", needed=False)
         files = [self._inside(table, "files", name) for name in table.names("files", ())]
         return SceneVariant(
-            options={**base.options, **(_options(options) if options else {})},
+            options={**base.options, **(read_options(options) if options else {})},
             files=tuple(dict.fromkeys((*base.files, *(file for file in files if file is not None)))),
             spec=self._spec(table) or base.spec,
             label=table.label_of("options"),
@@ -296,11 +315,23 @@ def _check_makers(game: CheckedTable) -> None:
         title = "`[game]` does not say how the environment is made"
         help_ = 'write `gymnasium = "ID"`, `python = "MODULE:FUNCTION"`, or `process = ["COMMAND", "ARGUMENT"]`'
         game.log.append(Diagnostic("TLT0803", title, (game.label,), help_))
-    if not {"process", "connect"} & game.entries.keys():
+    if not {"process", "connect", "levels"} & game.entries.keys():
         for key in _OF_PROCESSES:
             if key in game.entries:
                 title, help_ = f"`{key}` is for games in other processes", "leave it out, or name a `process`"
                 game.log.append(Diagnostic("TLT0802", title, (game.label_of(key),), help_))
+
+
+def _check_level_keys(game: CheckedTable, scenes: list[CheckedTable]) -> None:
+    """Log an error for each key that a game of levels cannot have, and if there is no scene."""
+    others = [(game, key) for key in game.entries if key in _GAME_KEYS and key not in _MAKERS]
+    others += [(scene, key) for scene in scenes for key in scene.entries if key in _SCENE_KEYS and key != "name"]
+    for table, key in others:
+        title, help_ = f"`{key}` is not for scenes that are levels", "leave it out: the level and its game say it"
+        game.log.append(Diagnostic("TLT0802", title, (table.label_of(key),), help_))
+    if not scenes:
+        title, help_ = "`[game]` has `levels`, but there is no scene", "name a level with `name`, under `[[scene]]`"
+        game.log.append(Diagnostic("TLT0803", title, (game.label_of("levels"),), help_))
 
 
 def _modules(game: CheckedTable) -> tuple[str, ...]:
@@ -345,36 +376,6 @@ def _clock_s(table: CheckedTable) -> float | None:
         expected = "a frequency or a period, e.g. `10 Hz` or `0.1 s`"
         table.log.append(wrong_value(table.entries["clock"], "clock", expected))
     return clock_s
-
-
-def _options(table: CheckedTable) -> dict[str, Any]:
-    """Return the options of a scene as plain values; log an error for each value that JSON cannot contain."""
-    values = _values(table.entries)
-    for key, value in values.items():
-        if not _is_plain(value):
-            expected = "finite numbers, texts, true, false, and lists and tables of these"
-            table.log.append(wrong_value(table.entries[key], key, expected))
-    return values
-
-
-def _values(tree: Tree) -> dict[str, Any]:
-    return {key: _value(entry.value) for key, entry in tree.items()}
-
-
-def _value(value: Any) -> Any:
-    if isinstance(value, Entry):
-        return _value(value.value)
-    if isinstance(value, dict):
-        return {key: _value(item) for key, item in value.items()}
-    return [_value(item) for item in value] if isinstance(value, list) else value
-
-
-def _is_plain(value: object) -> bool:
-    if isinstance(value, dict):
-        return all(map(_is_plain, value.values()))
-    if isinstance(value, list):
-        return all(map(_is_plain, value))
-    return isinstance(value, (str, int)) or (isinstance(value, float) and math.isfinite(value))
 
 
 def _check_count(game: GameFile, source: SourceFile) -> None:

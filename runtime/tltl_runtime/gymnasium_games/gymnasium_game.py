@@ -16,7 +16,7 @@ import gymnasium
 from tltl_runtime.game.episode import Cause
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.geometry import Box, Point
-from tltl_runtime.game.level_name import Variant, parse_variant, split_scene
+from tltl_runtime.game.level_name import GAME_FILE, Variant, is_scene, parse_variant, split_scene
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.gymnasium_games.entity_positions import PLAYER
@@ -176,6 +176,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         Raises:
             TltlError: the errors of :meth:`load_level`; TLT0800, the episode was played in another scene.
         """
+        if not is_scene(level):
+            title = f"the recording is of the game `{episode.level.game_name}`, not of the level `{level}`"
+            help_ = f"name the game file with which it was played: `{episode.level.game_name}{GAME_FILE}`"
+            raise TltlError([Diagnostic("TLT0800", title, help=help_)])
         if split_scene(level)[1] is None:
             level = f"{level}:{episode.level.name}"
         here = self.load_level(level, variant or episode.level.variant)

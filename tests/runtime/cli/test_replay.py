@@ -273,9 +273,9 @@ def test_invalid_options_are_rejected(tltlc, recorded: Path, arguments: tuple[st
 
 
 def test_a_recording_with_its_level_takes_no_game(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    result = tltlc("replay", recorded, "--check", "--game", "lake.game.toml:small")
+    result = tltlc("replay", FILE, "--check", "--game", "lake.game.toml:small")
     assert result.status == 2
-    assert f"--game is for recordings of scenes of game files, and `{recorded}` contains its level" in result.err
+    assert f"--game is for recordings of scenes of game files, and `{FILE}` contains its level" in result.err
 
 
 def test_ctrl_c_leaves_no_partial_file(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811

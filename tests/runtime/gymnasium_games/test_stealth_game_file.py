@@ -1,34 +1,52 @@
-"""The stealth game, played through a game file as any other game."""
+"""The stealth game, wrapped and played through a game file as any other game."""
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.interfaces.cli.conftest import ROOT
+pytest.importorskip("pybullet")
+
+from tests.runtime.gymnasium_games import wrapped_stealth
+from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.registry import STEALTH, game_named
 from tltl_runtime.gymnasium_games.game_check import check_scene
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 
-pytest.importorskip("pybullet")
+STEALTH_GAME = game_named(STEALTH)
+TWO_STAGES = """\
+import spatial
+entity s1
+entity s2
+spec two_stages { limit 20 steps
+  reach near(s1) then near(s2)
+}
+"""
+"""The expert reaches the first switch after five steps, and is then on its way to the second."""
 
-GAME_FILE = ROOT / "examples" / "stealth.game.toml"
-SCENES = {scene.name: tuple(scene.variants) for scene in read_game_file(GAME_FILE).scenes}
+
+@pytest.fixture(name="game_file", scope="module")
+def _game_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("wrapped")
+    shutil.copy(wrapped_stealth.__file__, folder)
+    path = folder / "wrapped.game.toml"
+    path.write_text(wrapped_stealth.GAME, encoding="utf-8")
+    return path
 
 
-def test_the_scenes_are_the_levels_that_the_package_ships() -> None:
-    level_files = game_named(STEALTH).level_files
-    assert {name: level_files.variants(name) for name in level_files.names()} == SCENES
+def make_env(game_file: Path, scene: str, spec: str = "") -> Any:
+    return GAME.make_env(f"{game_file}:{scene}", "v0", spec or default_spec(STEALTH_GAME.load_level(scene)))
 
 
-@pytest.mark.parametrize(("scene", "variant"), [(scene, variant) for scene in SCENES for variant in SCENES[scene]])
-def test_a_scene_is_the_same_play_as_its_level(scene: str, variant: str) -> None:
+@pytest.mark.parametrize("scene", ["navigation", "cover_and_hide"])
+def test_a_scene_is_the_same_play_as_its_level(game_file: Path, scene: str) -> None:
     """Equal seeds and actions give equal observations, rewards and ends, through either door."""
-    through_file = GAME.make_env(f"{GAME_FILE}:{scene}", variant)
-    through_level = game_named(STEALTH).make_env(scene, variant)
+    through_file, through_level = make_env(game_file, scene), STEALTH_GAME.make_env(scene)
     assert through_file.task.fspa == through_level.task.fspa
     actions = np.random.default_rng(5)
     observed = through_file.reset(seed=11)[0], through_level.reset(seed=11)[0]
@@ -45,15 +63,28 @@ def test_a_scene_is_the_same_play_as_its_level(scene: str, variant: str) -> None
     through_level.close()
 
 
-def test_a_scene_says_where_things_are() -> None:
-    report = check_scene(read_game_file(GAME_FILE), "navigation", "v0")
-    assert {"params", "clock", "positions", "outline", "cause", "render"} <= set(report.capabilities)
-    env = GAME.recorder(GAME.make_env(f"{GAME_FILE}:navigation"), "tester")
+def test_the_expert_of_a_scene_plays_as_that_of_its_level(game_file: Path) -> None:
+    """The task and the observation tell the expert as much as the environment of the level does."""
+    through_file = GAME.recorder(make_env(game_file, "navigation", TWO_STAGES), "expert")
+    through_level = STEALTH_GAME.recorder(STEALTH_GAME.make_env("navigation", spec=TWO_STAGES), "expert")
+    ours = GAME.expert_episodes(through_file, range(2))
+    for episode, own in zip(ours, STEALTH_GAME.expert_episodes(through_level, range(2)), strict=True):
+        assert 1 in episode.states
+        np.testing.assert_array_equal(episode.actions, own.actions)
+        np.testing.assert_array_equal(episode.rewards, own.rewards)
+    through_file.close()
+    through_level.close()
+
+
+def test_a_scene_says_where_things_are(game_file: Path) -> None:
+    report = check_scene(read_game_file(game_file), "navigation", "v0")
+    assert {"params", "clock", "positions", "outline", "cause", "expert", "render"} <= set(report.capabilities)
+    env = GAME.recorder(make_env(game_file, "navigation"), "tester")
     env.reset(seed=1)
     for _ in range(5):
         env.step(env.action_space.sample())
-    level = GAME.played_level(GAME.load_level(f"{GAME_FILE}:navigation"), [env.episode])
-    own = game_named(STEALTH).load_level("navigation")
+    level = GAME.played_level(GAME.load_level(f"{game_file}:navigation"), [env.episode])
+    own = STEALTH_GAME.load_level("navigation")
     assert {"s1", "s2", "exit"} <= dict(level.landmarks).keys()
     assert level.bounds == own.bounds
     assert [region.name for region in level.regions] == [region.name for region in own.regions]

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import click
 
+from tltl_runtime.cli.support.level_check import check_levels
 from tltl_runtime.gymnasium_games.game_argument import parse_game, scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_check import SceneReport, check_scene
 from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
@@ -32,14 +33,23 @@ def command(
     report: cli.Report,
     allow_outside: bool,
 ) -> None:
-    """Check scenes against the compiled specs ``inputs``; without these, check each against its own spec."""
+    """Check scenes against the compiled specs ``inputs``; without these, check each against its own spec.
+
+    Scenes that stand for levels are checked as ``--level`` checks them.
+    """
     report.facts["scenes"] = []
     for argument in games:
         try:
             chosen = parse_game(argument)
             game = read_game_file(chosen.path, allow_outside=allow_outside)
             check = _GameCheck(game, inputs, settings, report)
-            for scene in game.scenes if chosen.scene is None else (scene_of(game, chosen.scene),):
+            scenes = game.scenes if chosen.scene is None else (scene_of(game, chosen.scene),)
+            if game.levels is not None:
+                variant = "" if chosen.variant is None else f":{chosen.variant}"
+                places = [f"{game.path}:{scene.name}{variant}" for scene in scenes]
+                check_levels(places, inputs, settings, report, sensors={})
+                continue
+            for scene in scenes:
                 if chosen.variant is not None:
                     variant_of(game, scene.name, chosen.variant)
                 for variant in scene.variants if chosen.variant is None else (chosen.variant,):

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from tltl_runtime.game.level import LevelSpec
 from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant
-from tltl_runtime.game.registry import STEALTH, game_named
-from tltl_runtime.gymnasium_games.game_file import SUFFIX, read_game_file
+from tltl_runtime.game.registry import STEALTH, game_named, game_of, shipped_levels
+from tltl_runtime.gymnasium_games.game_file import SUFFIX, GameFile, read_game_file
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.support.path_text import path_text
 from tltlc.api import Diagnostic, TltlError, fileio
 
@@ -24,12 +25,15 @@ def rows(add: Callable[[Sequence[Diagnostic]], object]) -> Iterator[Row]:
     and those of the game that the project file names. ``add`` gets the errors of files that cannot
     be read.
     """
-    yield from _levels(game_named(STEALTH).level_files)
+    yield from _levels(game_named(STEALTH).level_files, shipped_levels())
     for path in _game_files(add):
         try:
             game = read_game_file(path)
         except TltlError as error:
             add(error.diagnostics)
+            continue
+        if game.levels is not None:
+            yield from _scenes_of_levels(game, add)
             continue
         for scene in game.scenes:
             for variant, own in scene.variants.items():
@@ -37,8 +41,21 @@ def rows(add: Callable[[Sequence[Diagnostic]], object]) -> Iterator[Row]:
                 yield {"game": path_text(path), "scene": scene.name, "variant": variant, "spec": spec}
 
 
-def _levels(level_files: LevelFiles[Any]) -> Iterator[Row]:
-    for level in level_files.names():
+def _scenes_of_levels(game: GameFile, add: Callable[[Sequence[Diagnostic]], object]) -> Iterator[Row]:
+    """Yield the rows of a game whose scenes stand for levels; ``add`` gets the errors of levels."""
+    path = path_text(game.path)
+    for scene in game.scenes:
+        level = level_of_scene(f"{game.path}:{scene.name}")
+        try:
+            yield from [
+                {**row, "game": path, "scene": scene.name} for row in _levels(game_of(level).level_files, [level])
+            ]
+        except TltlError as error:
+            add(error.diagnostics)
+
+
+def _levels(level_files: LevelFiles[Any], levels: Iterable[str]) -> Iterator[Row]:
+    for level in levels:
         for variant in level_files.variants(level):
             spec = level_files.load_with_changes(level, Variant(variant))[0].spec
             yield {"game": STEALTH, "scene": level, "variant": variant, "spec": _short_text(spec)}

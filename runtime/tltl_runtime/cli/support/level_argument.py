@@ -12,6 +12,7 @@ import click
 
 from tltl_runtime.game.level_name import GAME_FILE, is_scene, level_file, split_level, with_level_file
 from tltl_runtime.game.registry import game_of, shipped_levels
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.spec.task import read_spec
 from tltlc.api import Diagnostic, TltlError, fileio
 
@@ -43,7 +44,7 @@ def check_named(policy: Path | None, level: str | None) -> None:
     Raises:
         TltlError: the error that reading the policy or the level would raise.
     """
-    if policy is not None and not names_level(str(policy)) and not fileio.exists(policy):
+    if policy is not None and not names_level(level_of_scene(str(policy))) and not fileio.exists(policy):
         check_spelling(str(policy))
         fileio.read_bytes(policy, str(policy), 0)
     if level is not None:
@@ -101,14 +102,14 @@ def own_level(spec: str, how: str = "with --level") -> str:
     if fspa.level is None:
         scene = None if game is None else game.scene_for(Path(path), fspa.name)
         if game is not None and scene is not None:
-            return f"{game.path}:{scene.name}"
+            return level_of_scene(f"{game.path}:{scene.name}")
         message = f"`{fspa.name}` does not name a level: name one {how}"
         raise click.UsageError(message, click.get_current_context())
     beside = Path(path).parent / f"{fspa.level}.toml"
     if fileio.is_file(beside):
         return str(beside)
     if game is not None and fspa.level in [scene.name for scene in game.scenes]:
-        return f"{game.path}:{fspa.level}"
+        return level_of_scene(f"{game.path}:{fspa.level}")
     if fspa.level not in shipped_levels():
         title = (
             f"there is no level `{fspa.level}`: `{beside}` does not exist, and no level of that name comes with tltlc"

@@ -13,6 +13,7 @@ from tltl_runtime.game.capability_error import capability_error
 from tltl_runtime.game.level_check import LevelCheck
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.registry import game_of, shipped_levels
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.support.path_text import path_text
 from tltlc.api import Diagnostic, Fspa, Spec, TltlError, cli, fileio
 
@@ -36,17 +37,33 @@ def command(
     """Check levels against the compiled specs ``inputs``; without these, check each against its own spec."""
     if plan is not None and plan.suffix.lower() != ".png":
         raise click.UsageError(f"--plan writes a .png file, not `{plan}`", click.get_current_context())
+    checked = check_levels(levels, inputs, settings, report, sensors)
+    if plan is not None and checked:
+        _draw(plan, checked)
+
+
+def check_levels(
+    levels: Iterable[str],
+    inputs: Sequence[cli.Input],
+    settings: cli.CompileSettings,
+    report: cli.Report,
+    sensors: Mapping[str, Any],
+) -> list[LevelCheck]:
+    """Check levels against the compiled specs ``inputs``; without these, check each against its own spec.
+
+    ``levels`` are arguments of ``--level``, or scenes that stand for levels. ``sensors`` are those that
+    options set. Return the checks of all levels and variants that can be read.
+    """
     check = _LevelReport(inputs, settings, report, sensors)
     checked: list[LevelCheck] = []
-    for path, variant in map(split_level, levels):
+    for path, variant in map(split_level, map(level_of_scene, levels)):
         for name in shipped_levels() if path == "all" else (path,):
             try:
                 variants = (variant,) if variant else game_of(name).level_files.variants(name)
                 checked += [check(name, variant_name) for variant_name in variants]
             except TltlError as error:
                 report.add(error.diagnostics)
-    if plan is not None and checked:
-        _draw(plan, checked)
+    return checked
 
 
 class _LevelReport:

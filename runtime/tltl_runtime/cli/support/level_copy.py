@@ -7,6 +7,7 @@ from typing import Final
 
 from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.registry import game_of, shipped_levels
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, TltlError, fileio
 
@@ -21,11 +22,13 @@ def files(name: str) -> dict[str, str]:
     """Return the texts of all files of a level, and of a README, by file name.
 
     These are the level's own file, which comes first, its assets and overlays, and its spec. Names are
-    relative to the level's folder. ``name`` is one of :data:`NAMES` or a ``.toml`` file.
+    relative to the level's folder. ``name`` is one of :data:`NAMES`, a ``.toml`` file, or a
+    scene that stands for one of these.
 
     Raises:
         TltlError: TLT0800, there is no such level; the errors of loading it.
     """
+    name = level_of_scene(name)
     if name not in NAMES and not name.endswith(".toml"):
         title = f"there is no level `{name}` to copy"
         raise TltlError([Diagnostic("TLT0800", title, help=suggestion(name, NAMES))])

@@ -9,6 +9,7 @@ from typing import Any, Final, TypeVar
 import click
 
 from tltl_runtime.game.level_name import is_scene, split_level
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -18,7 +19,8 @@ _GAME: Final = "FILE.game.toml[:SCENE[:VARIANT]]"
 def level_options(help_text: str) -> Callable[[Function], Function]:
     """Return a decorator that adds the options ``--level`` and ``--game`` to a command.
 
-    At most one of them may be given. The command gets its value as ``level``; None without both.
+    At most one of them may be given. The command gets its value as ``level``; None without both. For a
+    scene that stands for a level, ``level`` is that level.
     """
 
     def decorate(command: Function) -> Function:
@@ -26,7 +28,8 @@ def level_options(help_text: str) -> Callable[[Function], Function]:
         def with_level(*args: Any, level: str | None, game: str | None, **options: Any) -> Any:
             if level is not None and game is not None:
                 raise click.UsageError("give --level or --game, not both", click.get_current_context())
-            return command(*args, level=level if game is None else game, **options)
+            place = level if game is None else game
+            return command(*args, level=place and level_of_scene(place), **options)
 
         with_game = game_option("The scene of your own game, instead of a level.")(with_level)
         return click.option("--level", metavar="LEVEL[:VARIANT]", help=help_text)(with_game)  # type: ignore[return-value]

@@ -8,6 +8,7 @@ from shlex import quote
 from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
 from tltl_runtime.game.level_name import GAME_FILE, split_level
 from tltl_runtime.game.registry import game_of, shipped_levels
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.training.files.metrics import METRICS, read_metrics
@@ -30,8 +31,8 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
             the file of the policy's level is missing; and the errors of :func:`policy_path`.
     """
     name, variant = (None, None) if level is None else split_level(level)
-    if policy is not None and names_level(str(policy)):
-        policy_level, policy_variant = split_level(str(policy))
+    if policy is not None and names_level(level_of_scene(str(policy))):
+        policy_level, policy_variant = split_level(level_of_scene(str(policy)))
         return policy_file(policy), name or policy_level, variant if name else policy_variant
     if policy is None:
         assert name is not None
@@ -50,7 +51,8 @@ def policy_file(policy: Path) -> Path:
     Raises:
         TltlError: TLT0853, no policy comes with the level; and the errors of :func:`policy_path`.
     """
-    return _shipped_policy_file(split_level(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
+    level = level_of_scene(str(policy))
+    return _shipped_policy_file(split_level(level)[0]) if names_level(level) else policy_path(policy)
 
 
 def check_level_is_shipped(card: Card, policy: Path, command: str) -> None:

@@ -81,6 +81,7 @@ def dependencies(suite: Suite, case: SuiteCase) -> tuple[Path, ...]:
     else:
         files = [suite.path, suite.baseline, policy_file(case.policy)]
         files += game_of(case.level).level_files.dependencies(case.level, case.variant)
+        files += [] if case.game_file is None else [case.game_file]
     if case.spec is not None:
         files += spec_files(Path(fileio.split_spec_name(case.spec)[0]))
     return tuple(

@@ -21,6 +21,7 @@ from tltl_runtime.game.level_name import (
     split_level,
 )
 from tltl_runtime.game.registry import game_of
+from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import (
@@ -65,7 +66,8 @@ class Case:
     episodes, in the baseline, the case is compared. ``spec`` is ``FILE`` or ``FILE:NAME``, or None for
     the spec that the policy was trained for. ``episodes`` is the greatest number of episodes. ``place``
     is the level's path relative to the suite, which distinguishes levels of the same name; it is
-    empty for a level of the package.
+    empty for a level of the package. ``game_file`` is the game file in which a scene stands for the
+    level; None if the case names no such scene.
     """
 
     name: str
@@ -77,6 +79,7 @@ class Case:
     episodes: int
     thresholds: Thresholds
     place: str = ""
+    game_file: Path | None = None
 
     @property
     def plays_reference(self) -> bool:
@@ -230,8 +233,9 @@ def _case(
     base = variant or variant_names[0]
     name = name or f"{_level_name(level)}:{'+'.join((base, *(Path(overlay).stem for overlay in overlays)))}"
     played = Variant(base, overlays)
+    game = folder / table.text("game") if "game" in table.entries and not is_scene(level) else None
     return Case(
-        name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place
+        name, level, played, reference or variant_names[0], spec, policy, episodes, thresholds, place, game
     ), table.label
 
 
@@ -294,7 +298,8 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
 def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
     """Read the keys ``game`` and ``scene`` of a case; return the same pair as :func:`_level`.
 
-    The level is ``FILE.game.toml:SCENE``, without ``:SCENE`` if the case names no scene.
+    The level is ``FILE.game.toml:SCENE``, without ``:SCENE`` if the case names no scene; or the level that
+    this scene stands for.
     """
     file, scene = table.text("game"), table.text("scene", "")
     if not file:
@@ -310,7 +315,11 @@ def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
         title, help_ = f"`{scene}` is not the name of a scene", f'write `scene = "{name}"`, `variant = "{variant}"`'
         table.log.append(Diagnostic("TLT0803", title, (table.label_of("scene"),), help_))
     ending = f":{scene}" if scene else ""
-    return f"{folder / file}{ending}", f"{Path(normpath(file)).as_posix()}{ending}"
+    scene_place = f"{folder / file}{ending}"
+    level = level_of_scene(scene_place)
+    if level == scene_place:
+        return level, f"{Path(normpath(file)).as_posix()}{ending}"
+    return level, Path(normpath(Path(file).with_name(Path(level).name))).as_posix() if level.endswith(".toml") else ""
 
 
 def _separate_keys_help(level: str, variant: Variant) -> str:
