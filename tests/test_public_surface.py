@@ -27,6 +27,7 @@ GOLDEN = Path(__file__).with_name("public_surface.txt")
 FORMATS = {
     "artefact": "tltlc/artefact/encode.py",
     "conformance corpus": "tltlc/tools/conformance/corpus.py",
+    "tape": "tltlc/monitor/tapes.py",
     "policy": "runtime/tltl_runtime/policies/file.py",
     "episode": "runtime/tltl_runtime/stealth/recordings/file.py",
     "episode of a scene": "runtime/tltl_runtime/gymnasium_games/scene_episode_file.py",

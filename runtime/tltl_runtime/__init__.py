@@ -14,16 +14,22 @@ from typing import TYPE_CHECKING
 from tltlc.api import OldNames
 
 if TYPE_CHECKING:
+    from tltl_runtime.game.tape import Tape as Tape
+    from tltl_runtime.game.tape import read_tape as read_tape
+    from tltl_runtime.game.tape import write_tape as write_tape
     from tltl_runtime.spec.task import Task as Task
     from tltl_runtime.spec.task import load_task as load_task
     from tltl_runtime.spec.wrapper import TltlEnv as TltlEnv
 
-__all__ = ["Task", "TltlEnv", "load_task"]
+__all__ = ["Tape", "Task", "TltlEnv", "load_task", "read_tape", "write_tape"]
 
 _HOMES = {
+    "Tape": "tltl_runtime.game.tape",
     "Task": "tltl_runtime.spec.task",
     "TltlEnv": "tltl_runtime.spec.wrapper",
     "load_task": "tltl_runtime.spec.task",
+    "read_tape": "tltl_runtime.game.tape",
+    "write_tape": "tltl_runtime.game.tape",
 }
 
 sys.meta_path.insert(

@@ -2,10 +2,14 @@
 
 ``find_traces`` finds the traces in files and folders, and ``judge_files`` judges them by the automaton
 of a spec. ``clauses_of`` splits the spec into the clauses that a verdict names. ``read_trace`` returns
-the samples of one trace.
+the samples of one trace, and ``read_tape`` the header and the steps of a tape.
 """
 
+from tltlc.monitor.packed import unpacked
 from tltlc.monitor.parquet import as_text
+from tltlc.monitor.tapes import DIGEST_STEPS, TapeDigest, TapeHeader, TapeStep
+from tltlc.monitor.tapes import VERSION as TAPE_VERSION
+from tltlc.monitor.trace_rows import TraceLines, read_tape
 from tltlc.monitor.traces import read_trace
 from tltlc.tools.judge.clauses import clauses_of
 from tltlc.tools.judge.judge import Judge
@@ -14,15 +18,23 @@ from tltlc.tools.judge.trace_files import ENDINGS, TraceFiles, find_traces
 from tltlc.tools.judge.verdict import JudgedTrace, Kind, TraceVerdict
 
 __all__ = [
+    "DIGEST_STEPS",
     "ENDINGS",
+    "TAPE_VERSION",
     "Judge",
     "JudgedTrace",
     "Kind",
+    "TapeDigest",
+    "TapeHeader",
+    "TapeStep",
     "TraceFiles",
+    "TraceLines",
     "TraceVerdict",
     "as_text",
     "clauses_of",
     "find_traces",
     "judge_files",
+    "read_tape",
     "read_trace",
+    "unpacked",
 ]

@@ -151,6 +151,9 @@ JUDGED_TRACE: Final = Limit(size=1 << 25, values=500_000)
 PARQUET: Final = Limit(size=1 << 26, values=3_000_000, unpacked=1 << 28)
 """A trace in Parquet; ``values`` counts the cells of the columns that are read, and the rows."""
 
+TAPE: Final = Limit(size=1 << 26, unpacked=1 << 26)
+"""A tape that is read as a whole, and any trace that is packed with gzip; :data:`TRACE_LINE` limits each line."""
+
 RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 """A recorded episode."""
 

@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import PARQUET
+from tltlc.monitor.packed import unpacked
 from tltlc.monitor.sample_times import times_name
 from tltlc.resolve.spec import Signal
 
@@ -33,11 +34,12 @@ def is_parquet(start: bytes, name: str) -> bool:
 
 
 def as_text(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:
-    """Convert a trace in Parquet to JSON lines; return any other trace unchanged.
+    """Convert a trace in Parquet to JSON lines, and unpack one in gzip; return any other trace unchanged.
 
-    The arguments and errors are those of :func:`json_lines`.
+    The arguments are those of :func:`json_lines`, and the errors those of this function and of
+    :func:`~tltlc.monitor.packed.unpacked`.
     """
-    return json_lines(data, name, signals) if is_parquet(data, name) else data
+    return json_lines(data, name, signals) if is_parquet(data, name) else unpacked(data, name)
 
 
 def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None) -> bytes:

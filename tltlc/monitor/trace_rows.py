@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any, Final, Protocol
 
@@ -12,8 +12,11 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, SourceKind, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import TRACE_LINE
+from tltlc.monitor.tapes import TapeHeader, TapeStep, header_from, is_header, samples_from, steps_from
 
 JSON_LINES_HELP: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
+_TAPE_HELP: Final = "give the name of a tape; `tltlc monitor` judges traces, too"
+_INT_DIGITS: Final = 18
 _BLANKS: Final = " \t"
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 _UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
@@ -40,13 +43,13 @@ class TraceTable:
 
 @record
 class TraceObjects:
-    """A trace in JSON lines, as an iterator over its objects."""
+    """A trace in JSON lines or a tape, as an iterator over its objects."""
 
     rows: Iterator[dict[str, Any]]
 
 
 def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
-    """Return a trace, which may be in CSV or in JSON lines; None if the stream has only blank lines.
+    """Return a trace, in CSV, in JSON lines or as a tape; None if the stream has only blank lines.
 
     Raises:
         TltlError: TLT0622 the first row cannot be read. Iteration over ``rows`` of the result
@@ -56,11 +59,43 @@ def read_rows(lines: TraceLines) -> TraceTable | TraceObjects | None:
     if first is None:
         return None
     if first.lstrip(_BLANKS).startswith("{"):
-        return TraceObjects(_object(line, lines) for line in chain([first], _lines(lines)))
+        objects = _objects(first, lines)
+        start = next(objects)
+        if is_header(start):
+            return TraceObjects(samples_from(*_tape(start, objects, lines)))
+        return TraceObjects(chain([start], objects))
     if first.lstrip(_BLANKS).startswith("[") and '"' in first:
         raise lines.error("this is a JSON list, not CSV", help=JSON_LINES_HELP)
     header = _cells(first, lines)
     return TraceTable(tuple(header), _rows(lines, len(header)))
+
+
+def read_tape(lines: TraceLines) -> tuple[TapeHeader, Iterator[TapeStep]]:
+    """Return the header of a tape, and an iterator over its steps.
+
+    Raises:
+        TltlError: TLT0620 there is no line, TLT0622 the first line is not the header of a tape.
+            Iteration over the steps raises TLT0622 for later lines.
+    """
+    first = lines.first_of_row()
+    if first is None:
+        title = f"the tape `{lines.name}` is empty"
+        raise TltlError([Diagnostic("TLT0620", title, help="record at least one step with its action")])
+    objects = _objects(first, lines)
+    start = next(objects)
+    if not is_header(start):
+        raise lines.error("this is not the header of a tape", help=_TAPE_HELP)
+    return _tape(start, objects, lines)
+
+
+def _tape(
+    start: Mapping[str, Any], objects: Iterator[dict[str, Any]], lines: TraceLines
+) -> tuple[TapeHeader, Iterator[TapeStep]]:
+    def wrong(message: str, help_: str) -> TltlError:
+        return lines.error(message, help=help_)
+
+    header = header_from(start, wrong)
+    return header, steps_from(header, objects, wrong)
 
 
 def cell_number(cell: str) -> float | None:
@@ -266,6 +301,11 @@ def _after_blanks(line: str, start: int) -> int:
 # --- JSON lines -----------------------------------------------------------------------------------
 
 
+def _objects(first: str, lines: TraceLines) -> Iterator[dict[str, Any]]:
+    """Yield the object of each line; ``first`` is the first line, which is read already."""
+    return (_object(line, lines) for line in chain([first], _lines(lines)))
+
+
 class _BadObjectError(ValueError):
     """Raised for a JSON object that is not allowed in a trace; the message says why."""
 
@@ -278,8 +318,7 @@ def _object(line: str, lines: TraceLines) -> dict[str, Any]:
             raise _BadObjectError(f"this contains more than {TRACE_LINE.values:,} values")
         if "\r" in line.removesuffix("\r"):
             raise _BadObjectError("a carriage return without a line feed")
-        # Integers may have more digits than Python's int() accepts.
-        value = json.loads(line, parse_int=float, object_pairs_hook=_with_unique_keys)
+        value = json.loads(line, parse_int=_whole, object_pairs_hook=_with_unique_keys)
         if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(value) > TRACE_LINE.depth:
             raise RecursionError
     except json.JSONDecodeError as error:
@@ -291,6 +330,11 @@ def _object(line: str, lines: TraceLines) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise lines.error("this is not an object", help=JSON_LINES_HELP)
     return value
+
+
+def _whole(text: str) -> float:
+    """Return a whole number of JSON. Longer ones become floats: they may have more digits than int() accepts."""
+    return int(text) if len(text) <= _INT_DIGITS and text != "-0" else float(text)
 
 
 def _with_unique_keys(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:

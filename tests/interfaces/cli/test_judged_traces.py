@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -42,6 +43,34 @@ def test_a_folder_gives_a_line_for_each_trace_and_a_summary(folder: Path, tltlc)
         "1 of 4 accepted; 2 break `avoid on_lava`, at step 3; 1 ends before `reach has_key then at_exit` is met",
     ]
     assert judged.err == "not traces, by their names: traces/notes.txt\n"
+
+
+def test_a_tape_is_judged_as_its_trace_and_once_in_a_folder(folder: Path, tltlc) -> None:  # type: ignore[no-untyped-def]
+    names = ("on_lava", "has_key", "at_exit")
+    header = {"tape": 1, "game": "fetch", "clock_hz": 10, "signals": {name: {"type": "bool"} for name in names}}
+    for name, rows in (("a", GOOD), ("e", LAVA), ("f", GOOD)):
+        values = [[cell == "1" for cell in row.split(",")] for row in rows.split()]
+        steps = [{"action": 0, "signals": dict(zip(names, row, strict=True))} for row in values]
+        text = "".join(json.dumps(line) + "\n" for line in (header, *steps)).encode()
+        (folder / f"{name}.tape.jsonl.gz").write_bytes(gzip.compress(text))
+        if name != "f":
+            (folder / f"{name}.tape.jsonl").write_bytes(text)
+    judged = tltlc("monitor", "fetch.tltl", "traces")
+    assert [line.partition(": ")[0] for line in judged.out.splitlines()[:-1]] == [
+        "traces/a.csv",
+        "traces/b.csv",
+        "traces/deep/c.csv",
+        "traces/deep/d.csv",
+        "traces/e.tape.jsonl",
+        "traces/f.tape.jsonl.gz",
+    ]
+    assert "traces/e.tape.jsonl: not accepted: breaks `avoid on_lava` at step 3 of 4\n" in judged.out
+    assert judged.err == ""
+    trace, unpacked, packed = (
+        tltlc("monitor", "fetch.tltl", f"traces/a{ending}") for ending in (".csv", ".tape.jsonl", ".tape.jsonl.gz")
+    )
+    assert trace.out == unpacked.out == packed.out
+    assert (trace.status, unpacked.status, packed.status) == (0, 0, 0)
 
 
 def test_the_status_is_0_if_all_traces_are_accepted(folder: Path, tltlc) -> None:  # type: ignore[no-untyped-def]

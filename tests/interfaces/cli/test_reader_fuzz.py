@@ -56,6 +56,13 @@ PROJECT: Final = (
 TRACES: Final = (
     "a,v,x\n" + "".join(f"{step % 2},{step / 7:.3f},{step}\n" for step in range(8)),
     "".join(json.dumps({"a": step % 2 == 0, "v": step / 7, "x": step}) + "\n" for step in range(8)),
+    "".join(
+        json.dumps(line) + "\n"
+        for line in (
+            {"tape": 1, "game": "it", "seed": 1, "clock_hz": 10, "signals": {"a": {"type": "bool"}, "v": {}, "x": {}}},
+            *({"action": [step], "signals": {"a": step % 2 == 0, "v": step / 7, "x": step}} for step in range(8)),
+        )
+    ),
 )
 REQUEST: Final = {
     "text": f"{LIBRARY.text}spec s = F a & F p",

@@ -105,10 +105,10 @@ def command(
 ) -> int:
     """Propose specs that the recorded TRACES satisfy and the counterexamples violate.
 
-    TRACES are files in the formats of `tltlc monitor` (CSV, JSON lines or Parquet), or folders with *.csv, *.jsonl and
-    *.parquet files. The proposals are ranked by the share of traces that satisfy them and of counterexamples that
-    violate them. Each one has been compiled, and its automaton has judged all traces. The exit status is 1 if there is
-    no proposal.
+    TRACES are files in the formats of `tltlc monitor` (CSV, JSON lines, Parquet or tapes), or folders with *.csv,
+    *.jsonl, *.tape.jsonl.gz and *.parquet files. The proposals are ranked by the share of traces that satisfy them and
+    of counterexamples that violate them. Each one has been compiled, and its automaton has judged all traces. The exit
+    status is 1 if there is no proposal.
     """
     import json
 

@@ -63,13 +63,13 @@ def command(
     settings: CompileSettings,
     format: str,  # noqa: A002
 ) -> int:
-    """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, or Parquet.
+    """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, Parquet, or a tape.
 
     For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict
     of the whole trace. For several files or a folder, it has one line per trace, and a summary that says which clauses
-    the other traces break or leave undone. In a folder, files that end in .csv, .jsonl or .parquet are traces. The exit
-    status is 0 if all traces are accepted, and 1 otherwise. A spec over infinite traces accepts a trace that ends in a
-    goal state.
+    the other traces break or leave undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are
+    traces; a tape beside a trace with the same name is the same play, and left out. The exit status is 0 if all traces
+    are accepted, and 1 otherwise. A spec over infinite traces accepts a trace that ends in a goal state.
     """
     from tltlc.io.files import is_dir
 
@@ -132,10 +132,13 @@ def _open_trace(trace: str) -> Iterator[_OpenTrace]:
 
 
 def _as_text(lines: _OpenTrace, trace: str, signals: Sequence[Signal]) -> Stream:
-    """Return a trace as a stream of text lines; a trace in Parquet is read at once and converted to JSON lines."""
-    from tltlc.monitor.parquet import is_parquet, json_lines
+    """Return a trace as a stream of text lines; a trace in Parquet or gzip is read at once and converted."""
+    from tltlc.monitor.packed import is_packed
+    from tltlc.monitor.parquet import as_text, is_parquet
 
-    return io.BytesIO(json_lines(lines.read(), trace, signals)) if is_parquet(lines.start(), trace) else lines
+    start = lines.start()
+    needs_all = is_parquet(start, trace) or is_packed(start)
+    return io.BytesIO(as_text(lines.read(), trace, signals)) if needs_all else lines
 
 
 class _OpenTrace:
