@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.wire import conversation, examples, request_lines
+from tests.runtime.wire import conversation, examples, recorded_tapes, request_lines
 from tests.runtime.wire.german_locale import make_german_locale
 from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.recorded_traces import check_traces
@@ -273,3 +273,14 @@ def test_a_recorded_trace_is_judged(language: str, build: Build, tmp_path: Path)
         assert result.stderr == f"the signal near(a, b) is {value}, and numbers must be finite\n"
     result = run(program, str(tmp_path / program / "none"))
     assert result.returncode == 1 and result.stderr.startswith("cannot write ")
+
+
+@with_compilers
+def test_a_recorder_writes_the_tape_of_a_play(language: str, build: Build, tmp_path: Path) -> None:
+    (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    result = run(build(language, "record.c", *CHECKED), str(tmp_path), "tape")
+    assert result.returncode == 0, result.stderr
+    assert result.stdout == "give the action of each sample of an episode, or of none\n"
+    recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
+    assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (tmp_path / "trace-0003.tape.jsonl").exists()

@@ -18,7 +18,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tests.runtime.wire import conversation
+from tests.runtime.wire import conversation, recorded_tapes
 from tests.runtime.wire.test_env import connected, free_port
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
@@ -114,6 +114,7 @@ internal sealed class Driver
         var german = System.Globalization.CultureInfo.GetCultureInfo("de-DE");
         System.Threading.Thread.CurrentThread.CurrentCulture = german;
         if (1.5.ToString() != "1,5") return 3;
+        if (words.Length > 1) return RecordTape(words[0]);
         if (words.Length > 0) return Record(words[0]);
         System.Console.InputEncoding = System.Console.OutputEncoding = new System.Text.UTF8Encoding(false);
         for (string line; (line = System.Console.In.ReadLine()) != null;)
@@ -123,6 +124,27 @@ internal sealed class Driver
             catch (System.FormatException error) { answer = "wrong " + error.Message; }
             System.Console.Out.Write(answer + "\\n");
             System.Console.Out.Flush();
+        }
+        return 0;
+    }
+
+    private static int RecordTape(string folder)
+    {
+        double[] sizes = {5e-324, -0.0, 1e-300, 1e22, -123456.789, 0.1};
+        using (var recorder = new Tltl.Recorder(folder, new[] {"near(a, b)", "size", "seen"}, 60, "walk"))
+        {
+            recorder.Begin("crypt", "v1", 7);
+            for (int step = 1; step <= 130; step++)
+            {
+                recorder.Sample(
+                    new Tltl.Message {{"near(a, b)", step / 3.0}, {"size", sizes[step % 6]}, {"seen", step == 130}},
+                    new[] {step % 3, 1});
+            }
+            recorder.Begin();
+            var signals = new Tltl.Message {{"near(a, b)", 1}, {"size", 2}, {"seen", false}};
+            recorder.Sample(signals);
+            try { recorder.Sample(signals, 1); return 4; }
+            catch (System.InvalidOperationException error) { System.Console.Out.Write(error.Message + "\\n"); }
         }
         return 0;
     }
@@ -453,10 +475,22 @@ def test_a_recorded_trace_is_judged(driver: str, tmp_path: Path) -> None:
     spec.write_text(
         "clock 60 Hz\nsignal near(a, b): number in [0, 1]\nsignal seen: bool\nspec see = F seen\n", encoding="utf-8"
     )
-    (folder / "trace-0003.csv").unlink()  # It has a header only: all of its samples were refused.
+    assert not (folder / "trace-0003.csv").exists()  # All of its samples were refused.
     words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder)]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert "1 of 2 accepted" in result.stdout, result.stderr
+
+
+def test_a_recorder_writes_the_tape_of_a_play(driver: str, tmp_path: Path) -> None:
+    (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    words = ["mono", driver, str(tmp_path), "tape"]
+    result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout == "give the action of each sample of an episode, or of none\n"
+    tape = recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
+    assert "csharp" in tape.header.versions
+    assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (tmp_path / "trace-0003.tape.jsonl").exists()
 
 
 def cells(row: str) -> list[float | str]:

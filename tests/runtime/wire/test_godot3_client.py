@@ -16,7 +16,7 @@ from random import Random
 
 import pytest
 
-from tests.runtime.wire import conversation
+from tests.runtime.wire import conversation, recorded_tapes
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
 from tltl_runtime.wire.clients import tltl_client
@@ -238,3 +238,15 @@ print(recorder.sample({{"x": 1}}))""",
     assert "False" + "the signal x is missing" in result.stdout
     assert (folder / "trace-0001.csv").read_text(encoding="utf-8") == "kept"
     assert (folder / "trace-0002.csv").read_text(encoding="utf-8") == "x\n1\n"
+
+
+def test_a_recorder_writes_the_tape_of_a_play(project: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "traces"
+    folder.mkdir()
+    (folder / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    result = run_script(project, recorded_tapes.GDSCRIPT.replace("FOLDER", str(folder)))
+    assert "Falsegive the action of each sample of an episode, or of none" in result.stdout
+    tape = recorded_tapes.check_tape(folder / "trace-0002.tape.jsonl", tmp_path)
+    assert tape.header.versions["godot"].startswith("3.")
+    assert (folder / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (folder / "trace-0003.tape.jsonl").exists()

@@ -21,7 +21,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.runtime.wire import conversation
+from tests.runtime.wire import conversation, recorded_tapes
 from tests.runtime.wire.test_env import connected, free_port
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
@@ -68,12 +68,15 @@ OLD_NAMES: tuple[tuple[str, str], ...] = (
     (r"is_empty", "empty"),
     (r"to_utf8_buffer", "to_utf8"),
     (r"\t*@warning_ignore.*\n", ""),
-    (r"_file: FileAccess = null", "_file = null"),
+    (r"_(file|tape): FileAccess = null", r"_\1 = null"),
+    (r"\(file: FileAccess, ", "(file, "),
+    (r"JSON\.stringify", "to_json"),
+    (r"about\.merge\(_played\)", "for key in _played: about[key] = _played[key]"),
     (r"FileAccess\.file_exists", "File.new().file_exists"),
     (r"FileAccess\.open\((.*), FileAccess.WRITE\)", r"_opened(\1)"),
     (r"DirAccess\.make_dir_recursive_absolute", "Directory.new().make_dir_recursive"),
     (r"path_join", "plus_file"),
-    (r"\t*_file\.flush\(\)\n", ""),
+    (r"\t*file\.flush\(\)\n", ""),
     (r"get_cmdline_user_args", "get_cmdline_args"),
 )
 """Patterns in scripts for Godot 4, and what stands for them in Godot 3."""
@@ -322,3 +325,15 @@ recorder.end()""",
     words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder)]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert "1 of 2 accepted" in result.stdout, result.stderr
+
+
+@runs
+def test_a_recorder_writes_the_tape_of_a_play(project: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "traces"
+    folder.mkdir()
+    (folder / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    output = run_script(project, recorded_tapes.GDSCRIPT.replace("FOLDER", str(folder)))
+    assert "Falsegive the action of each sample of an episode, or of none" in output
+    recorded_tapes.check_tape(folder / "trace-0002.tape.jsonl", tmp_path)
+    assert (folder / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (folder / "trace-0003.tape.jsonl").exists()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
@@ -12,7 +13,7 @@ from typing import Final
 
 import pytest
 
-from tests.runtime.wire import conversation
+from tests.runtime.wire import conversation, recorded_tapes
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S, until
 from tltl_runtime.wire import clients
@@ -257,3 +258,56 @@ try {{ new Recorder("traces", ["x"]).sample({{ x: {value} }}); }} catch (error) 
 """
     assert node(folder, script).stdout == f"{message}\n"
     assert not (folder / "traces").exists()
+
+
+TAPE = """
+const recorder = new Recorder("traces", ["near(a, b)", "size", "seen"], { clockHz: 60, game: "walk" });
+const sizes = [5e-324, -0, 1e-300, 1e22, -123456.789, 0.1];
+recorder.begin("crypt", "v1", 7);
+for (let step = 1; step <= 130; step++) {
+  const signals = { "near(a, b)": step / 3, size: sizes[step % 6], seen: step === 130 };
+  recorder.sample(signals, step % 2 ? [step % 3, 1] : Uint8Array.of(step % 3, 1));
+}
+"""
+
+
+def test_a_recorder_writes_the_tape_of_a_play(folder: Path, tmp_path: Path) -> None:
+    script = (
+        'import { Recorder } from "./tltl_client.js";'
+        + TAPE
+        + """
+recorder.begin();
+const signals = { "near(a, b)": 1, size: 2, seen: false };
+recorder.sample(signals);
+try { recorder.sample(signals, 1); } catch (error) { console.log(error.message); }
+try { recorder.sample(signals, [0 / 0]); } catch (error) { console.log(error.message); }
+recorder.end();
+"""
+    )
+    (folder / "traces").mkdir()
+    (folder / "traces" / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    assert node(folder, script).stdout.splitlines() == [
+        "give the action of each sample of an episode, or of none",
+        "the action is NaN, and numbers must be finite",
+    ]
+    tape = recorded_tapes.check_tape(folder / "traces" / "trace-0002.tape.jsonl", tmp_path)
+    assert tape.header.versions["node"].startswith("v")
+    assert (folder / "traces" / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (folder / "traces" / "trace-0003.tape.jsonl").exists()
+
+
+@needs_browser
+def test_a_page_has_the_text_of_the_tape(folder: Path, tmp_path: Path) -> None:
+    page = 'import { Recorder } from "./tltl_client.js";' + TAPE
+    page += "console.error(JSON.stringify([recorder.end(), recorder.tape()]));"
+    (folder / "index.html").write_text(f"<script type=module>{page}</script>", encoding="utf-8")
+    words = [*page_command(folder, "index.html")]
+    variables = {**os.environ, "TLTL_PORT": "1"}
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True, env=variables) as process:
+        assert process.stderr is not None
+        line = process.stderr.readline()
+        process.terminate()
+    trace, tape = json.loads(line)
+    (tmp_path / "trace-0001.csv").write_text(trace, encoding="utf-8")
+    (tmp_path / "trace-0001.tape.jsonl").write_text(tape, encoding="utf-8")
+    recorded_tapes.check_tape(tmp_path / "trace-0001.tape.jsonl", tmp_path)

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.runtime.wire import conversation, examples, request_lines
+from tests.runtime.wire import conversation, examples, recorded_tapes, request_lines
 from tests.runtime.wire.german_locale import make_german_locale
 from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.recorded_traces import check_traces
@@ -177,6 +177,17 @@ def test_a_recorded_trace_is_judged(lua: str, tmp_path: Path) -> None:
 
 
 @with_lua
+def test_a_recorder_writes_the_tape_of_a_play(lua: str, tmp_path: Path) -> None:
+    (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    result = run(lua, RECORD, str(tmp_path), "tape")
+    assert result.stdout == "give the action of each sample of an episode, or of none\n", result.stderr
+    tape = recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
+    assert tape.header.versions["lua"].startswith("Lua 5.")
+    assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert not (tmp_path / "trace-0003.tape.jsonl").exists()
+
+
+@with_lua
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
 def test_a_recorder_refuses_numbers_that_are_not_finite(lua: str, tmp_path: Path, value: str) -> None:
     result = run(lua, RECORD, str(tmp_path), value)
@@ -207,3 +218,6 @@ def test_in_love_traces_are_in_the_folder_of_what_players_save(tmp_path: Path) -
         result = run("love", LOVE_GAME, "record.lua", "plays/traces", XDG_DATA_HOME=str(tmp_path))
         assert result.stdout == f"{folder / f'trace-{number:04d}.csv'}\n", result.stderr
         check_traces(folder, tmp_path, number - 1)
+    result = run("love", LOVE_GAME, "record.lua", "plays/tapes", "tape", XDG_DATA_HOME=str(tmp_path))
+    assert result.returncode == 0, result.stderr
+    recorded_tapes.check_tape(folder.with_name("tapes") / "trace-0001.tape.jsonl", tmp_path)

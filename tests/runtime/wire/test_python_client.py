@@ -10,12 +10,14 @@ import sys
 from math import inf, nan
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from tests.runtime.wire import conversation, examples
+from tests.runtime.wire import conversation, examples, recorded_tapes
 from tests.runtime.wire.listening import check_listening
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
+from tltl_runtime import read_tape
 from tltl_runtime.wire.clients import tltl_client
 
 COUNTER = str(GAMES / "counter.py")
@@ -133,3 +135,54 @@ def test_a_recorder_overwrites_no_trace(tmp_path: Path) -> None:
 def test_a_recorder_refuses_numbers_that_are_not_finite(tmp_path: Path, value: float) -> None:
     with pytest.raises(ValueError, match="the signal x is"):
         tltl_client.Recorder(tmp_path, ["x"]).sample({"x": value})
+
+
+def test_a_recorder_writes_the_tape_of_a_play(tmp_path: Path) -> None:
+    folder = tmp_path / "traces"
+    recorder = tltl_client.Recorder(folder, ["near(a, b)", "size", "seen"], clock_hz=60, game="walk")
+    recorder.begin("crypt", "v1", seed=7)
+    for step in range(1, recorded_tapes.STEPS + 1):
+        recorder.sample(recorded_tapes.signals(step), recorded_tapes.action(step))
+    recorder.begin()
+    recorder.sample({"near(a, b)": 1, "size": 2, "seen": False})
+    recorder.end()
+    tape = recorded_tapes.check_tape(folder / "trace-0001.tape.jsonl", tmp_path)
+    assert tape.header.versions["python"] == sys.version.split()[0]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "trace-0001.csv",
+        "trace-0001.tape.jsonl",
+        "trace-0002.csv",
+    ]
+
+
+def test_a_tape_keeps_arrays_of_numpy(tmp_path: Path) -> None:
+    recorder = tltl_client.Recorder(tmp_path, ["x"])
+    recorder.begin(seed=np.int64(3))  # type: ignore[arg-type]
+    recorder.sample({"x": np.float32(0.1)}, {"move": np.array([0.5, -1], np.float32), "jump": np.int64(1)})
+    recorder.end()
+    tape = read_tape(tmp_path / "trace-0001.tape.jsonl")
+    assert tape.header.seed == 3
+    (step,) = tape.steps
+    assert step.action == {"move": [0.5, -1.0], "jump": 1} and step.signals == {"x": float(np.float32(0.1))}
+
+
+def test_a_recorder_overwrites_no_tape(tmp_path: Path) -> None:
+    (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
+    recorder = tltl_client.Recorder(tmp_path, ["x"])
+    recorder.sample({"x": 1}, 0)
+    recorder.end()
+    assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
+    assert sorted(path.name for path in tmp_path.glob("trace-0002*")) == ["trace-0002.csv", "trace-0002.tape.jsonl"]
+
+
+@pytest.mark.parametrize("actions", [(1, None), (None, 1)])
+def test_each_sample_of_a_tape_needs_an_action(tmp_path: Path, actions: tuple[int | None, int | None]) -> None:
+    recorder = tltl_client.Recorder(tmp_path, ["x"])
+    recorder.sample({"x": 1}, actions[0])
+    with pytest.raises(ValueError, match="give the action of each sample of an episode, or of none"):
+        recorder.sample({"x": 2}, actions[1])
+    with pytest.raises(ValueError, match="Out of range float values"):
+        tltl_client.Recorder(tmp_path / "other", ["x"]).sample({"x": 1}, nan)
+    assert not (tmp_path / "other").exists()
+    recorder.end()
+    assert (tmp_path / "trace-0001.csv").read_text(encoding="utf-8") == "x\n1.0\n"

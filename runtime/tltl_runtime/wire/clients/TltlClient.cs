@@ -668,27 +668,43 @@ namespace Tltl
     /// recorder.Sample(new Message {{"position", 1}, {"at_goal", false}}); // after each tick
     /// recorder.End();
     /// </code>
+    /// With the actions of the person, as tltlc would send them, each episode is also a tape, `trace-0001.tape.jsonl`,
+    /// with which the play can be repeated:
+    /// <code>
+    /// recorder.Begin("short", "v0", 7);
+    /// recorder.Sample(new Message {{"position", 1}, {"at_goal", false}}, 2);
+    /// </code>
     /// </remarks>
     public sealed class Recorder : IDisposable
     {
         private readonly string _folder;
         private readonly string[] _signals;
         private readonly double? _clockHz;
-        private StreamWriter _file;
+        private readonly string _game;
+        private StreamWriter _file, _tape;
+        private string _path;
+        private Message _played;
         private long _samples;
+        private uint _low, _high;
 
         /// <param name="folder">Where the files are written; it is made if need be.</param>
         /// <param name="signals">The names of the signals, as specs write them.</param>
         /// <param name="clockHz">The number of samples in a second; with it, the files have a column `time`.</param>
-        public Recorder(string folder, IEnumerable<string> signals, double? clockHz = null)
+        /// <param name="game">The name of the game, for tapes.</param>
+        public Recorder(
+            string folder, IEnumerable<string> signals, double? clockHz = null, string game = "game")
         {
             _folder = folder;
+            _game = game;
             _signals = new List<string>(signals).ToArray();
             _clockHz = clockHz;
         }
 
-        /// <summary>Begins a new trace, and ends the one before; returns the path of the new file.</summary>
-        public string Begin()
+        /// <summary>
+        /// Begins a new trace, and ends the one before; returns the path of the new file. A tape says which scene,
+        /// variant and seed were played.
+        /// </summary>
+        public string Begin(string scene = null, string variant = "v0", long? seed = null)
         {
             End();
             Directory.CreateDirectory(_folder);
@@ -698,7 +714,7 @@ namespace Tltl
             {
                 path = Path.Combine(
                     _folder, "trace-" + number.ToString("0000", CultureInfo.InvariantCulture) + ".csv");
-                if (File.Exists(path)) continue;
+                if (File.Exists(path) || File.Exists(TapePath(path))) continue;
                 try
                 {
                     stream = new FileStream(path, FileMode.CreateNew, FileAccess.Write, FileShare.Read);
@@ -711,7 +727,11 @@ namespace Tltl
                 }
             }
             _file = new StreamWriter(stream, new UTF8Encoding(false));
+            _path = path;
+            _played = new Message {{"scene", scene}, {"variant", variant}, {"seed", seed}};
             _samples = 0;
+            _low = 1;
+            _high = 0;
             var names = new List<string>();
             if (_clockHz != null) names.Add("time");
             foreach (string name in _signals) names.Add(Cell(name));
@@ -721,27 +741,41 @@ namespace Tltl
 
         /// <summary>
         /// Writes the values of all signals at one moment to the file at once; begins a trace if there is none.
+        /// With <paramref name="action"/>, what the person did in the tick before it, the step is written to the
+        /// tape, too.
         /// </summary>
-        /// <exception cref="ArgumentException">A number is not finite, or a value is no number and no bool.</exception>
+        /// <exception cref="ArgumentException">
+        /// A number is not finite, or a value is no number and no bool, or the action is no value of JSON.
+        /// </exception>
+        /// <exception cref="InvalidOperationException">
+        /// Some samples of an episode have an action, and others have none.
+        /// </exception>
         /// <exception cref="KeyNotFoundException">A signal is missing.</exception>
-        public void Sample(IDictionary signals)
+        public void Sample(IDictionary signals, object action = null)
         {
-            if (_file == null) Begin();
             var values = new List<string>();
-            if (_clockHz != null) values.Add(Json.Number(_samples / _clockHz.Value));
             foreach (string name in _signals) values.Add(Value(name, signals));
+            string actionText = action == null ? null : Json.Text(action);
+            if (_file == null) Begin();
+            if (_samples > 0 && (action == null) != (_tape == null))
+            {
+                throw new InvalidOperationException("give the action of each sample of an episode, or of none");
+            }
+            if (action != null) WriteStep(actionText, values, signals);
+            if (_clockHz != null) values.Insert(0, Json.Number(_samples / _clockHz.Value));
             Write(values);
             _samples++;
         }
 
-        /// <summary>Ends the trace, if there is one.</summary>
+        /// <summary>Ends the trace and its tape, if there is one.</summary>
         public void End()
         {
             if (_file != null) _file.Dispose();
-            _file = null;
+            if (_tape != null) _tape.Dispose();
+            _file = _tape = null;
         }
 
-        /// <summary>Ends the trace, if there is one.</summary>
+        /// <summary>Ends the trace and its tape, if there is one.</summary>
         public void Dispose()
         {
             End();
@@ -751,6 +785,62 @@ namespace Tltl
         {
             _file.Write(string.Join(",", cells) + "\n");
             _file.Flush();
+        }
+
+        /// <summary>Writes a step to the tape, and before the first one the header.</summary>
+        private void WriteStep(string action, List<string> texts, IDictionary signals)
+        {
+            if (_tape == null)
+            {
+                var stream = new FileStream(TapePath(_path), FileMode.CreateNew, FileAccess.Write, FileShare.Read);
+                _tape = new StreamWriter(stream, new UTF8Encoding(false));
+                _tape.Write(Json.Text(Header(signals)) + "\n");
+            }
+            var members = new List<string>();
+            for (int i = 0; i < texts.Count; i++)
+            {
+                members.Add(Json.Text(_signals[i]) + ":" + texts[i]);
+                Digest(((IConvertible)signals[_signals[i]]).ToDouble(CultureInfo.InvariantCulture));
+            }
+            string digest = (_high * 65536 + _low).ToString("x8", CultureInfo.InvariantCulture);
+            string end = (_samples + 1) % 60 == 0 ? ",\"digest\":\"" + digest + "\"" : "";
+            _tape.Write(
+                "{\"action\":" + action + ",\"signals\":{" + string.Join(",", members) + "}" + end + "}\n");
+            _tape.Flush();
+        }
+
+        private Message Header(IDictionary signals)
+        {
+            var types = new Message();
+            foreach (string name in _signals)
+            {
+                types[name] = new Message {{"type", signals[name] is bool ? "bool" : "number"}};
+            }
+            var header = new Message {{"tape", 1}, {"game", _game}};
+            foreach (KeyValuePair<string, object> part in _played) header[part.Key] = part.Value;
+            header["spec"] = null;
+            header["versions"] = new Message {{"csharp", Environment.Version.ToString()}};
+            header["clock_hz"] = _clockHz;
+            header["signals"] = types;
+            return header;
+        }
+
+        /// <summary>
+        /// Adds a value to the digest, Adler-32 of the bytes of all values; -0 counts as 0.
+        /// </summary>
+        private void Digest(double value)
+        {
+            long bits = BitConverter.DoubleToInt64Bits(value == 0 ? 0.0 : value);
+            for (int place = 0; place < 64; place += 8)
+            {
+                _low = (_low + (uint)(bits >> place & 255)) % 65521;
+                _high = (_high + _low) % 65521;
+            }
+        }
+
+        private static string TapePath(string trace)
+        {
+            return Path.ChangeExtension(trace, ".tape.jsonl");
         }
 
         private static string Value(string name, IDictionary signals)

@@ -290,6 +290,12 @@ int tltl_play(const tltl_game *game);
 //     double values[3] = {1, 1, 0};                 // of all signals, in order
 //     tltl_recorder_sample(&recorder, values);      // after each tick
 //     tltl_recorder_end(&recorder);
+//
+// With the actions of the person, as tltlc would send them, each episode is also a tape, trace-0001.tape.jsonl, with
+// which the play can be repeated.  `recorder.game` is the name of the game, by default "game":
+//
+//     tltl_recorder_begin_scene(&recorder, "short", "v0", 7);
+//     tltl_recorder_step(&recorder, "2", values);
 typedef struct {
     char error[512];
     char folder[1024], path[1056];  // of the trace that is written
@@ -297,7 +303,10 @@ typedef struct {
     size_t signal_count;
     double clock_hz;
     unsigned long samples;
-    FILE *file;
+    FILE *file, *tape;
+    const char *game, *scene, *variant;
+    long long seed;
+    uint32_t digest[2];
 } tltl_recorder;
 
 int tltl_recorder_init(
@@ -305,9 +314,15 @@ int tltl_recorder_init(
     double clock_hz);
 // Begin a new trace, and end the one before.
 int tltl_recorder_begin(tltl_recorder *recorder);
+// The same, and a tape says which scene, variant and seed are played: NULL and -1 if there are none.  The texts must
+// stay where they are until the episode ends.
+int tltl_recorder_begin_scene(tltl_recorder *recorder, const char *scene, const char *variant, long long seed);
 // Write the values of all signals at one moment to the file at once; begin a trace if there is none.
 int tltl_recorder_sample(tltl_recorder *recorder, const double *values);
-// End the trace, if there is one.
+// The same, and write the step to the tape.  `action` is what the person did in the tick before, as JSON without line
+// ends, such as "2" or "[1, 0]".  All samples of an episode have an action, or none has.
+int tltl_recorder_step(tltl_recorder *recorder, const char *action, const double *values);
+// End the trace and its tape, if there is one.
 int tltl_recorder_end(tltl_recorder *recorder);
 
 #ifdef __cplusplus
@@ -1393,6 +1408,7 @@ int tltl_recorder_init(
     recorder->signals = signals;
     recorder->signal_count = signal_count;
     recorder->clock_hz = clock_hz;
+    recorder->game = "game";
     if (strlen(folder) >= sizeof recorder->folder)
         return tltl_recorder_fail_(recorder, "the path of the folder is too long");
     memcpy(recorder->folder, folder, strlen(folder) + 1);
@@ -1445,20 +1461,58 @@ static void tltl_write_cell_(FILE *file, const char *name) {
     fputc('"', file);
 }
 
+// Write a text as JSON.
+static void tltl_write_quoted_(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text; ++text) {
+        if (*text == '"' || *text == '\\') fputc('\\', file);
+        if ((unsigned char)*text < 32) fprintf(file, "\\u%04x", (unsigned)*text);
+        else fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+static void tltl_write_or_null_(FILE *file, const char *name, const char *text) {
+    fprintf(file, ",\"%s\":", name);
+    if (text) tltl_write_quoted_(file, text);
+    else fputs("null", file);
+}
+
+static void tltl_tape_path_(const tltl_recorder *recorder, char *path, size_t size) {
+    snprintf(path, size, "%.*s.tape.jsonl", (int)strlen(recorder->path) - 4, recorder->path);
+}
+
 // End the row, and see whether all of it was written.
-static int tltl_end_row_(tltl_recorder *recorder) {
-    fputc('\n', recorder->file);
-    if (fflush(recorder->file) == 0 && !ferror(recorder->file)) return 1;
+static int tltl_end_row_(tltl_recorder *recorder, FILE *file) {
+    fputc('\n', file);
+    if (fflush(file) == 0 && !ferror(file)) return 1;
     return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", recorder->path, strerror(errno));
 }
 
 int tltl_recorder_begin(tltl_recorder *recorder) {
+    return tltl_recorder_begin_scene(recorder, NULL, NULL, -1);
+}
+
+int tltl_recorder_begin_scene(tltl_recorder *recorder, const char *scene, const char *variant, long long seed) {
+    char tape[1080];
+    FILE *there;
     unsigned number;
     size_t index;
     if (!tltl_recorder_end(recorder)) return 0;
+    recorder->scene = scene;
+    recorder->variant = variant ? variant : "v0";
+    recorder->seed = seed;
+    recorder->digest[0] = 1;
+    recorder->digest[1] = 0;
     tltl_make_folders_(recorder->folder);
     for (number = 1; !recorder->file; ++number) {
         snprintf(recorder->path, sizeof recorder->path, "%s/trace-%04u.csv", recorder->folder, number);
+        tltl_tape_path_(recorder, tape, sizeof tape);
+        there = fopen(tape, "rb");
+        if (there) {
+            fclose(there);
+            continue;
+        }
         recorder->file = tltl_new_file_(recorder->path);
         if (!recorder->file && errno != EEXIST)
             return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", recorder->path, strerror(errno));
@@ -1469,10 +1523,85 @@ int tltl_recorder_begin(tltl_recorder *recorder) {
         if (index || recorder->clock_hz > 0) fputc(',', recorder->file);
         tltl_write_cell_(recorder->file, recorder->signals[index].name);
     }
-    return tltl_end_row_(recorder);
+    return tltl_end_row_(recorder, recorder->file);
+}
+
+static void tltl_write_value_(const tltl_recorder *recorder, FILE *file, size_t index, double value) {
+    char text[TLTL_NUMBER_SIZE_];
+    if (tltl_is_bool_(&recorder->signals[index])) {
+        fputs(value != 0 ? "true" : "false", file);
+    } else {
+        tltl_number_text_(value, text);
+        fputs(text, file);
+    }
+}
+
+static int tltl_begin_tape_(tltl_recorder *recorder) {
+    char text[TLTL_NUMBER_SIZE_], path[1080];
+    size_t index;
+    FILE *file;
+    tltl_tape_path_(recorder, path, sizeof path);
+    file = recorder->tape = tltl_new_file_(path);
+    if (!file) return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", path, strerror(errno));
+    fputs("{\"tape\":1", file);
+    tltl_write_or_null_(file, "game", recorder->game);
+    tltl_write_or_null_(file, "scene", recorder->scene);
+    tltl_write_or_null_(file, "variant", recorder->variant);
+    if (recorder->seed < 0) fputs(",\"seed\":null", file);
+    else fprintf(file, ",\"seed\":%lld", recorder->seed);
+    tltl_number_text_(recorder->clock_hz, text);
+    fprintf(file, ",\"spec\":null,\"versions\":{},\"clock_hz\":%s", recorder->clock_hz > 0 ? text : "null");
+    for (index = 0; index < recorder->signal_count; ++index) {
+        const char *type = recorder->signals[index].type;
+        fputs(index ? "," : ",\"signals\":{", file);
+        tltl_write_quoted_(file, recorder->signals[index].name);
+        fputs(":{\"type\":", file);
+        tltl_write_quoted_(file, type ? type : "number");
+        fputc('}', file);
+    }
+    fputs(index ? "}}" : ",\"signals\":{}}", file);
+    return tltl_end_row_(recorder, file);
+}
+
+// Add a value to the digest, Adler-32 of the bytes of all values; -0 counts as 0.
+static void tltl_digest_(uint32_t *digest, double value) {
+    uint64_t bits;
+    int place;
+    if (value == 0) value = 0;
+    memcpy(&bits, &value, sizeof bits);
+    for (place = 0; place < 64; place += 8) {
+        digest[0] = (digest[0] + (uint32_t)(bits >> place & 255)) % 65521;
+        digest[1] = (digest[1] + digest[0]) % 65521;
+    }
+}
+
+// Write a step to the tape, and before the first one the header.
+static int tltl_write_step_(tltl_recorder *recorder, const char *action, const double *values) {
+    size_t index;
+    if (!recorder->tape && !tltl_begin_tape_(recorder)) return 0;
+    fprintf(recorder->tape, "{\"action\":%s,\"signals\":{", action);
+    for (index = 0; index < recorder->signal_count; ++index) {
+        const int is_bool = tltl_is_bool_(&recorder->signals[index]);
+        if (index) fputc(',', recorder->tape);
+        tltl_write_quoted_(recorder->tape, recorder->signals[index].name);
+        fputc(':', recorder->tape);
+        tltl_write_value_(recorder, recorder->tape, index, values[index]);
+        tltl_digest_(recorder->digest, is_bool ? values[index] != 0 : values[index]);
+    }
+    fputc('}', recorder->tape);
+    if ((recorder->samples + 1) % 60 == 0)
+        fprintf(
+            recorder->tape, ",\"digest\":\"%04x%04x\"", (unsigned)recorder->digest[1],
+            (unsigned)recorder->digest[0]);
+    fputc('}', recorder->tape);
+    return tltl_end_row_(recorder, recorder->tape);
 }
 
 int tltl_recorder_sample(tltl_recorder *recorder, const double *values) {
+    return tltl_recorder_step(recorder, NULL, values);
+}
+
+int tltl_recorder_step(tltl_recorder *recorder, const char *action, const double *values) {
     char text[TLTL_NUMBER_SIZE_];
     size_t index;
     for (index = 0; index < recorder->signal_count; ++index)
@@ -1481,27 +1610,26 @@ int tltl_recorder_sample(tltl_recorder *recorder, const double *values) {
                 recorder, "the signal %.300s is %s, and numbers must be finite", recorder->signals[index].name,
                 tltl_odd_number_(values[index]));
     if (!recorder->file && !tltl_recorder_begin(recorder)) return 0;
+    if (recorder->samples && !action != !recorder->tape)
+        return tltl_recorder_fail_(recorder, "give the action of each sample of an episode, or of none");
+    if (action && !tltl_write_step_(recorder, action, values)) return 0;
     if (recorder->clock_hz > 0) {
         tltl_number_text_((double)recorder->samples / recorder->clock_hz, text);
         fputs(text, recorder->file);
     }
     for (index = 0; index < recorder->signal_count; ++index) {
         if (index || recorder->clock_hz > 0) fputc(',', recorder->file);
-        if (tltl_is_bool_(&recorder->signals[index])) {
-            fputs(values[index] != 0 ? "true" : "false", recorder->file);
-        } else {
-            tltl_number_text_(values[index], text);
-            fputs(text, recorder->file);
-        }
+        tltl_write_value_(recorder, recorder->file, index, values[index]);
     }
     ++recorder->samples;
-    return tltl_end_row_(recorder);
+    return tltl_end_row_(recorder, recorder->file);
 }
 
 int tltl_recorder_end(tltl_recorder *recorder) {
-    FILE *file = recorder->file;
-    recorder->file = NULL;
-    if (!file || fclose(file) == 0) return 1;
+    FILE *file = recorder->file, *tape = recorder->tape;
+    const int is_tape_whole = !tape || fclose(tape) == 0;
+    recorder->file = recorder->tape = NULL;
+    if ((!file || fclose(file) == 0) && is_tape_whole) return 1;
     return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", recorder->path, strerror(errno));
 }
 

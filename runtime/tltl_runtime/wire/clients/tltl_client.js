@@ -275,6 +275,12 @@ function refusal(message, token) {
  *     recorder.sample({ position: 1, at_goal: false });    // after each tick
  *     recorder.end();
  *
+ * With the actions of the person, as tltlc would send them, each episode is also a tape, `trace-0001.tape.jsonl`, with
+ * which the play can be repeated; in a page, `tape` returns its text. The option `game` is the name of the game:
+ *
+ *     recorder.begin("short", "v0", 7);
+ *     recorder.sample({ position: 1, at_goal: false }, 2);
+ *
  * Before Node 20.16, give the option `fs`, which is `await import("node:fs")`.
  */
 export class Recorder {
@@ -288,15 +294,25 @@ export class Recorder {
   #last = "";
   #number = 0;
   #samples = 0;
+  #game;
+  #played;
+  #tape = null; // a file in Node, and a text in a page
+  #lastTape = "";
+  #sums; // of the digest, Adler-32
 
-  constructor(folder, signals, { clockHz = null, fs = null } = {}) {
-    [this.#folder, this.#signals, this.#clockHz] = [folder, [...signals], clockHz];
+  constructor(folder, signals, { clockHz = null, fs = null, game = "game" } = {}) {
+    [this.#folder, this.#signals, this.#clockHz, this.#game] = [folder, [...signals], clockHz, game];
     this.#fs = fs ?? (IS_NODE ? process.getBuiltinModule("node:fs") : null);
   }
 
-  /** Begin a new trace, and end the one before; return the path of the new file, or in a page its name. */
-  begin() {
+  /**
+   * Begin a new trace, and end the one before; return the path of the new file, or in a page its name.
+   *
+   * A tape says which scene, variant and seed were played.
+   */
+  begin(scene = null, variant = "v0", seed = null) {
     this.end();
+    [this.#played, this.#sums, this.#lastTape] = [{ scene, variant, seed }, [1, 0], ""];
     if (this.#fs) this.#openFile();
     else this.#name = `trace-${String(++this.#number).padStart(4, "0")}.csv`;
     this.#text = "";
@@ -308,38 +324,89 @@ export class Recorder {
   /**
    * Add the values of all signals at one moment, in Node to the file at once; begin a trace if there is none.
    *
-   * Throws RangeError if a number is not finite, and TypeError if a signal is missing, or is no number and no boolean.
+   * With `action`, what the person did in the tick before it, the step is written to the tape, too. Throws RangeError if
+   * a number is not finite, and TypeError if a signal is missing, or is no number and no boolean, or if some samples of
+   * an episode have an action and others have none.
    */
-  sample(signals) {
+  sample(signals, action = null) {
     const values = this.#signals.map((name) => cellOf(name, signals[name]));
+    checkFinite(action, "the action");
     if (this.#text === null) this.begin();
+    if (this.#samples && (action === null) !== (this.#tape === null)) {
+      throw new TypeError("give the action of each sample of an episode, or of none");
+    }
+    if (action !== null) this.#writeStep(action, values, signals);
     if (this.#clockHz) values.unshift(String(this.#samples / this.#clockHz));
     this.#write(values);
     this.#samples++;
   }
 
-  /** End the trace, if there is one. In a page, return its text. */
+  /** End the trace and its tape, if there is one. In a page, return the text of the trace. */
   end() {
-    if (this.#file !== null) this.#fs.closeSync(this.#file);
-    this.#file = null;
+    for (const file of [this.#file, this.#fs && this.#tape]) if (file !== null) this.#fs.closeSync(file);
+    [this.#file, this.#tape] = [null, null];
     this.#last = this.#text ?? this.#last;
     this.#text = null;
     return this.#last;
   }
 
-  /** In a page: end the trace, and let the browser save the last one in the folder for downloads. */
+  /** In a page: end the trace, and return the text of its tape; empty if the samples had no actions. */
+  tape() {
+    this.end();
+    return this.#lastTape;
+  }
+
+  /** In a page: end the trace, and let the browser save the last one, and its tape, in the folder for downloads. */
   download() {
+    this.#save(this.end(), this.#name, "text/csv");
+    if (this.#lastTape) this.#save(this.#lastTape, tapeName(this.#name), "application/jsonl");
+  }
+
+  #save(text, name, type) {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([this.end()], { type: "text/csv" }));
-    link.download = this.#folder ? `${this.#folder}-${this.#name}` : this.#name;
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = this.#folder ? `${this.#folder}-${name}` : name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  }
+
+  /** Write a step to the tape, and before the first one the header. */
+  #writeStep(action, texts, signals) {
+    const quoted = this.#signals.map((name) => JSON.stringify(name));
+    if (this.#samples === 0) {
+      const versions = IS_NODE ? { node: process.version } : {};
+      const about = { ...this.#played, spec: null, versions, clock_hz: this.#clockHz };
+      const types = quoted.map((name, i) => `${name}:{"type":"${/^[tf]/.test(texts[i]) ? "bool" : "number"}"}`);
+      const header = JSON.stringify({ tape: 1, game: this.#game, ...about });
+      this.#tape = this.#fs ? this.#fs.openSync(tapeName(this.#name), "wx") : "";
+      this.#writeTape(`${header.slice(0, -1)},"signals":{${types}}}\n`);
+    }
+    const bytes = new DataView(new ArrayBuffer(8));
+    let [low, high] = this.#sums;
+    for (const name of this.#signals) {
+      bytes.setFloat64(0, Number(signals[name]) + 0, true); // -0 counts as 0
+      for (let place = 0; place < 8; place++) {
+        low = (low + bytes.getUint8(place)) % 65521;
+        high = (high + low) % 65521;
+      }
+    }
+    this.#sums = [low, high];
+    const digest = (high * 65536 + low).toString(16).padStart(8, "0");
+    const end = (this.#samples + 1) % 60 === 0 ? `,"digest":"${digest}"` : "";
+    const members = quoted.map((name, i) => `${name}:${texts[i]}`);
+    this.#writeTape(`{"action":${JSON.stringify(plain(action))},"signals":{${members}}${end}}\n`);
+  }
+
+  #writeTape(line) {
+    if (this.#fs) this.#fs.writeSync(this.#tape, line);
+    else this.#lastTape = this.#tape += line;
   }
 
   #openFile() {
     this.#fs.mkdirSync(this.#folder, { recursive: true });
     for (let number = 1; this.#file === null; number++) {
       this.#name = `${this.#folder}/trace-${String(number).padStart(4, "0")}.csv`;
+      if (this.#fs.existsSync(tapeName(this.#name))) continue;
       try {
         this.#file = this.#fs.openSync(this.#name, "wx");
       } catch (error) {
@@ -353,6 +420,10 @@ export class Recorder {
     if (this.#fs) this.#fs.writeSync(this.#file, line);
     else this.#text += line;
   }
+}
+
+function tapeName(trace) {
+  return trace.replace(/csv$/, "tape.jsonl");
 }
 
 function cellOf(name, value) {

@@ -74,7 +74,7 @@ local KINDS = {"reset", "step", "snapshot", "restore", "screenshot", "close"}
 local byte, char, find, format, gsub, match, sub =
   string.byte, string.char, string.find, string.format, string.gsub, string.match, string.sub
 local abs, floor, huge = math.abs, math.floor, math.huge
-local concat = table.concat
+local concat, unpack = table.concat, table.unpack or rawget(_G, "unpack")
 local number_type = math.type or function() return "float" end
 
 local tltl_client = {}
@@ -658,6 +658,31 @@ local function open_new(path)
   return made, path
 end
 
+local function exists(path)
+  local love = rawget(_G, "love")
+  if love and love.filesystem then return love.filesystem.getInfo(path) ~= nil end
+  local there = io.open(path, "rb")
+  if there then there:close() end
+  return there ~= nil
+end
+
+-- Return the bytes of a number as a double, the lowest first; those of -0 are those of 0.
+local function double_bytes(value)
+  if value == 0 then return 0, 0, 0, 0, 0, 0, 0, 0 end
+  if string.pack then return byte(string.pack("<d", value), 1, 8) end
+  local fraction, exponent = math.frexp(abs(value))
+  local high = exponent + 1022  -- the bits of the exponent; 0 in the smallest numbers
+  local rest = high > 0 and (fraction * 2 - 1) * 2 ^ 52 or fraction * 2 ^ (exponent + 1074)
+  if high < 0 then high = 0 end
+  local bytes = {}
+  for place = 1, 6 do
+    bytes[place] = rest % 256
+    rest = floor(rest / 256)
+  end
+  bytes[7], bytes[8] = high % 16 * 16 + rest, (value < 0 and 128 or 0) + floor(high / 16)
+  return unpack(bytes)
+end
+
 local function cell(name)
   local needs_quotes = find(name, ",", 1, true) or sub(name, 1, 1) == '"'
   return needs_quotes and '"' .. gsub(name, '"', '""') .. '"' or name
@@ -688,49 +713,100 @@ Recorder.__index = Recorder
 ---     recorder:sample({position = 1, at_goal = false})    -- after each tick
 ---     recorder:finish()
 ---
---- `sample` raises an error if a number is not finite, or a signal is missing.
-function tltl_client.Recorder(folder, signals, clock_hz)
-  return setmetatable({_folder = folder, _signals = signals, _clock_hz = clock_hz, _samples = 0}, Recorder)
+--- With the actions of the person, as tltlc would send them, each episode is also a tape, `trace-0001.tape.jsonl`, with
+--- which the play can be repeated. `game` is the name of the game:
+---
+---     recorder:begin("short", "v0", 7)
+---     recorder:sample({position = 1, at_goal = false}, 2)
+---
+--- `sample` raises an error if a number is not finite, or a signal is missing, or if some samples of an episode have an
+--- action and others have none.
+function tltl_client.Recorder(folder, signals, clock_hz, game)
+  local recorder = {_folder = folder, _signals = signals, _clock_hz = clock_hz, _game = game or "game", _samples = 0}
+  return setmetatable(recorder, Recorder)
 end
 
---- Begin a new trace, and end the one before; return the path of the new file.
-function Recorder:begin()
+--- Begin a new trace, and end the one before; return the path of the new file. A tape says which scene, variant and
+--- seed were played.
+function Recorder:begin(scene, variant, seed)
   self:finish()
   local love = rawget(_G, "love")
   if love and love.filesystem then love.filesystem.createDirectory(self._folder) end
-  local number, path = 1, nil
+  local number, path, place = 1, nil, nil
   repeat
-    self._file, path = open_new(self._folder .. "/" .. format("trace-%04d.csv", number))
+    place = self._folder .. "/" .. format("trace-%04d", number)
+    self._tape_path = place .. ".tape.jsonl"
+    if not exists(self._tape_path) then self._file, path = open_new(place .. ".csv") end
     number = number + 1
   until self._file
-  self._samples = 0
+  self._samples, self._low, self._high = 0, 1, 0
+  self._played = {scene = scene or null, variant = variant or "v0", seed = seed or null}
   local names = self._clock_hz and {"time"} or {}
   for _, name in ipairs(self._signals) do names[#names + 1] = cell(name) end
   self:_write(names)
   return path
 end
 
---- Write the values of all signals at one moment to the file at once; begin a trace if there is none.
-function Recorder:sample(signals)
+--- Write the values of all signals at one moment to the file at once; begin a trace if there is none. With `action`,
+--- what the person did in the tick before it, the step is written to the tape, too.
+function Recorder:sample(signals, action)
+  local texts = {}
+  for index, name in ipairs(self._signals) do texts[index] = value_text(name, signals[name]) end
+  local action_text = action ~= nil and encode(action) or nil
   if not self._file then self:begin() end
-  local cells = self._clock_hz and {number_text(self._samples / self._clock_hz)} or {}
-  for _, name in ipairs(self._signals) do cells[#cells + 1] = value_text(name, signals[name]) end
-  self:_write(cells)
+  if self._samples > 0 and (action == nil) ~= (self._tape == nil) then
+    error("give the action of each sample of an episode, or of none", 0)
+  end
+  if action_text then self:_write_step(action_text, texts, signals) end
+  if self._clock_hz then table.insert(texts, 1, number_text(self._samples / self._clock_hz)) end
+  self:_write(texts)
   self._samples = self._samples + 1
 end
 
---- End the trace, if there is one.
+--- End the trace and its tape, if there is one.
 function Recorder:finish()
-  if self._file then
-    self._file:close()
-    self._file = nil
-  end
+  if self._file then self._file:close() end
+  if self._tape then self._tape:close() end
+  self._file, self._tape = nil, nil
+end
+
+local function write_line(file, line)
+  local written, reason = file:write(line .. "\n")
+  if written then written, reason = file:flush() end
+  if not written then error("cannot write the trace: " .. tostring(reason), 0) end
 end
 
 function Recorder:_write(cells)
-  local written, reason = self._file:write(concat(cells, ",") .. "\n")
-  if written then written, reason = self._file:flush() end
-  if not written then error("cannot write the trace: " .. tostring(reason), 0) end
+  write_line(self._file, concat(cells, ","))
+end
+
+-- Write a step to the tape, and before the first one the header.
+function Recorder:_write_step(action, texts, signals)
+  if not self._tape then
+    self._tape = open_new(self._tape_path)
+    write_line(self._tape, self:_header(signals))
+  end
+  local members = {}
+  for index, name in ipairs(self._signals) do
+    local value = signals[name]
+    members[index] = quoted(name) .. ":" .. texts[index]
+    for _, number in ipairs({double_bytes(value == true and 1 or value or 0)}) do
+      self._low = (self._low + number) % 65521
+      self._high = (self._high + self._low) % 65521
+    end
+  end
+  local digest = (self._samples + 1) % 60 == 0 and format(',"digest":"%04x%04x"', self._high, self._low) or ""
+  write_line(self._tape, '{"action":' .. action .. ',"signals":{' .. concat(members, ",") .. "}" .. digest .. "}")
+end
+
+function Recorder:_header(signals)
+  local types, about = {}, self._played
+  for index, name in ipairs(self._signals) do
+    types[index] = quoted(name) .. ':{"type":"' .. (type(signals[name]) == "boolean" and "bool" or "number") .. '"}'
+  end
+  about.tape, about.game, about.spec, about.clock_hz = 1, self._game, null, self._clock_hz or null
+  about.versions = {lua = _VERSION}
+  return sub(encode(about), 1, -2) .. ',"signals":{' .. concat(types, ",") .. "}}"
 end
 
 return tltl_client

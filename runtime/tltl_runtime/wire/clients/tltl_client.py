@@ -51,7 +51,9 @@ import sys
 from contextlib import suppress
 from math import isfinite
 from pathlib import Path
+from struct import pack
 from typing import Any, Iterable, Mapping, TextIO  # noqa: UP035 - Python 3.8 has no better place for them.
+from zlib import adler32
 
 PROTOCOL = 1
 LONGEST_LINE = 1 << 25
@@ -304,46 +306,93 @@ class Recorder:
         recorder.sample({"position": 1, "at_goal": False})    # after each tick
         recorder.end()
 
-    Raises ValueError, in ``sample``, if a number is not finite, and KeyError if a signal is missing.
+    With the actions of the person, as tltlc would send them, each episode is also a tape,
+    ``trace-0001.tape.jsonl``, with which the play can be repeated. ``game`` is the name of the game::
+
+        recorder.begin("short", "v0", seed=7)
+        recorder.sample({"position": 1, "at_goal": False}, action=2)
+
+    Raises ValueError, in ``sample``, if a number is not finite, or if some samples of an episode have an
+    action and others have none; and KeyError if a signal is missing.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], signals: Iterable[str], clock_hz: float | None = None) -> None:
+    def __init__(
+        self,
+        folder: str | os.PathLike[str],
+        signals: Iterable[str],
+        clock_hz: float | None = None,
+        game: str = "game",
+    ) -> None:
         self._folder, self._signals, self._clock_hz = Path(folder), tuple(signals), clock_hz
+        self._game = game
         self._file: TextIO | None = None
+        self._tape: TextIO | None = None
         self._samples = 0
 
-    def begin(self) -> Path:
-        """Begin a new trace, and end the one before; return the path of the new file."""
+    def begin(self, scene: str | None = None, variant: str = "v0", seed: int | None = None) -> Path:
+        """Begin a new trace, and end the one before; return the path of the new file.
+
+        A tape says which scene, variant and seed were played.
+        """
         self.end()
         self._folder.mkdir(parents=True, exist_ok=True)
         number = 1
         while True:
             path = self._folder / f"trace-{number:04d}.csv"
             try:
-                self._file = path.open("x", encoding="utf-8", newline="\n")
-                break
+                if not _tape_path(path).exists():
+                    self._file = path.open("x", encoding="utf-8", newline="\n")
+                    break
             except FileExistsError:
-                number += 1
-        self._samples = 0
+                pass
+            number += 1
+        self._path, self._played = path, {"scene": scene, "variant": variant, "seed": seed}
+        self._samples, self._digest = 0, 1
         names = ("time", *self._signals) if self._clock_hz else self._signals
         self._write(map(_cell, names))
         return path
 
-    def sample(self, signals: Mapping[str, float]) -> None:
-        """Write the values of all signals at one moment to the file at once; begin a trace if there is none."""
+    def sample(self, signals: Mapping[str, float], action: Any = None) -> None:
+        """Write the values of all signals at one moment to the file at once; begin a trace if there is none.
+
+        With ``action``, what the person did in the tick before it, the step is written to the tape, too.
+        """
+        texts = {name: _value(name, signals[name]) for name in self._signals}
+        action_text = (
+            None if action is None else json.dumps(action, separators=(",", ":"), allow_nan=False, default=_as_list)
+        )
         if self._file is None:
             self.begin()
-        values = [_value(name, signals[name]) for name in self._signals]
-        if self._clock_hz:
-            values.insert(0, repr(self._samples / self._clock_hz))
-        self._write(values)
+        if self._samples and (action_text is None) != (self._tape is None):
+            raise ValueError("give the action of each sample of an episode, or of none")
+        if action_text is not None:
+            self._write_step(action_text, texts, [float(signals[name]) for name in self._signals])
+        times = [repr(self._samples / self._clock_hz)] if self._clock_hz else []
+        self._write([*times, *texts.values()])
         self._samples += 1
 
     def end(self) -> None:
-        """End the trace, if there is one."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        """End the trace and its tape, if there is one."""
+        for file in (self._file, self._tape):
+            if file is not None:
+                file.close()
+        self._file = self._tape = None
+
+    def _write_step(self, action: str, texts: Mapping[str, str], numbers: list[float]) -> None:
+        """Write a step to the tape, and before the first one the header."""
+        if self._tape is None:
+            self._tape = _tape_path(self._path).open("x", encoding="utf-8", newline="\n")
+            types = {name: {"type": _type(text)} for name, text in texts.items()}
+            about = {"spec": None, "versions": {"python": sys.version.split()[0]}, "clock_hz": self._clock_hz}
+            header = {"tape": 1, "game": self._game, **self._played, **about, "signals": types}
+            self._tape.write(json.dumps(header, separators=(",", ":"), default=_as_list) + "\n")
+        members = ",".join(f"{json.dumps(name)}:{text}" for name, text in texts.items())
+        # The bytes of -0 are not those of 0.
+        self._digest = adler32(pack(f"<{len(numbers)}d", *(number + 0.0 for number in numbers)), self._digest)
+        is_checked = (self._samples + 1) % 60 == 0
+        digest = f',"digest":"{self._digest:08x}"' if is_checked else ""
+        self._tape.write(f'{{"action":{action},"signals":{{{members}}}{digest}}}\n')
+        self._tape.flush()
 
     def _write(self, cells: Iterable[str]) -> None:
         assert self._file is not None
@@ -357,6 +406,21 @@ def _value(name: str, value: float) -> str:
     if not isfinite(value):
         raise ValueError(f"the signal {name} is {value}, and numbers must be finite")
     return repr(float(value))
+
+
+def _tape_path(trace: Path) -> Path:
+    return trace.with_name(f"{trace.stem}.tape.jsonl")
+
+
+def _type(text: str) -> str:
+    return "bool" if text in ("true", "false") else "number"
+
+
+def _as_list(value: Any) -> Any:
+    """Return an array or a number of NumPy as JSON can have it."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"an action of the type {type(value).__name__} cannot be written")
 
 
 def _cell(name: str) -> str:

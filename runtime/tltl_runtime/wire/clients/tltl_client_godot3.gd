@@ -496,6 +496,21 @@ class Digits:
 			return ("-0.%08d%s" if value < 0.0 else "0.%08d%s") % [int(whole), ("%.16f" % rest).substr(2, 16)]
 		return odd(value)
 
+	# Returns a value of JSON as a text whose numbers have all their digits.
+	static func json(value) -> String:
+		if value is float:
+			return text(value)
+		var parts = PoolStringArray()
+		if value is Dictionary:
+			for key in value:
+				parts.append(to_json(str(key)) + ":" + json(value[key]))
+			return "{" + parts.join(",") + "}"
+		if typeof(value) < TYPE_ARRAY:
+			return to_json(value)
+		for item in value:
+			parts.append(json(item))
+		return "[" + parts.join(",") + "]"
+
 	# Returns the text of a number that is very small or very large: all its digits, and an exponent.
 	static func odd(value: float) -> String:
 		if is_nan(value) or is_inf(value):
@@ -541,6 +556,12 @@ class Digits:
 #     recorder.begin()
 #     recorder.sample({"speed": 0.5, "at_goal": false})  # after each tick
 #     recorder.end()
+#
+# With the actions of the person, as tltlc would send them, each episode is also a tape,
+# `trace-0001.tape.jsonl`, with which the play can be repeated.  `game` is the name of the game:
+#
+#     recorder.begin("crypt", "v0", seed_)
+#     recorder.sample({"speed": 0.5, "at_goal": false}, 2)
 class Recorder:
 	extends Reference
 
@@ -550,35 +571,47 @@ class Recorder:
 	var _folder = ""
 	var _signals = []
 	var _clock_hz = null
+	var _game = ""
 	var _path = ""
 	var _samples = 0
+	var _played = {}
+	var _has_tape = false
+	var _low = 1  # of the digest, Adler-32
+	var _high = 0
 
-	func _init(folder: String, signals: Array, clock_hz = null) -> void:
+	func _init(folder: String, signals: Array, clock_hz = null, game: String = "game") -> void:
 		_folder = folder
 		_signals = signals
 		_clock_hz = clock_hz
+		_game = game
 
-	# Begins a new trace, and ends the one before; returns the path of the new file.
-	func begin() -> String:
+	# Begins a new trace, and ends the one before; returns the path of the new file.  A tape says which
+	# scene, variant and seed were played.
+	func begin(scene = null, variant: String = "v0", seed_ = null) -> String:
 		var number = 1
 		Directory.new().make_dir_recursive(_folder)
-		while File.new().file_exists(_folder.plus_file("trace-%04d.csv" % number)):
-			number += 1
 		_path = _folder.plus_file("trace-%04d.csv" % number)
+		while File.new().file_exists(_path) or File.new().file_exists(_tape_path()):
+			number += 1
+			_path = _folder.plus_file("trace-%04d.csv" % number)
 		_samples = 0
+		_has_tape = false
+		_low = 1
+		_high = 0
+		_played = {"scene": scene, "variant": variant, "seed": seed_}
 		var names = ["time"] if _clock_hz else []
 		for name in _signals:
 			var is_plain = not ("," in name) and not name.begins_with('"')
 			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
-		_write(names, File.WRITE)
+		_write(_path, PoolStringArray(names).join(","), File.WRITE)
 		return _path
 
 	# Writes the values of all signals at one moment to the file at once; begins a trace if there is
-	# none.  Returns false, and writes nothing, if a number is not finite or a signal is missing.
-	func sample(signals: Dictionary) -> bool:
-		if _path == "":
-			begin()
-		var cells = [Digits.text(_samples / float(_clock_hz))] if _clock_hz else []
+	# none.  With `action`, what the person did in the tick before it, the step is written to the tape,
+	# too.  Returns false, and writes nothing, if a number is not finite or a signal is missing, or if
+	# some samples of an episode have an action and others have none.
+	func sample(signals: Dictionary, action = null) -> bool:
+		var cells = []
 		for name in _signals:
 			if not signals.has(name):
 				return _refuse("the signal %s is missing" % name)
@@ -586,10 +619,18 @@ class Recorder:
 			if value is float and (is_nan(value) or is_inf(value)):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
+		if _path == "":
+			begin()
+		if _samples > 0 and (action != null) != _has_tape:
+			return _refuse("give the action of each sample of an episode, or of none")
+		if action != null and not _write_step(action, cells, signals):
+			return false
+		if _clock_hz:
+			cells.push_front(Digits.text(_samples / float(_clock_hz)))
 		_samples += 1
-		return _write(cells, File.READ_WRITE)
+		return _write(_path, PoolStringArray(cells).join(","), File.READ_WRITE)
 
-	# Ends the trace, if there is one.
+	# Ends the trace and its tape, if there is one.
 	func end() -> void:
 		_path = ""
 
@@ -598,11 +639,42 @@ class Recorder:
 		push_error(reason)
 		return false
 
-	func _write(cells: Array, mode: int) -> bool:
+	# Writes a step to the tape, and before the first one the header.
+	func _write_step(action, texts: Array, signals: Dictionary) -> bool:
+		if not _has_tape and not _write(_tape_path(), _header(signals), File.WRITE):
+			return false
+		_has_tape = true
+		var members = PoolStringArray()
+		var bytes = StreamPeerBuffer.new()
+		for index in range(_signals.size()):
+			members.append(to_json(_signals[index]) + ":" + texts[index])
+			bytes.put_double(float(signals[_signals[index]]) + 0.0)  # -0 counts as 0
+		for byte in bytes.data_array:
+			_low = (_low + byte) % 65521
+			_high = (_high + _low) % 65521
+		var digest = ',"digest":"%04x%04x"' % [_high, _low] if (_samples + 1) % 60 == 0 else ""
+		var line = '{"action":' + Digits.json(action) + ',"signals":{' + members.join(",") + "}" + digest + "}"
+		return _write(_tape_path(), line, File.READ_WRITE)
+
+	func _header(signals: Dictionary) -> String:
+		var types = PoolStringArray()
+		for name in _signals:
+			types.append(to_json(name) + ':{"type":"%s"}' % ("bool" if signals[name] is bool else "number"))
+		var about = {"tape": 1, "game": _game, "spec": null, "clock_hz": _clock_hz}
+		about["versions"] = {"godot": Engine.get_version_info()["string"]}
+		for key in _played:
+			about[key] = _played[key]
+		var text = Digits.json(about)
+		return text.substr(0, text.length() - 1) + ',"signals":{' + types.join(",") + "}}"
+
+	func _tape_path() -> String:
+		return _path.get_basename() + ".tape.jsonl"
+
+	func _write(path: String, line: String, mode: int) -> bool:
 		var file = File.new()
-		if file.open(_path, mode) != OK:
-			return _refuse("cannot write %s" % _path)
+		if file.open(path, mode) != OK:
+			return _refuse("cannot write %s" % path)
 		file.seek_end()
-		file.store_line(PoolStringArray(cells).join(","))
+		file.store_line(line)
 		file.close()
 		return true

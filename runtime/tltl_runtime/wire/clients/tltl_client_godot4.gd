@@ -458,6 +458,21 @@ class Digits:
 				return String.num(value, 30)
 		return odd(value)
 
+	## Returns a value of JSON as a text whose numbers have all their digits.
+	static func json(value: Variant) -> String:
+		if value is float:
+			return text(value)
+		var parts := PackedStringArray()
+		if value is Dictionary:
+			for key in value:
+				parts.append(JSON.stringify(str(key)) + ":" + json(value[key]))
+			return "{" + ",".join(parts) + "}"
+		if typeof(value) < TYPE_ARRAY:
+			return JSON.stringify(value)
+		for item in value:
+			parts.append(json(item))
+		return "[" + ",".join(parts) + "]"
+
 	## Returns the text of a number that is very small or very large: all its digits, and an exponent.
 	static func odd(value: float) -> String:
 		var factor: float = absf(value)
@@ -507,6 +522,12 @@ class Digits:
 ##     recorder.begin()
 ##     recorder.sample({"speed": 0.5, "at_goal": false})  # after each tick
 ##     recorder.end()
+##
+## With the actions of the person, as tltlc would send them, each episode is also a tape,
+## `trace-0001.tape.jsonl`, with which the play can be repeated.  `game` is the name of the game:
+##
+##     recorder.begin("crypt", "v0", seed_)
+##     recorder.sample({"speed": 0.5, "at_goal": false}, 2)
 class Recorder:
 	extends RefCounted
 
@@ -516,43 +537,53 @@ class Recorder:
 	var _folder: String = ""
 	var _signals: Array = []
 	var _clock_hz: float = 0.0
+	var _game: String = ""
 	var _file: FileAccess = null
+	var _tape: FileAccess = null
+	var _tape_path: String = ""
 	var _samples: int = 0
+	var _played: Dictionary = {}
+	var _low: int = 1  # of the digest, Adler-32
+	var _high: int = 0
 
-	func _init(folder: String, signals: Array, clock_hz: float = 0.0) -> void:
+	func _init(folder: String, signals: Array, clock_hz: float = 0.0, game: String = "game") -> void:
 		_folder = folder
 		_signals = signals
 		_clock_hz = clock_hz
+		_game = game
 
-	## Begins a new trace, and ends the one before; returns the path of the new file.
-	func begin() -> String:
+	## Begins a new trace, and ends the one before; returns the path of the new file.  A tape says which
+	## scene, variant and seed were played.
+	func begin(scene: Variant = null, variant: String = "v0", seed_: Variant = null) -> String:
 		end()
 		DirAccess.make_dir_recursive_absolute(_folder)
 		var number: int = 1
-		while FileAccess.file_exists(_path(number)):
+		while FileAccess.file_exists(_path(number)) or FileAccess.file_exists(_path(number, "tape.jsonl")):
 			number += 1
 		_file = FileAccess.open(_path(number), FileAccess.WRITE)
 		if _file == null:
 			_refuse("cannot write %s" % _path(number))
 			return ""
 		_samples = 0
+		_low = 1
+		_high = 0
+		_tape_path = _path(number, "tape.jsonl")
+		_played = {"scene": scene, "variant": variant, "seed": seed_}
 		var names := PackedStringArray()
 		if _clock_hz > 0.0:
 			names.append("time")
 		for name in _signals:
 			var is_plain: bool = not ("," in name) and not name.begins_with('"')
 			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
-		_write(names)
+		_write(_file, ",".join(names))
 		return _path(number)
 
 	## Writes the values of all signals at one moment to the file at once; begins a trace if there is
-	## none.  Returns false, and writes nothing, if a number is not finite or a signal is missing.
-	func sample(signals: Dictionary) -> bool:
-		if _file == null and begin() == "":
-			return false
+	## none.  With `action`, what the person did in the tick before it, the step is written to the tape,
+	## too.  Returns false, and writes nothing, if a number is not finite or a signal is missing, or if
+	## some samples of an episode have an action and others have none.
+	func sample(signals: Dictionary, action: Variant = null) -> bool:
 		var cells := PackedStringArray()
-		if _clock_hz > 0.0:
-			cells.append(Digits.text(_samples / _clock_hz))
 		for name in _signals:
 			if not signals.has(name):
 				return _refuse("the signal %s is missing" % name)
@@ -560,22 +591,61 @@ class Recorder:
 			if value is float and not is_finite(value):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
+		if _file == null and begin() == "":
+			return false
+		if _samples > 0 and (action != null) != (_tape != null):
+			return _refuse("give the action of each sample of an episode, or of none")
+		if action != null and not _write_step(action, cells, signals):
+			return false
+		if _clock_hz > 0.0:
+			cells.insert(0, Digits.text(_samples / _clock_hz))
 		_samples += 1
-		_write(cells)
+		_write(_file, ",".join(cells))
 		return true
 
-	## Ends the trace, if there is one.
+	## Ends the trace and its tape, if there is one.
 	func end() -> void:
 		_file = null
+		_tape = null
 
-	func _path(number: int) -> String:
-		return _folder.path_join("trace-%04d.csv" % number)
+	# Writes a step to the tape, and before the first one the header.
+	func _write_step(action: Variant, texts: PackedStringArray, signals: Dictionary) -> bool:
+		if _tape == null:
+			_tape = FileAccess.open(_tape_path, FileAccess.WRITE)
+			if _tape == null:
+				return _refuse("cannot write %s" % _tape_path)
+			_write(_tape, _header(signals))
+		var members := PackedStringArray()
+		var bytes := StreamPeerBuffer.new()
+		for index in range(_signals.size()):
+			members.append(JSON.stringify(_signals[index]) + ":" + texts[index])
+			bytes.put_double(float(signals[_signals[index]]) + 0.0)  # -0 counts as 0
+		for byte in bytes.data_array:
+			_low = (_low + byte) % 65521
+			_high = (_high + _low) % 65521
+		var digest: String = ',"digest":"%04x%04x"' % [_high, _low] if (_samples + 1) % 60 == 0 else ""
+		_write(_tape, '{"action":' + Digits.json(action) + ',"signals":{' + ",".join(members) + "}" + digest + "}")
+		return true
+
+	func _header(signals: Dictionary) -> String:
+		var types := PackedStringArray()
+		for name in _signals:
+			types.append(JSON.stringify(name) + ':{"type":"%s"}' % ("bool" if signals[name] is bool else "number"))
+		var about: Dictionary = {"tape": 1, "game": _game, "spec": null}
+		about["clock_hz"] = _clock_hz if _clock_hz > 0.0 else null
+		about["versions"] = {"godot": Engine.get_version_info()["string"]}
+		about.merge(_played)
+		var text: String = Digits.json(about)
+		return text.substr(0, text.length() - 1) + ',"signals":{' + ",".join(types) + "}}"
+
+	func _path(number: int, ending: String = "csv") -> String:
+		return _folder.path_join("trace-%04d.%s" % [number, ending])
 
 	func _refuse(reason: String) -> bool:
 		problem = reason
 		push_error(reason)
 		return false
 
-	func _write(cells: PackedStringArray) -> void:
-		_file.store_line(",".join(cells))
-		_file.flush()
+	func _write(file: FileAccess, line: String) -> void:
+		file.store_line(line)
+		file.flush()
