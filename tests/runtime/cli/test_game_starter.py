@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from runpy import run_path
+from typing import Any
 
 import pytest
 
@@ -19,6 +20,7 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.page import chromium
 from tests.runtime.wire.test_web_game import served
 from tests.waiting import HANG_S
+from tltl_runtime import read_tape
 from tltl_runtime.cli.support import game_starter
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.scene_env import make_base_env
@@ -196,6 +198,7 @@ def test_a_person_is_recorded_in_the_starter_in_python(tltlc: Run, made: Callabl
     result = tltlc("monitor", "hall.tltl", "traces")
     assert result.status in (0, 1), result.err
     assert "trace-0001.csv" in result.out
+    check_tape(tltlc, Path("traces/trace-0001.tape.jsonl"))
 
 
 @pytest.mark.parametrize(("kind", "words"), [("python", [sys.executable, "record.py"]), ("unreal", ["./hall"])])
@@ -265,17 +268,34 @@ def test_a_walk_in_godot_becomes_a_trace_if_the_player_moves(
 
 
 def check_one_trace(tltlc: Run, folder: Path) -> None:  # noqa: F811
-    """Check that a folder has one trace, which can be judged."""
-    assert [path.name for path in folder.iterdir()] == ["trace-0001.csv"]
+    """Check that a folder has one trace and its tape, which can be judged."""
+    assert sorted(path.name for path in folder.iterdir()) == ["trace-0001.csv", "trace-0001.tape.jsonl"]
     result = tltlc("monitor", "hall.tltl", folder)
     assert "trace-0001.csv: not accepted: " in result.out, result.err
+    check_tape(tltlc, folder / "trace-0001.tape.jsonl")
+
+
+def check_tape(tltlc: Run, path: Path) -> None:  # noqa: F811
+    """Check a tape of a walk: it says what was played, and is judged as its trace."""
+    header = read_tape(path).header
+    assert (header.game, header.scene, header.variant, header.clock_hz) == ("hall", "hall", "v0", 10)
+    assert isinstance(header.seed, int)
+    trace = path.with_name(path.name.replace("tape.jsonl", "csv"))
+    assert tltlc("monitor", "hall.tltl", path).out == tltlc("monitor", "hall.tltl", trace).out != ""
 
 
 @pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
 def test_in_the_page_a_new_walk_begins_after_a_saved_one(
+    tltlc: Run,  # noqa: F811
     made: Callable[[str], list[str]],
     tmp_path: Path,
 ) -> None:
+    def is_trace(download: Any) -> bool:
+        return str(download.suggested_filename).endswith(".csv")
+
+    def is_tape(download: Any) -> bool:
+        return not is_trace(download)
+
     made("web")
     with served(Path.cwd()) as address, chromium.browser() as browser:
         page = browser.new_page()
@@ -288,12 +308,13 @@ def test_in_the_page_a_new_walk_begins_after_a_saved_one(
             assert page.is_disabled("#save")
             page.keyboard.press("ArrowRight")
             assert page.text_content("#map") != start
-            with page.expect_download() as download:
+            with page.expect_download(is_trace) as trace, page.expect_download(is_tape) as tape:
                 page.click("#save")
-            assert download.value.suggested_filename == f"hall-trace-000{number}.csv"
-            download.value.save_as(tmp_path / "traces" / f"{number}.csv")
+            for download in (trace.value, tape.value):
+                download.save_as(tmp_path / "traces" / download.suggested_filename)
+            check_tape(tltlc, tmp_path / "traces" / f"hall-trace-000{number}.tape.jsonl")
             page.wait_for_function("start => document.getElementById('map').textContent === start", arg=start)
-    traces = [path.read_text(encoding="utf-8") for path in (tmp_path / "traces").iterdir()]
+    traces = [path.read_text(encoding="utf-8") for path in (tmp_path / "traces").glob("*.csv")]
     assert traces == ["time,has_key,at_door,on_spikes\n0,false,false,false\n"] * 2
 
 

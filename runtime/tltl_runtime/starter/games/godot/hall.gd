@@ -22,6 +22,7 @@ var hello = {
 }
 var tltl = Tltl.new()
 var recorder = null
+var seed_by_hand = null  # of a walk whose first move is still to come
 var rows = []  # from south to north
 var things = {}
 var player = Vector2()
@@ -32,7 +33,7 @@ func _ready() -> void:
 	if OS.has_environment("TLTL_PORT"):
 		tltl.begin(self)
 		return
-	recorder = Tltl.Recorder.new("user://traces", hello["signals"].keys(), hello["clock_hz"])
+	recorder = Tltl.Recorder.new("user://traces", hello["signals"].keys(), hello["clock_hz"], hello["name"])
 	begin_by_hand()
 
 
@@ -92,8 +93,9 @@ func mark(cell: Vector2) -> String:
 
 func begin_by_hand() -> void:
 	randomize()
-	reset("hall", "v0", randi())
-	recorder.end()  # the next move begins a trace
+	seed_by_hand = randi()
+	reset("hall", "v0", seed_by_hand)
+	recorder.end()  # the next move begins a trace and a tape
 
 
 func play_by_hand() -> void:
@@ -101,7 +103,10 @@ func play_by_hand() -> void:
 		if Input.is_action_just_pressed(KEYS[action]):
 			move(action)
 			var now = state()
-			recorder.sample(now["signals"])
+			if seed_by_hand != null:
+				recorder.begin("hall", "v0", seed_by_hand)
+				seed_by_hand = null
+			recorder.sample(now["signals"], action)
 			if now["ended"]:
 				begin_by_hand()
 	var lines = rows.duplicate()

@@ -7,14 +7,16 @@ local KEYS = {up = 0, down = 1, left = 2, right = 3} -- in the order of the move
 local CELL = 48 -- pixels
 
 local recorder, now
+local seed -- of a walk whose first move is still to come
 
 function hall.read(scene)
   return (assert(love.filesystem.read("levels/" .. scene .. ".txt")))
 end
 
 local function begin()
-  now = hall:reset("hall", "v0", love.math.random(0, 2 ^ 31))
-  recorder:finish() -- the next move begins a trace
+  seed = love.math.random(0, 2 ^ 31)
+  now = hall:reset("hall", "v0", seed)
+  recorder:finish() -- the next move begins a trace and a tape
 end
 
 function love.load()
@@ -23,7 +25,7 @@ function love.load()
     love.event.quit()
     return
   end
-  recorder = tltl_client.Recorder("traces", {"has_key", "at_door", "on_spikes"}, hall.hello.clock_hz)
+  recorder = tltl_client.Recorder("traces", {"has_key", "at_door", "on_spikes"}, hall.hello.clock_hz, hall.hello.name)
   begin()
 end
 
@@ -32,7 +34,9 @@ function love.keypressed(key)
     begin()
   elseif KEYS[key] then
     now = hall:step(KEYS[key])
-    recorder:sample(now.signals)
+    if seed then recorder:begin("hall", "v0", seed) end
+    seed = nil
+    recorder:sample(now.signals, KEYS[key])
   end
 end
 

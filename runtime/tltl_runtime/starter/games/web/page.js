@@ -18,12 +18,14 @@ function draw(game) {
 
 async function playByHand() {
   const game = new Hall(read);
-  const recorder = new Recorder("hall", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
+  const recorder = new Recorder("hall", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ, game: game.hello.name });
   const help = element("text").textContent;
   let now = null;
+  let seed = null; // of a walk whose first move is still to come
   async function begin() {
     now = null; // until the level is read, no key moves the player
-    now = await game.reset("hall", "v0", Math.floor(Math.random() * 2 ** 31));
+    seed = Math.floor(Math.random() * 2 ** 31);
+    now = await game.reset("hall", "v0", seed);
     element("text").textContent = help;
     draw(game);
   }
@@ -32,7 +34,9 @@ async function playByHand() {
     if (action < 0 || !now || now.ended) return;
     event.preventDefault();
     now = game.step(action);
-    recorder.sample(now.signals); // the first one begins the trace
+    if (seed !== null) recorder.begin("hall", "v0", seed);
+    seed = null;
+    recorder.sample(now.signals, action);
     element("save").disabled = false;
     draw(game);
     if (now.signals.has_key) element("text").textContent = now.signals.at_door ? "You are out!" : "You have the key.";

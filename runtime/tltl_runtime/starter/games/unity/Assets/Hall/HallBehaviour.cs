@@ -1,5 +1,5 @@
 // The game in Unity: put this component on one object of the first scene. tltlc plays if it has started the game;
-// otherwise a person does, with the arrow keys, and each walk becomes a trace in the folder `traces`.
+// otherwise a person does, with the arrow keys, and each walk becomes a trace and a tape in the folder `traces`.
 
 using System;
 using Tltl;
@@ -15,12 +15,13 @@ public sealed class HallBehaviour : MonoBehaviour
     private readonly Hall _hall = new Hall();
     private Client _client;
     private Recorder _recorder;
+    private long? _seed; // of a walk whose first move is still to come
 
     private void Start()
     {
         if (Environment.GetEnvironmentVariable("TLTL_PORT") == null)
         {
-            _recorder = new Recorder("traces", Hall.Signals, Hall.ClockHz);
+            _recorder = new Recorder("traces", Hall.Signals, Hall.ClockHz, "hall");
             Begin();
             return;
         }
@@ -44,8 +45,9 @@ public sealed class HallBehaviour : MonoBehaviour
 
     private void Begin()
     {
-        _hall.Reset("hall", "v0", UnityEngine.Random.Range(0, int.MaxValue));
-        _recorder.End(); // the next move begins a trace
+        _seed = UnityEngine.Random.Range(0, int.MaxValue);
+        _hall.Reset("hall", "v0", _seed);
+        _recorder.End(); // the next move begins a trace and a tape
     }
 
     private void PlayByHand()
@@ -54,7 +56,9 @@ public sealed class HallBehaviour : MonoBehaviour
         {
             if (!Input.GetKeyDown(Keys[action])) continue;
             State now = _hall.Step((long)action);
-            _recorder.Sample(now.Signals);
+            if (_seed != null) _recorder.Begin("hall", "v0", _seed);
+            _seed = null;
+            _recorder.Sample(now.Signals, action);
             if (now.Ended) Begin();
         }
     }
