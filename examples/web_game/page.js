@@ -48,17 +48,19 @@ class DrawnCourier extends Courier {
 function playByHand() {
   const game = new Courier();
   const monitor = new Monitor();
-  const recorder = new Recorder("courier", Object.keys(game.hello.signals), { clockHz: CLOCK_HZ });
+  const options = { clockHz: CLOCK_HZ, game: game.hello.name };
+  const recorder = new Recorder("courier", Object.keys(game.hello.signals), options);
   const held = [];
   let action = 0;
   let agent = null;
   let before, state, start;
 
   function begin() {
-    state = game.reset("yard", "v0", Math.floor(Math.random() * 2 ** 31));
+    const seed = Math.floor(Math.random() * 2 ** 31);
+    state = game.reset("yard", "v0", seed);
     before = structuredClone(game.now);
     monitor.reset();
-    recorder.begin();
+    recorder.begin("yard", "v0", seed);
     start = performance.now();
     askAgent();
   }
@@ -72,9 +74,10 @@ function playByHand() {
 
   function tick() {
     before = structuredClone(game.now);
-    state = game.step(held.at(-1) ?? action);
+    const played = held.at(-1) ?? action;
+    state = game.step(played);
     action = 0;
-    recorder.sample(state.signals);
+    recorder.sample(state.signals, played);
     const result = monitor.step(state.signals);
     element("progress").value = result.progress;
     element("text").textContent = `Still to do: ${result.label}`;

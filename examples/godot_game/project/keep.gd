@@ -1,7 +1,7 @@
 # The game: a player fetches a key, opens a door, crosses a chasm on a ferry, and walks to the beacon.
 #
 # tltlc plays it through `tltl_client_godot3.gd`. If tltlc has not started the game, a person plays
-# with the arrow keys, and each episode is recorded as a trace in user://traces.
+# with the arrow keys, and each episode is recorded in user://traces, as a trace and a tape.
 #
 # A tick is a tenth of a second. x points east, y up and z south; lengths are in metres.
 
@@ -51,7 +51,7 @@ func _ready() -> void:
 	if OS.has_environment("TLTL_PORT"):
 		tltl.begin(self)
 	else:
-		recorder = Tltl.Recorder.new("user://traces", hello["signals"].keys(), hello["clock_hz"])
+		recorder = Tltl.Recorder.new("user://traces", hello["signals"].keys(), hello["clock_hz"], hello["name"])
 		begin_by_hand()
 
 
@@ -66,12 +66,11 @@ func _physics_process(_delta) -> void:
 			level.tick(action[0] - 1, action[1] - 1)
 			judge.step(level.signals())
 		return
-	level.tick(
-		int(Input.is_action_pressed("ui_right")) - int(Input.is_action_pressed("ui_left")),
-		int(Input.is_action_pressed("ui_up")) - int(Input.is_action_pressed("ui_down"))
-	)
+	var east = int(Input.is_action_pressed("ui_right")) - int(Input.is_action_pressed("ui_left"))
+	var north = int(Input.is_action_pressed("ui_up")) - int(Input.is_action_pressed("ui_down"))
+	level.tick(east, north)
 	var signals = level.signals()
-	recorder.sample(signals)
+	recorder.sample(signals, [east + 1, north + 1])
 	if judge.step(signals) or level.is_over():
 		print(judge.verdict())
 		begin_by_hand()
@@ -79,8 +78,9 @@ func _physics_process(_delta) -> void:
 
 func begin_by_hand() -> void:
 	randomize()
-	reset("courtyard", "v0", randi())
-	recorder.begin()
+	var seed_ = randi()
+	reset("courtyard", "v0", seed_)
+	recorder.begin("courtyard", "v0", seed_)
 
 
 func reset(scene, variant, seed_) -> Dictionary:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -12,6 +14,8 @@ from typing import Any
 import pytest
 
 from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
+from tltl_runtime import read_tape
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.scene_env import make_scene_env
 from tltl_runtime.spec.task import load_task
@@ -96,6 +100,39 @@ def test_the_monitor_inside_says_the_same_as_the_one_outside_at_each_step(scene:
     ]
     assert inside == expected
     assert len({line[4] for line in inside if line[0] != "begin"}) > 1
+
+
+@needs_engine
+def test_the_tape_of_a_person_is_the_play_of_an_agent_with_the_same_actions(tmp_path: Path) -> None:
+    shutil.copytree(PROJECT, tmp_path / "project")
+    script = tmp_path / "project" / "keep.gd"
+    person = """
+
+func _process(_delta) -> void:
+	var frame = Engine.get_physics_frames()
+	for key in ["ui_right", "ui_left", "ui_up", "ui_down"]:
+		if (frame / 7 + key.length()) % 3 == 0:
+			Input.action_press(key)
+		else:
+			Input.action_release(key)
+	if frame > 150:
+		get_tree().quit()
+"""
+    script.write_text(script.read_text(encoding="utf-8") + person, encoding="utf-8")
+    words = ["godot3-server", "--path", "project", "--fixed-fps", "10", "--disable-render-loop"]
+    variables = {name: value for name, value in os.environ.items() if name != "TLTL_PORT"}
+    variables["XDG_DATA_HOME"] = str(tmp_path / "data")
+    subprocess.run(words, cwd=tmp_path, env=variables, timeout=HANG_S, check=True)
+    tapes = [read_tape(path) for path in sorted((tmp_path / "data").rglob("*.tape.jsonl"))]
+    assert sum(len(tape.steps) for tape in tapes) > 100
+    env = WireEnv(game(), scene="courtyard")
+    for tape in tapes:
+        assert (tape.header.game, tape.header.scene, tape.header.clock_hz) == ("keep", "courtyard", 10)
+        env.reset(seed=tape.header.seed)
+        for step in tape.steps:
+            env.step(step.action)
+            assert env.tltl_signals() == step.signals
+    env.close()
 
 
 @needs_engine

@@ -21,7 +21,7 @@ from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.page import chromium
 from tests.runtime.wire.test_javascript_client import BROWSER, CLIENT, NODE, needs_browser
 from tests.waiting import HANG_S
-from tltl_runtime import TltlEnv
+from tltl_runtime import TltlEnv, read_tape
 from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.wire_game import WireGame
@@ -191,14 +191,25 @@ def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) 
         page.wait_for_function("document.getElementById('progress').value > 0")
         page.wait_for_function("!document.getElementById('save').disabled")
         page.keyboard.up("ArrowRight")
-        with page.expect_download() as download:
+        downloads: list[Any] = []
+        page.on("download", lambda download: downloads.append(download))
+        with page.expect_download(lambda download: download.suggested_filename.endswith(".tape.jsonl")):
             page.click("#save")
-        trace = tmp_path / download.value.suggested_filename
-        download.value.save_as(trace)
+        for download in downloads:
+            download.save_as(tmp_path / download.suggested_filename)
         assert errors == []
-    assert trace.name == "courier-trace-0001.csv"
-    result = tltlc("monitor", f"{SPEC}:deliver", trace)
-    assert result.out.splitlines()[-1].startswith("not accepted"), result.err
+    names = [download.suggested_filename for download in downloads]
+    assert names == ["courier-trace-0001.csv", "courier-trace-0001.tape.jsonl"]
+    trace, tape = (tltlc("monitor", f"{SPEC}:deliver", tmp_path / name) for name in names)
+    assert trace.out.splitlines()[-1].startswith("not accepted"), trace.err
+    assert trace.out == tape.out
+    ride = read_tape(tmp_path / names[1])
+    env = WireEnv(WireGame("courier", FOLDER, (NODE, "node_game.js")), scene=ride.header.scene)
+    env.reset(seed=ride.header.seed)
+    for step in ride.steps:
+        env.step(step.action)
+        assert env.tltl_signals() == step.signals
+    env.close()
 
 
 @pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
