@@ -20,7 +20,7 @@ _PAGES_OF_SECTIONS: Final = {
 
 def pages() -> list[Page]:
     """Return the first page, and the pages of sections."""
-    title, start, after_start, pitch, sections = _parts()
+    title, pitch, sections = _parts()
     pages_of_sections = []
     for heading, uri in _PAGES_OF_SECTIONS.items():
         text = f"# {heading}\n{_raise_headings(sections.pop(heading))}"
@@ -31,7 +31,7 @@ def pages() -> list[Page]:
             Page(uri, commands.with_links(text) if heading == "The commands" else text, "README.md")
         )
     rest = "".join(f"## {heading}\n{text}" for heading, text in sections.items())
-    home = read("docs_site/home.md").format(title=title, pitch=pitch, rest=rest, start=f"{start}\n\n{after_start}")
+    home = read("docs_site/home.md").format(title=title, pitch=pitch, rest=rest)
     return [Page("index.md", home, "README.md"), *pages_of_sections]
 
 
@@ -41,11 +41,11 @@ def homes() -> dict[str, str]:
     return {"README.md": "index.md"} | places
 
 
-def _parts() -> tuple[str, str, str, str, dict[str, str]]:
-    """Return the title, the commands to start, the text after them, the pitch, and the sections by heading."""
+def _parts() -> tuple[str, str, dict[str, str]]:
+    """Return the title, the text below it, and the sections by heading."""
     lead, *pieces = re.split(r"^## (.*)\n", read("README.md"), flags=re.MULTILINE)
-    title, start, after_start, pitch = lead.split("\n\n", 3)
-    return title.removeprefix("# "), start, after_start, pitch, dict(zip(pieces[::2], pieces[1::2], strict=True))
+    title, pitch = lead.split("\n\n", 1)
+    return title.removeprefix("# "), pitch, dict(zip(pieces[::2], pieces[1::2], strict=True))
 
 
 def _raise_headings(text: str) -> str:

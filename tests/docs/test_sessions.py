@@ -84,6 +84,17 @@ class _SteadyShell(Shell):
         return re.sub(r"[\d,]+ steps a second", "90,000 steps a second", super().run(command))
 
 
+def test_the_environment_of_the_readme_runs_with_the_files_of_the_page_on_games(tmp_path: Path) -> None:
+    pytest.importorskip("gymnasium")
+    shell = Shell(tmp_path)
+    for block in blocks(DOCS / "games.md"):
+        if name := re.match(r"(?:#|//) (lake\S+)\n", block.text):
+            (tmp_path / name[1]).write_text(block.text)
+    program = next(block.text for block in blocks(DOCS.parent / "README.md") if "TltlEnv" in block.text)
+    (tmp_path / "program.py").write_text(program)
+    assert shell.run("python program.py") == "F at_goal & G !in_hole 0.0\n"
+
+
 def test_the_page_on_games_runs(tmp_path: Path) -> None:
     pytest.importorskip("gymnasium")
     assert run_page((DOCS / "games.md").read_text(encoding="utf-8"), _SteadyShell(tmp_path)) == 2

@@ -1,4 +1,4 @@
-"""``tltlc demonstrate``: record episodes of the scripted expert on a level."""
+"""``tltlc demonstrate``: record episodes of the expert of a game."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def command(
     notation: Notation,
     careless: bool,
 ) -> int:
-    """Let the scripted expert play a level.
+    """Let the expert of a game play a level, or a scene `FILE.game.toml:SCENE`.
 
-    For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and
+    A game of your own has an expert if its environment has a method `tltl_expert()`. For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and
     says why an episode failed. Existing files are kept: a different episode with the same name becomes
     LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails.
     """

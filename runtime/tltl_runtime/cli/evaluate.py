@@ -36,14 +36,15 @@ _MOST_NAMED: Final = 6
 @click.command(
     epilog="""\b
 Examples:
+  tltlc evaluate lake_agent
+  tltlc evaluate lake_agent --game lake.game.toml:small:slippery --episodes 500 --seed 7 --workers 0
   tltlc evaluate --level cover_and_hide
-  tltlc evaluate training/my_level-v0-careful-0 --episodes 500 --seed 7 --workers 0
   tltlc evaluate --level branching:v1 --json - > branching.json
   tltlc evaluate --level branching:v1 --out evaluation --record all
 """
 )
 @click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))
-@level_options("The level to play (default: the level of the training; VARIANT: v0).")
+@level_options("The level to play (default: the level or the scene of the training; VARIANT: v0).")
 @click.option(
     "--episodes",
     metavar="N",

@@ -60,7 +60,7 @@ Examples:
 @keyboard_options
 @level_faults()
 def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch) -> None:
-    """Play a level with the keyboard, in real time, in a window.
+    """Play a level, or a scene `FILE.game.toml:SCENE`, with the keyboard, in a window.
 
     The spec judges you while you play: the screen shows what remains to be done. Each episode is recorded to a file,
     also if you stop it. `tltlc replay FILE` shows a recording.

@@ -32,6 +32,7 @@ Examples:
   tltlc record cover_and_hide
   tltlc record branching:v1 --by keyboard --episodes 10 -o mine
   tltlc record --spec my_plan.tltl:careful
+  tltlc record lake.game.toml:small --by keyboard
   tltlc train --method imitation --demonstrations mine --level branching:v1
 """
 )
@@ -41,7 +42,7 @@ Examples:
     type=click.Choice(("expert", "keyboard")),
     default="expert",
     show_default=True,
-    help="Who plays: the scripted expert or you.",
+    help="Who plays: the expert of the game or you.",
 )
 @click.option("--spec", metavar="SPEC[:NAME]", help="The spec that judges the player (default: the spec of the level).")
 @click.option(
@@ -72,9 +73,9 @@ def command(
     view: str,
     crouch: Crouch,
 ) -> int:
-    """Record demonstrations: episodes of the scripted expert or of a person that meet the spec.
+    """Record demonstrations: episodes of an expert or of a person that meet the spec.
 
-    Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode that fails is not kept; the command
+    LEVEL may also be a scene, `FILE.game.toml:SCENE`. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode that fails is not kept; the command
     says why. Demonstrations that are already in the folder count, so the same command continues where it stopped. Other
     recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the spec names it.
 

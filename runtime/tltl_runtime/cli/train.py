@@ -1,4 +1,4 @@
-"""``tltlc train``: train an agent to meet a spec in a level."""
+"""``tltlc train``: train an agent to meet a spec in a scene of a game, or in a level."""
 
 from __future__ import annotations
 
@@ -44,13 +44,14 @@ def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, 
 @click.command(
     epilog="""\b
 Examples:
-  tltlc train cover_and_hide.tltl
-  tltlc train plans.tltl:careful --level my_level.toml:v1 --seed 3 --out runs/careful
-  tltlc train --resume runs/careful --steps 8000000
+  tltlc train --game lake.game.toml:small --out lake_agent
+  tltlc train lake.tltl:cross --game lake.game.toml:small --minutes 15 --seed 3 --out runs/cross
+  tltlc train --resume runs/cross --minutes 30
   tltlc train --print-config > settings.toml
-  tltlc train plans.tltl --config settings.toml
+  tltlc train --game lake.game.toml:small --config settings.toml
+  tltlc train --from lake_agent --game lake.game.toml:small:slippery
+  tltlc train plans.tltl:careful --level my_level.toml:v1
   tltlc train cover_and_hide --method imitation --demonstrations mine
-  tltlc train --from training/vault-v0-careful-0 --level vault.toml:v1
 
 \b
 Watching, from another terminal:
@@ -101,14 +102,14 @@ Watching, from another terminal:
     metavar="N",
     type=cli.WholeRange(),
     callback=_setting("stop", "steps"),
-    help="Stop after this many steps, counted over all environments.",
+    help="Stop after this many steps, counted over all environments (new trainings: 4,000,000).",
 )
 @click.option(
     "--minutes",
     metavar="M",
     type=float,
     callback=_setting("stop", "minutes"),
-    help="Stop after this many minutes of training (0: no limit).",
+    help="Stop after this many minutes of training (0: no limit, as in new trainings).",
 )
 @click.option(
     "--workers",
@@ -129,8 +130,8 @@ def command(
 ) -> int:
     """Train an agent until it meets a spec.
 
-    SPEC judges and rewards the agent; the default is the spec of --level.
-    The training ends when 100 episodes in a row met the spec and then 300 new episodes of the unchanged policy met it,
+    The agent plays a scene of your game (--game) or a level (--level). SPEC judges and rewards it; the default is the
+    spec that the scene or the level names. The training ends when 100 episodes in a row met the spec and then 300 new episodes of the unchanged policy met it,
     or at a limit. The folder then contains the policy (policy.safetensors), the record of the training (record.json,
     curve.png) and the measurements (metrics.jsonl, and event files for TensorBoard). After Ctrl-C, --resume continues.
 

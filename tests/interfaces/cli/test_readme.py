@@ -44,8 +44,11 @@ def test_the_readme_names_every_built_in_command() -> None:
 
 
 def test_the_picture_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
-    drawn = tltlc("render", ROOT / "examples" / "cover_and_hide.tltl", "-t", "svg").out
-    assert texts_and_colours((ROOT / "docs/images/cover_and_hide.svg").read_text()) == texts_and_colours(drawn)
+    spec = re.search(r"```tltl\n(.*?)```", README, re.DOTALL)
+    assert spec
+    Path("hall.tltl").write_text(spec[1])
+    drawn = tltlc("render", "hall.tltl", "-t", "svg").out
+    assert texts_and_colours((ROOT / "docs/images/leave.svg").read_text()) == texts_and_colours(drawn)
 
 
 def texts_and_colours(picture: str) -> list[tuple[str, ...]]:

@@ -24,7 +24,7 @@ from tltlc.io.resources import OutOfTimeError
 BUILT_IN: Final = {
     "compile": "Compile specs to artefacts, diagrams and monitors.",
     "import": "Convert an automaton of another tool (HOA) to an artefact.",
-    "check": "Report errors and warnings in source files.",
+    "check": "Report errors in specs, and what a game lacks.",
     "lint": "Report probable mistakes in specs that compile.",
     "fmt": "Format source files in one style.",
     "render": "Draw the automaton of a spec.",
@@ -38,9 +38,9 @@ BUILT_IN: Final = {
     "conformance": "Write test cases for the monitors of an engine.",
     "lsp": "Start a language server for editors.",
     "serve": "Serve a page for trying out specs.",
-    "list": "List predicates, targets, levels or error codes.",
+    "list": "List predicates, targets, games, levels or error codes.",
     "explain": "Explain a spec or an error code.",
-    "new": "Create a starter project that compiles.",
+    "new": "Create a spec or a small game to start with.",
     "completion": "Print the completion script of a shell.",
 }
 
@@ -51,8 +51,8 @@ The commands that are left out here limit only parts of their work.
 """
 
 RUNTIME_COMMANDS: Final = {
-    "demonstrate": "Let the scripted expert play a level, and record it.",
-    "play": "Play a level with the keyboard, and record it.",
+    "demonstrate": "Let the expert of a game play, and record it.",
+    "play": "Play a game with the keyboard, and record it.",
     "record": "Record demonstrations for an agent to imitate.",
     "replay": "Show recorded episodes: a summary, plans, films, signals.",
     "train": "Train an agent until it meets a spec.",
@@ -218,13 +218,23 @@ def _version(ctx: click.Context, _: click.Parameter, is_given: bool) -> None:
 
 
 _HELP: Final = """\
-Compile plans for a game, written in temporal logic, to automata that judge and reward a player.
+Find out whether a game still plays as designed.
+
+A spec has the rules of a level: what the player must do, and what must not happen. tltlc judges recorded play by it,
+trains agents that meet it, reports what no longer plays as before, and writes monitors for engines.
 
 \b
 Start here:
-  tltlc new my_game                                a project that compiles
-  tltlc compile my_game/first_level.tltl -o build  its automaton and its monitor
-  tltlc render my_game/first_level.tltl -o level.svg
+  tltlc new my_hall --game python    a small game for agents; also `godot`, `web` …
+  tltlc new my_game                  a spec and a recorded trace, without a game
+  tltlc serve --open                 a page for trying out specs
+
+\b
+With a game:
+  tltlc check --game hall.game.toml  does the game have what the spec needs?
+  tltlc train --game hall.game.toml  an agent learns to meet the spec
+  tltlc baseline suite.toml          keep how agents play now
+  tltlc regress suite.toml           do they still play so?
 """
 
 
@@ -255,7 +265,7 @@ Start here:
 )
 @click.pass_context
 def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
-    """Compile plans for a game, written in temporal logic, to automata that judge and reward a player."""
+    """Find out whether a game still plays as designed: judge play, train agents, report what has changed."""
     if ctx.obj:
         resources.permit(ProcessLimit(memory=int(max_memory * 2**30), work_s=max_cpu))
     if ctx.invoked_subcommand in BOUNDED:

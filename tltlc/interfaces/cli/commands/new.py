@@ -19,16 +19,16 @@ from tltlc.interfaces.cli.paths import OutputPath
 Examples:
   tltlc new my_game
   tltlc test my_game
+  tltlc new my_hall --game python
   tltlc new my_vault --level vault
   tltlc play my_vault/vault.toml
-  tltlc new my_hall --game python
 """
 )
 @click.argument("folder", metavar="NAME", type=OutputPath("folder"))
 @click.option(
     "--level",
     metavar="LEVEL",
-    help="Copy a level of the stealth game with its spec, assets and overlays: the small level `vault`, or one from "
+    help="Copy a level of the stealth game, with its spec, assets and overlays: the small level `vault`, or one from "
     "`tltlc list levels`.",
 )
 @click.option(
@@ -40,7 +40,8 @@ Examples:
 def command(folder: Path, level: str | None, game: str | None) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
 
-    With --level, the folder contains a level for you to change instead; with --game, a game.
+    With --game, the folder contains a small game instead, which agents can play at once. With --level, it contains a
+    level for you to change, of the stealth game that comes with tltlc.
     """
     from tltlc.interfaces.cli.folders import is_free, occupied_folder_error
     from tltlc.interfaces.cli.report import Report
