@@ -12,6 +12,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tests.runtime.regression.handmade import ROOM, case, some_episodes, suite, summaries
+from tltl_runtime.cli.support import game_starter
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression.report.case_report import CaseReport
@@ -67,15 +68,18 @@ def test_the_page_has_the_defaults() -> None:
 def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
     files = [
         "vault.toml",
-        "cover_and_hide.toml",
         "vault.tltl",
         "edits/crates_moved.toml",
-        "training/vault/policy.safetensors",
     ]
     for name in files:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
-    shutil.copy(shipped_policies()["cover_and_hide"], tmp_path / files[-1])
+    for name, text in game_starter.files("python")[0].items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    for folder in ("training/vault", "agent"):
+        (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+        shutil.copy(shipped_policies()["cover_and_hide"], tmp_path / folder / "policy.safetensors")
     texts = [block.text for block in blocks(DOCS / "regression.md") if block.kind == "toml"]
     (tmp_path / "metroid.tltl").write_text("signal a: bool\nspec fetch { reach a }\n", encoding="utf-8")
     for name in ("v1", "v2"):
@@ -84,7 +88,7 @@ def test_the_suites_on_the_page_are_valid(tmp_path: Path) -> None:
     for text in texts:
         (tmp_path / "game.toml").write_text(text, encoding="utf-8")
         counts.append(len(read_suite(tmp_path / "game.toml").cases))
-    assert counts == [2, 2, 1]
+    assert counts == [1, 2, 1]
 
 
 def test_the_page_lists_exactly_the_fields_of_the_report() -> None:
