@@ -43,9 +43,10 @@ Examples:
 def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) -> int:
     """Record how the policies of a suite play the levels now. `tltlc regress` compares with this baseline.
 
-    Run it while the levels play as they are meant to, and again after each change that is meant. Each level is played in the variant that its cases are compared with; by default the first one. Results in an
-    existing file are kept if level, policy, spec, seed, versions and code have not changed. Without SUITE, the command
-    plays the levels that come with tltlc and writes `shipped.baseline.json`.
+    Run it while the levels play as they are meant to, and again after each change that is meant. Each level is played
+    in the variant that its cases are compared with; by default the first one. Results in an existing file are kept if
+    level, policy, spec, seed, versions and code have not changed. Without SUITE, the command plays the levels that come
+    with tltlc and writes `shipped.baseline.json`.
 
     The exit status is 1 if none of the cases can pass with this baseline.
     """

@@ -57,9 +57,10 @@ def command(
 ) -> int:
     """Let the expert of a game play a level, or a scene `FILE.game.toml:SCENE`.
 
-    A game of your own has an expert if its environment has a method `tltl_expert()`. For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and
-    says why an episode failed. Existing files are kept: a different episode with the same name becomes
-    LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails.
+    A game of your own has an expert if its environment has a method `tltl_expert()`. For each episode, the command
+    writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and says why an episode failed.
+    Existing files are kept: a different episode with the same name becomes LEVEL-VARIANT-SEED-2, and so on. The exit
+    status is 1 if an episode fails.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.game.capability_error import no_expert_error

@@ -75,9 +75,10 @@ def command(
 ) -> int:
     """Record demonstrations: episodes of an expert or of a person that meet the spec.
 
-    LEVEL may also be a scene, `FILE.game.toml:SCENE`. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode that fails is not kept; the command
-    says why. Demonstrations that are already in the folder count, so the same command continues where it stopped. Other
-    recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the spec names it.
+    LEVEL may also be a scene, `FILE.game.toml:SCENE`. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz.
+    An episode that fails is not kept; the command says why. Demonstrations that are already in the folder count, so the
+    same command continues where it stopped. Other recordings in the folder, and files that cannot be read, stay as they
+    are. You may omit LEVEL if the spec names it.
 
     The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
     """

@@ -131,9 +131,10 @@ def command(
     """Train an agent until it meets a spec.
 
     The agent plays a scene of your game (--game) or a level (--level). SPEC judges and rewards it; the default is the
-    spec that the scene or the level names. The training ends when 100 episodes in a row met the spec and then 300 new episodes of the unchanged policy met it,
-    or at a limit. The folder then contains the policy (policy.safetensors), the record of the training (record.json,
-    curve.png) and the measurements (metrics.jsonl, and event files for TensorBoard). After Ctrl-C, --resume continues.
+    spec that the scene or the level names. The training ends when 100 episodes in a row met the spec and then 300 new
+    episodes of the unchanged policy met it, or at a limit. The folder then contains the policy (policy.safetensors),
+    the record of the training (record.json, curve.png) and the measurements (metrics.jsonl, and event files for
+    TensorBoard). After Ctrl-C, --resume continues.
 
     The exit status is 0 if the spec was met, and 1 if a limit ended the training.
     """
