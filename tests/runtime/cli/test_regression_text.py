@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from tests.runtime.regression.handmade import summaries
-from tltl_runtime.cli.support.regression_text import summary_line
+from tltl_runtime.cli.support.regression_text import case_lines, summary_line
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.retraining_result import FinishedRetraining, Outcome, RetrainingResult
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
+from tltlc.core.record import replace
 
 TRAINED = FinishedRetraining(end="minutes", steps=1, seconds=1.0, searched=0, complete=True, shortest=None)
 
@@ -16,6 +17,12 @@ def report(verdict: CaseVerdict, outcome: Outcome | None = None) -> CaseReport:
     figures, files = figures_of(summaries(25)), ("policy", None)
     retrained = outcome and RetrainingResult(outcome, "", TRAINED, figures, (0.0, 1.0), None, *files)
     return CaseReport("a", "room", "v0", verdict, (), retrained=retrained)
+
+
+def test_a_mean_is_never_minus_zero() -> None:
+    figures = figures_of([replace(summary, reward=-0.004) for summary in summaries(25)])
+    (line,) = case_lines(replace(report("pass"), figures=figures, baseline=figures), 1, is_cached=False)
+    assert line.endswith("reward  0.00 ( 0.00)")
 
 
 def test_verdicts_are_counted() -> None:

@@ -239,6 +239,15 @@ def test_the_shipped_policy_is_suggested_for_a_copy_of_its_level(tmp_path: Path)
                 'name a policy that you trained, e.g. `policy = "training/hall"`',
             ),
         ),
+        (
+            'scene = "hall"\npolicy = "agent"',
+            (
+                "TLT0805",
+                "there is no policy `agent`",
+                "train it: `tltlc train --game {folder}/lake.game.toml:hall --out {folder}/agent`; "
+                "paths are relative to the suite",
+            ),
+        ),
     ],
 )
 def test_a_scene_needs_keys_of_its_own_for_its_variant_and_its_policy(
@@ -247,7 +256,7 @@ def test_a_scene_needs_keys_of_its_own_for_its_variant_and_its_policy(
     (tmp_path / "lake.game.toml").write_text('[game]\ngymnasium = "FrozenLake-v1"\n\n[[scene]]\nname = "hall"\n')
     code, title, help_ = error
     errors = refused(tmp_path, f'game = "lake.game.toml"\n{keys}')
-    assert errors == [(code, title.format(folder=tmp_path), help_)]
+    assert errors == [(code, title.format(folder=tmp_path), help_.format(folder=tmp_path))]
 
 
 @pytest.mark.parametrize("key", ["name", "variant", "reference", "spec", "policy", "overlay", "level"])

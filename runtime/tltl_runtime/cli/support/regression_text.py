@@ -10,6 +10,7 @@ from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.retraining_result import OUTCOMES
+from tltl_runtime.support.number_text import number
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
@@ -60,4 +61,5 @@ def _figures(report: CaseReport) -> str:
 
 
 def _comparison(name: str, now: Figures, before: Figures) -> str:
-    return f"{name} {getattr(now, name).mean:5.2f} ({getattr(before, name).mean:5.2f})"
+    texts = (number(getattr(figures, name).mean, 2) for figures in (now, before))
+    return "{} {:>5} ({:>5})".format(name, *texts)

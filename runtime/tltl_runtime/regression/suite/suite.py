@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from os.path import normpath
 from pathlib import Path
+from shlex import quote
 from typing import Final
 
 from tltl_runtime.game.level_name import (
@@ -382,7 +383,11 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return shipped
     path = folder / name
-    if not fileio.exists(path):
+    if not fileio.exists(path) and is_scene(level):
+        train = f"tltlc train --game {quote(level)} --out {quote(str(path))}"
+        help_ = f"train it: `{train}`; paths are relative to the suite"
+        table.log.append(Diagnostic("TLT0805", f"there is no policy `{name}`", (table.label_of("policy"),), help_))
+    elif not fileio.exists(path):
         candidates = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
         table.log.append(_missing_file_error("policy", name, table.label_of("policy"), candidates))
     else:
