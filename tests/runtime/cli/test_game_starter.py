@@ -92,6 +92,7 @@ def _made(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callab
         monkeypatch.chdir(tmp_path / "my game")
         for command in others:
             if not command.startswith("tltlc "):
+                assert command in runs_of_workflow()
                 compile_it(command)
         return [command.removeprefix("tltlc ") for command in others if command.startswith("tltlc ")]
 
@@ -130,6 +131,17 @@ def test_the_starter_in_python_runs(tltlc: Run, made: Callable[[str], list[str]]
     result = tltlc("check", "--game", "hall.game.toml")
     assert "hall:v0 has everything that `leave` needs" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
+    in_workflow = [run.removeprefix("tltlc ") for run in runs_of_workflow() if run.startswith("tltlc ")]
+    assert [command.split()[0] for command in in_workflow] == ["test", "check", "regress"]
+    for command in in_workflow:
+        # The agent of a few steps may fail.
+        assert tltlc(*command.split()).status in ((0, 1) if command.startswith("regress") else (0,)), command
+    assert all(Path(name).is_file() for name in ("levels.xml", "report/report.html"))
+
+
+def runs_of_workflow() -> list[str]:
+    """Return the commands that the CI file of a starter runs."""
+    return re.findall(r"^ +- run: (.*)$", Path(".github/workflows/levels.yml").read_text(), re.MULTILINE)
 
 
 @pytest.mark.parametrize("kind", IN_PROCESSES)
@@ -323,7 +335,13 @@ def test_each_starter_is_complete(tltlc: Run, made: Callable[[str], list[str]], 
     made(kind)
     assert tltlc("test", "hall.tltl").status == 0
     assert Path(".github/workflows/levels.yml").is_file()
-    assert Path("README.md").read_text().startswith("# The hall")
+    readme = Path("README.md").read_text()
+    assert readme.startswith("# The hall")
+    rows = re.findall(r"^\| (`.*?) \| ", readme, re.MULTILINE)
+    named = {name for row in rows for name in re.findall("`(.*?)`", row)}
+    files = {path.as_posix() for path in Path().rglob("*") if path.is_file()}
+    assert len(named) >= 8
+    assert [name for name in named if not any(f"/{path}".endswith(f"/{name}") for path in files)] == []
     clients = [path for path in Path().rglob("*") if (CLIENTS / path.name).is_file()]
     assert clients
     assert all(path.read_bytes() == (CLIENTS / path.name).read_bytes() for path in clients)
