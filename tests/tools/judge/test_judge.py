@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 
+from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
@@ -18,6 +19,7 @@ from tltlc.tools.conformance.draw import Draw
 from tltlc.tools.conformance.formulas import formula
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.judge import Judge
+from tltlc.tools.judge.measures import Measure
 from tltlc.tools.judge.verdict import RejectionCause, TraceDetails, TraceVerdict
 
 LAVA = """
@@ -64,7 +66,9 @@ def test_a_broken_clause_is_named_with_the_step_and_the_atoms() -> None:
     assert _cause("0,0,0,1", "0,1,0,1", "1,1,0,1", "0,1,1,1") == RejectionCause(
         "broken", 3, ("avoid on_lava",), ("on_lava",)
     )
-    assert _cause("0,0,0,9") == RejectionCause("broken", 1, ("keep heat < 8",), ("heat < 8",))
+    assert _cause("0,0,0,9") == RejectionCause(
+        "broken", 1, ("keep heat < 8",), ("heat < 8",), Measure("heat", 9.0, 1.0, "")
+    )
 
 
 def test_all_clauses_that_break_at_the_same_step_are_named() -> None:
@@ -87,9 +91,14 @@ def test_a_clause_that_others_make_impossible_is_blocked() -> None:
 
 def test_an_artefact_blames_the_conjuncts_of_its_formula() -> None:
     parts = clauses_of(FSPA, None)
-    assert [part.text for part in parts.parts] == ["F(key & X F out)", "G !on_lava", "G(heat < 8)"]
+    assert [part.text for part in parts.parts] == ["reach key, then out", "avoid on_lava", "keep heat < 8"]
     verdict = _verdict(Judge(FSPA, parts), _trace(["1,0,0,1"]))
-    assert verdict.cause == RejectionCause("broken", 1, ("G !on_lava",), ("on_lava",))
+    assert verdict.cause == RejectionCause("broken", 1, ("avoid on_lava",), ("on_lava",))
+
+
+def test_a_conjunct_of_an_artefact_that_words_do_not_fit_is_named_by_its_formula() -> None:
+    (fspa,) = compile_text("signal a: bool\nspec s = F(a & N false)")
+    assert [part.text for part in clauses_of(fspa, None).parts] == ["F(a & N false)"]
 
 
 def test_only_clauses_that_have_become_impossible_are_blocked() -> None:

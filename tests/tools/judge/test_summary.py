@@ -4,7 +4,7 @@ import pytest
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.run import TraceOutcome
-from tltlc.tools.judge.summary import summary_text, trace_text
+from tltlc.tools.judge.summary import group_causes, group_text, summary_text, trace_text
 from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceVerdict
 
 LAVA = ("avoid on_lava",)
@@ -35,6 +35,12 @@ def _summary(*causes: RejectionCause | None) -> str:
 def test_the_summary_says_at_which_steps_a_clause_breaks(steps: tuple[int, ...], words: str) -> None:
     causes = [RejectionCause("broken", step, LAVA) for step in steps]
     assert _summary(None, *causes) == f"1 of {len(steps) + 1} accepted; {words}"
+
+
+def test_a_group_can_be_said_with_the_number_of_all_traces() -> None:
+    causes = (("a", RejectionCause("broken", 3, LAVA)), ("b", RejectionCause("broken", 3, LAVA)))
+    (group,) = group_causes(causes)
+    assert group_text(group, 100) == "2 of 100 break `avoid on_lava`, at step 3"
 
 
 def test_broken_clauses_come_first_and_then_the_most_frequent_cause() -> None:

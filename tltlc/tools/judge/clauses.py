@@ -14,12 +14,15 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import SignalValue, nodes
-from tltlc.logic.formula import TRUE, Formula, and_
+from tltlc.logic.formula import FALSE, TRUE, Formula, and_
+from tltlc.logic.text.english import clause_text, invariant_text
 from tltlc.logic.text.printer import ascii_text
 from tltlc.pipeline import CompileOptions, build_spec
 from tltlc.resolve.spec import Spec
 
 _COMMENT: Final = re.compile(r"//[^\n]*")
+_MOST_NODES: Final = 100
+"""A conjunct with more different parts is named by its formula, because its words would be too many."""
 
 
 @record
@@ -28,7 +31,7 @@ class ClauseAutomaton:
 
     ``text`` is the clause as the source has it, on one line with single blanks: ``avoid on_lava``.
     An artefact (a compiled spec) has no source text. Its clauses are the conjuncts of its formula,
-    and ``text`` is a conjunct in ASCII notation: ``G !on_lava``.
+    and ``text`` says in words what a conjunct asks for, such as ``avoid on_lava`` for ``G !on_lava``.
     """
 
     text: str
@@ -114,7 +117,16 @@ def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
     # In an automaton of another tool, the formula may be only a name that reads like a formula.
     if isinstance(fspa.formula, Formula) and all(isinstance(state.label, Formula) for state in fspa.states):
         for conjunct in fspa.formula.args if fspa.formula.op == "and" else (fspa.formula,):
-            yield ascii_text(conjunct), conjunct
+            yield _conjunct_text(conjunct, endless=fspa.semantics == "infinite"), conjunct
+
+
+def _conjunct_text(conjunct: Formula, *, endless: bool) -> str:
+    """Return the text of a conjunct in words; as a formula if constants or its size make it hard to say."""
+    nodes_of_conjunct = {*conjunct.walk()}
+    if len(nodes_of_conjunct) > _MOST_NODES or not nodes_of_conjunct.isdisjoint((TRUE, FALSE)):
+        return ascii_text(conjunct)
+    text = invariant_text if conjunct.op == "G" else clause_text
+    return text(conjunct, endless=endless)
 
 
 def _as_spec(fspa: Fspa) -> Spec:

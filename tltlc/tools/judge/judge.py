@@ -18,6 +18,7 @@ from tltlc.monitor.sample_times import times_fit
 from tltlc.monitor.samples import MonitorError, Samples
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
+from tltlc.tools.judge.measures import Measure, measure
 from tltlc.tools.judge.plain_csv import plain_columns
 from tltlc.tools.judge.trace_run import TraceRun, TraceRunner
 from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause, TraceDetails, TraceVerdict
@@ -66,17 +67,27 @@ class Judge:
             return self._unjudged(name, samples, error)
         return self._judged(name, samples, run, warnings)
 
+    def verdict(self, samples: Sequence[TraceSample]) -> TraceVerdict:
+        """Judge samples that are in memory, at least one.
+
+        Raises:
+            MonitorError: the errors of :meth:`~tltlc.monitor.monitor.Monitor.step`.
+        """
+        return self._verdict(samples, self._runner.run(samples)[0])
+
     def _judged(
         self, name: str, samples: Sequence[TraceSample], run: TraceRun, warnings: Sequence[Diagnostic]
     ) -> JudgedTrace:
+        return JudgedTrace(name, self._verdict(samples, run), in_trace(name, warnings))
+
+    def _verdict(self, samples: Sequence[TraceSample], run: TraceRun) -> TraceVerdict:
         cause = None if run.outcome.accepted else self._cause(samples, run)
         details = self._details(samples, run) if self._with_details else None
-        verdict = TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details)
-        return JudgedTrace(name, verdict, in_trace(name, warnings))
+        return TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details)
 
     def _details(self, samples: Sequence[TraceSample], run: TraceRun) -> TraceDetails:
         unmet = run.state if run.broken_state is None else run.broken_state
-        nearest = None
+        nearest = missed = None
         if not run.outcome.accepted:
             ends = [number for _, number in run.arrivals[1:]] + [run.outcome.steps]
             stays = [
@@ -84,7 +95,9 @@ class Judge:
             ]
             values = [self._samples.atom_values(samples[index], index + 1) for index in stays[-1]]
             nearest = nearest_edge(self._fspa, unmet, values)
-        return TraceDetails(run.arrivals, unmet, nearest)
+            if nearest is not None:
+                missed = measure(self._fspa, nearest.atom, samples[stays[-1][nearest.row]])
+        return TraceDetails(run.arrivals, unmet, nearest, missed)
 
     def _unjudged(self, name: str, samples: Sequence[TraceSample], error: TltlError) -> JudgedTrace:
         """Return the result for a trace that has an error.
@@ -139,15 +152,17 @@ class Judge:
             is_late = self._episodes and limit is not None and len(samples) >= limit
             return RejectionCause("late" if is_late else "unfinished", len(samples), self._texts(self._unmet(samples)))
         until = samples[: run.broken_at]
-        atoms = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
+        breaking = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
+        atoms = tuple(self._fspa.atoms[atom].name for atom in breaking)
+        measured = self._measure(breaking, until[-1])
         broken = [
             index
             for index, runner in enumerate(self._clause_runners)
             if runner.can_break and runner.run(until)[0].broken_at is not None
         ]
         if not broken and (blocked := self._blocked(until)):
-            return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms)
-        return RejectionCause("broken", run.broken_at, self._texts(broken), atoms)
+            return RejectionCause("blocked", run.broken_at, self._texts(blocked), atoms, measured)
+        return RejectionCause("broken", run.broken_at, self._texts(broken), atoms, measured)
 
     def _unmet(self, samples: Sequence[TraceSample]) -> list[int]:
         """Return the indices of the clauses that would not accept the samples as a whole trace."""
@@ -186,8 +201,13 @@ class Judge:
     def _texts(self, indices: Sequence[int]) -> tuple[str, ...]:
         return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
 
-    def _breaking_atoms(self, sample: TraceSample, state: int, number: int) -> tuple[str, ...]:
-        """Return the names of the atoms that decide which edge leaves ``state`` at this sample.
+    def _measure(self, atoms: Sequence[int], sample: TraceSample) -> Measure | None:
+        """Measure the first of the atoms that is a comparison, at a sample; None if none of them is."""
+        measures = (measure(self._fspa, atom, sample) for atom in atoms)
+        return next((result for result in measures if result is not None), None)
+
+    def _breaking_atoms(self, sample: TraceSample, state: int, number: int) -> tuple[int, ...]:
+        """Return the indices of the atoms that decide which edge leaves ``state`` at this sample.
 
         The sample makes the guard of exactly one edge true. The result has the atoms of this guard's
         most robust prime implicant. ``number`` is the number of the sample, from 1.
@@ -195,4 +215,4 @@ class Judge:
         values = self._samples.atom_values(sample, number)
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
         prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
-        return tuple(self._fspa.atoms[atom].name for atom, _ in prime)
+        return tuple(atom for atom, _ in prime)

@@ -39,15 +39,23 @@ class CauseGroup:
 
 
 def cause_groups(traces: Iterable[JudgedTrace]) -> tuple[CauseGroup, ...]:
-    """Return the traces that are not accepted, in groups with the same cause.
+    """Return the traces that are not accepted, in groups with the same cause; see :func:`group_causes`."""
+    verdicts = ((trace.name, trace.verdict) for trace in traces)
+    return group_causes(
+        (name, verdict.cause) for name, verdict in verdicts if verdict is not None and verdict.cause is not None
+    )
 
-    The groups are sorted by the kind of their cause: ``broken``, ``blocked``, ``late``, ``unfinished``.
-    Within a kind, larger groups come first.
+
+def group_causes(causes: Iterable[tuple[str, RejectionCause]]) -> tuple[CauseGroup, ...]:
+    """Return groups of traces that are not accepted for the same reason.
+
+    ``causes`` has pairs of the name of a trace and the cause. The groups are sorted by the kind of
+    their cause: ``broken``, ``blocked``, ``late``, ``unfinished``. Within a kind, larger groups come
+    first.
     """
     groups: dict[tuple[Kind, tuple[str, ...]], list[tuple[str, int]]] = {}
-    for trace in traces:
-        if trace.verdict is not None and (cause := trace.verdict.cause) is not None:
-            groups.setdefault((cause.kind, cause.clauses), []).append((trace.name, cause.step))
+    for name, cause in causes:
+        groups.setdefault((cause.kind, cause.clauses), []).append((name, cause.step))
     ordered = sorted(groups.items(), key=lambda group: (_ORDER.index(group[0][0]), -len(group[1])))
     return tuple(
         CauseGroup(kind, clauses, tuple(name for name, _ in members), tuple(step for _, step in members))
@@ -73,10 +81,13 @@ def summary_text(traces: Sequence[JudgedTrace]) -> str:
     return "; ".join(parts)
 
 
-def group_text(group: CauseGroup) -> str:
-    """Describe a group in words: ``30 break `avoid on_lava`, mostly at step 3``."""
-    count, clauses = len(group.traces), _list_text(group.clauses)
-    one = count == 1
+def group_text(group: CauseGroup, total: int | None = None) -> str:
+    """Describe a group in words: ``30 break `avoid on_lava`, mostly at step 3``.
+
+    If ``total`` is given, the number of all traces, the text begins with ``30 of 100``.
+    """
+    clauses, one = _list_text(group.clauses), len(group.traces) == 1
+    count = f"{len(group.traces)}" if total is None else f"{len(group.traces)} of {total}"
     if group.kind == "late":
         unmet = f"{clauses or 'the spec'} {_are(group.clauses)} met"
         return f"{count} {'reaches' if one else 'reach'} the limit before {unmet}"

@@ -8,6 +8,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.nearest_edge import NearestEdge
 from tltlc.monitor.run import TraceOutcome
+from tltlc.tools.judge.measures import Measure
 
 Kind = Literal["broken", "blocked", "late", "unfinished"]
 
@@ -27,13 +28,15 @@ class RejectionCause:
     ``clauses`` has the texts of the clauses to blame: ``avoid on_lava``. It is empty if no single
     clause is to blame, only several together, or if the clauses are not known. ``atoms`` has the
     names of the atoms whose values at ``step`` broke the spec. It is empty for ``late`` and
-    ``unfinished``.
+    ``unfinished``. ``measure`` says how far the first of them that is a comparison was from holding, or
+    from not holding; None if none of them is a comparison.
     """
 
     kind: Kind
     step: int
     clauses: tuple[str, ...]
     atoms: tuple[str, ...] = ()
+    measure: Measure | None = None
 
 
 @record
@@ -47,12 +50,14 @@ class TraceDetails:
     ``nearest`` is about the steps that the trace spent in ``unmet`` the last time. It says which of
     them came nearest to an edge that leads towards acceptance; ``nearest.row`` is the index of this
     step among them. ``nearest`` is None if the trace is accepted, if there is no such edge, or if
-    there are no such steps.
+    there are no such steps. ``missed`` is the measure of the atom that ``nearest`` names, at this step;
+    None if it is no comparison.
     """
 
     arrivals: tuple[tuple[int, int], ...]
     unmet: int
     nearest: NearestEdge | None
+    missed: Measure | None = None
 
 
 @record

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import pytest
+
+from tltlc import compile_text
+from tltlc.tools.judge.measures import Measure, measure
+
+SIGNALS = """
+import spatial
+entity exit
+signal x: length in [0 m, 10 m]
+signal y: length in [0 m, 10 m]
+signal v: speed in [-20 m/s, 20 m/s]
+signal t: time in [1 s, 100 s]
+signal turn: angle in [-1 rad, 1 rad]
+signal heat: number in [0, 8]
+signal hot: bool
+signal cold: number in [0, 8]
+param most: length in [1 m, 5 m] = 3 m
+"""
+SAMPLE = {
+    "x": 6.5,
+    "y": 2.0,
+    "v": -3.0,
+    "t": 4.0,
+    "turn": 0.5,
+    "heat": 6.0,
+    "hot": 1.0,
+    "cold": -1.0,
+    "distance(exit)": 2.0,
+}
+
+
+def measured(formula: str) -> Measure | None:
+    (fspa,) = compile_text(f"{SIGNALS}spec s {{ reach {formula} }}")
+    return measure(fspa, 0, SAMPLE)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("x < 5 m", Measure("x", 6.5, 1.5, "m")),
+        ("x >= 7 m", Measure("x", 6.5, 0.5, "m")),
+        ("7 m <= x", Measure("x", 6.5, 0.5, "m")),
+        ("abs(v) > 4 m/s", Measure("abs(v)", 3.0, 1.0, "m/s")),
+        ("v > 0", Measure("v", -3.0, 3.0, "m/s")),
+        ("v < 0 m/s", Measure("v", -3.0, 3.0, "m/s")),
+        ("x / t > 2 m/s", Measure("x / t", 1.625, 0.375, "m/s")),
+        ("turn < 0.25 rad", Measure("turn", 0.5, 0.25, "rad")),
+        ("heat / 2 > 2", Measure("heat / 2", 3.0, 1.0, "")),
+        ("x < most", Measure("x", 6.5, 3.5, "m")),
+        ("x > y", Measure("x", None, 4.5, "m")),
+        ("x < y + 1 m", Measure("y + 1", None, 3.5, "m")),
+    ],
+)
+def test_the_sides_of_a_comparison_are_measured_in_their_unit(formula: str, expected: Measure) -> None:
+    assert measured(formula) == expected
+
+
+@pytest.mark.parametrize("formula", ["hot", "near(exit)", "heat / 2 > 0", "sqrt(cold) > 1"])
+def test_an_atom_without_measurable_sides_has_no_measure(formula: str) -> None:
+    assert measured(formula) is None
