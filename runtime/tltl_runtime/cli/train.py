@@ -243,11 +243,14 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
 
     ``again`` is the command that resumes the training.
     """
+    from tltlc.api import traces
+
     window, folder = last.window, quote(str(run.folder))
     ending = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
     met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
     spent = f"after {last.steps:,} steps, {duration(last.seconds)}"
     yield f"{ending} {spent}: {met if window.count else 'no episode has ended'}"
+    yield from (f"  {traces.group_text(group, window.count)}" for group in window.causes)
     yield f"{folder}: policy.safetensors, record.json, curve.png"
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final, Literal
 
+from tltl_runtime.evaluation.clauses import clause_judge
 from tltl_runtime.evaluation.player import (
     EpisodePlayer,
     EpisodeRequest,
@@ -20,6 +21,7 @@ from tltl_runtime.evaluation.player import (
 )
 from tltl_runtime.evaluation.scheduler import ReplayCommand, Result, play_all
 from tltl_runtime.evaluation.worker_process import WorkerProcess, close_all
+from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant, parse_variant
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import check_policy
@@ -106,7 +108,16 @@ def set_up(
     check_policy(card, loaded_level, task.fspa)
     game.check_fit(loaded_level, task.fspa, card.fspa if spec is None else spec)
     check_limit(task.fspa)
-    return Setup(policy, name, variant, task.fspa, seed, task.params, recorded)
+    source = _source(spec, loaded_level)
+    judge = clause_judge(task.fspa, task.params, source)
+    return Setup(policy, name, variant, task.fspa, seed, task.params, recorded, clause_judge=judge)
+
+
+def _source(spec: str | Path | Fspa | None, level: Level) -> str | None:
+    """Return where the source text of a spec may be: the spec itself, or the spec that the level is made for."""
+    if spec is None or isinstance(spec, Fspa):
+        return level.spec.text if level.spec else None
+    return str(spec)
 
 
 def check_limit(fspa: Fspa) -> None:

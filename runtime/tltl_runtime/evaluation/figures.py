@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tltl_runtime.evaluation.player import LostEpisode
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
-from tltlc.api import record
+from tltlc.api import record, traces
 
 
 @record
@@ -49,6 +49,8 @@ class Figures:
 class Evaluation:
     """The result of an evaluation: the statistics, the groups of failed episodes, and all episodes.
 
+    ``causes`` are groups of failed episodes that broke, or did not meet, the same clauses of the spec; the
+    names of their traces are the indices of the episodes. Episodes without a cause are in no group.
     ``lost`` are the episodes that were lost with their games; the statistics are without them.
     """
 
@@ -56,6 +58,7 @@ class Evaluation:
     ended: tuple[FailureGroup, ...]
     episodes: tuple[EpisodeSummary, ...]
     lost: tuple[LostEpisode, ...] = ()
+    causes: tuple[traces.CauseGroup, ...] = ()
 
 
 def figures_of(episodes: Sequence[EpisodeSummary]) -> Figures:
@@ -83,7 +86,8 @@ def evaluation_of(episodes: Sequence[EpisodeSummary], lost: Sequence[LostEpisode
     Raises:
         ValueError: there are no episodes.
     """
-    return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes), tuple(lost))
+    causes = traces.group_causes((str(episode.index), episode.cause) for episode in episodes if episode.cause)
+    return Evaluation(figures_of(episodes), _failure_groups(episodes), tuple(episodes), tuple(lost), causes)
 
 
 def _failure_groups(episodes: Sequence[EpisodeSummary]) -> tuple[FailureGroup, ...]:

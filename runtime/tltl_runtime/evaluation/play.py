@@ -10,19 +10,27 @@ import numpy as np
 from tltl_runtime.game.recorder import recorded_step_s
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary, settled_end
-from tltlc.api import Diagnostic, TltlError, label_text
+from tltlc.api import Diagnostic, TltlError, label_text, traces
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
 """The random streams of an episode: for the reset of the environment, and for sampled actions."""
 
 
-def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> EpisodeSummary:
+def play(
+    policy: Policy,
+    env: gymnasium.Env[Any, Any],
+    seed: int,
+    index: int,
+    sampled: bool,
+    judge: traces.Judge | None = None,
+) -> EpisodeSummary:
     """Play one episode of an evaluation to its end, and return its summary.
 
     ``seed`` is the seed of the evaluation, and ``index`` the index of the episode. ``env`` is a
     :class:`~tltl_runtime.spec.wrapper.TltlEnv`, possibly wrapped, whose spec has a limit. If
     ``sampled``, actions are sampled, otherwise the likeliest action is taken. The episode depends only
-    on the arguments. The seed of the environment's reset does not depend on ``sampled``.
+    on the arguments. The seed of the environment's reset does not depend on ``sampled``. ``judge`` says
+    which clauses of the spec a failed episode broke or did not meet; without it, the summary does not.
 
     Raises:
         TltlError: TLT0854, the environment or the policy gives values that are not finite.
@@ -31,6 +39,8 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
     reset_seed = episode_seed(seed, index)
     observation, info = env.reset(seed=reset_seed)
     reward, steps, over = 0.0, 0, False
+    fspa = env.get_wrapper_attr("task").fspa
+    samples: list[dict[str, float]] = []
     while not over:
         try:
             action = policy.choose(observation, generator)
@@ -40,7 +50,9 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
             raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None
         observation, step_reward, terminated, truncated, info = env.step(action)
         reward, steps, over = reward + float(step_reward), steps + 1, terminated or truncated
-    fspa = env.get_wrapper_attr("task").fspa
+        if judge is not None:
+            sample = env.get_wrapper_attr("sample")
+            samples.append({signal.name: float(sample[signal.name]) for signal in fspa.signals})
     return EpisodeSummary(
         index=index,
         seed=reset_seed,
@@ -54,6 +66,7 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         state=info["state"],
         unmet=info["unmet"],
         label=label_text(fspa, info["unmet"]),
+        cause=None if judge is None or info["success"] else judge.verdict(samples).cause,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any, Final, Literal, Protocol
 
 import gymnasium
 
+from tltl_runtime.evaluation.clauses import ClauseJudge
 from tltl_runtime.evaluation.play import episode_seed, play
 from tltl_runtime.game.episode import Trajectory, trajectory
 from tltl_runtime.game.level_name import Variant
@@ -84,7 +85,8 @@ class Setup:
     ``seed`` is the seed of the evaluation. ``params`` are the values of the spec's params, in SI
     units. ``recorded`` says which episodes to record. If it is None, the results have neither
     recordings nor trajectories; otherwise, they have the trajectories of all episodes. ``player``
-    names the policy in recordings. The rewards are those of the default :class:`RewardOptions`.
+    names the policy in recordings. ``clause_judge`` judges failed episodes by the clauses of the spec; if
+    it is None, summaries do not name clauses. The rewards are those of the default :class:`RewardOptions`.
     """
 
     policy: Policy
@@ -95,6 +97,7 @@ class Setup:
     params: Mapping[str, float] = EMPTY
     recorded: RecordMode | None = None
     player: PlayerName = PlayerName()
+    clause_judge: ClauseJudge | None = None
 
 
 @record
@@ -156,6 +159,7 @@ class PolicyPlayer:
             reward=RewardOptions(),
             params=setup.params,
         )
+        self._judge = setup.clause_judge.judge() if setup.clause_judge else None
         self._recorder: EpisodeRecorder[Any] | None = None
         try:
             check_spaces(card, self._env.observation_space, self._env.action_space)
@@ -174,7 +178,7 @@ class PolicyPlayer:
         try:
             # In one thread, equal observations give equal logits on any number of cores.
             with blas_threads(1):
-                summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled)
+                summary = play(setup.policy, self._env, setup.seed, request.index, request.sampled, self._judge)
         except WireError as error:
             return LostEpisode(request, episode_seed(setup.seed, request.index), error.diagnostics[0])
         if self._recorder is None:

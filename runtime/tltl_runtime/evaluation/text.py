@@ -9,6 +9,7 @@ from tltl_runtime.evaluation.figures import Evaluation, FailureGroup, Figures
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.spec.episode_summary import End
 from tltl_runtime.support.number_text import column, number, share
+from tltlc.api import traces
 
 _WIDTH: Final = 24
 """The width of a column, in characters."""
@@ -20,7 +21,7 @@ _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of tim
 
 
 def report_text(evaluations: Mapping[str, Evaluation]) -> str:
-    """Return the statistics of evaluations as a table, and below it how failed episodes ended.
+    """Return the statistics of evaluations as a table, and below it why and how failed episodes ended.
 
     The table has a column for each evaluation. The keys of ``evaluations`` are the headings of the
     columns. They say how actions were chosen: ``sampled`` or ``arg-max``.
@@ -39,6 +40,7 @@ def report_text(evaluations: Mapping[str, Evaluation]) -> str:
         failed = sum(group.count for group in evaluation.ended)
         if failed:
             lines += ["", f"{name}: {failed} of {len(evaluation.episodes)} failed"]
+            lines += [f"  {traces.group_text(group, len(evaluation.episodes))}" for group in evaluation.causes]
             lines += [line for group in evaluation.ended for line in _failures(group)]
     return "\n".join(lines) + "\n"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.api import record
+from tltlc.api import record, traces
 
 End = Literal["success", "violation", "limit", "stopped"]
 """How an episode ended.
@@ -28,6 +28,9 @@ class EpisodeSummary:
     counts as 1 s if the game has no clock. ``state`` is the automaton's state at the end. ``label``
     says in English what remained to be done in the state ``unmet``. These four are None in training
     and in the cases of regression tests, whose files do not contain them.
+
+    ``cause`` says which clauses of the spec a failed episode broke or did not meet. It is None for a
+    success, and if the episode was not judged by clauses.
     """
 
     index: int
@@ -42,6 +45,7 @@ class EpisodeSummary:
     seconds: float | None = None
     state: int | None = None
     label: str | None = None
+    cause: traces.RejectionCause | None = None
 
 
 def settled_end(success: bool, verdict: str) -> End:

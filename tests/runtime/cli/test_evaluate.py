@@ -38,7 +38,7 @@ Run = Callable[..., Outcome]
 STARTER = Path(tltl_runtime.__file__).with_name("starter")
 LEVELS = ("navigation", "cover_and_hide", "branching")
 EPISODE = "index seed success verdict end progress reward steps seconds state unmet label".split()
-FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
+FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "causes", "ended", "episodes"]
 
 
 @pytest.fixture(scope="module")

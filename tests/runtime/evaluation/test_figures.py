@@ -8,6 +8,7 @@ from tltl_runtime.evaluation.figures import FailureGroup, evaluation_of, figures
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.spec.episode_summary import End, EpisodeSummary
 from tltlc.core.record import replace
+from tltlc.tools.judge.verdict import RejectionCause
 
 PASSED = EpisodeSummary(0, 7, True, "success", 1.0, 0.75, 100, 4, "satisfied", 15.0, 4, "Keep alive throughout.")
 
@@ -78,6 +79,16 @@ sampled: 4 of 10 failed
     episode 1
 """
     )
+
+
+def test_the_text_report_names_the_clauses_that_episodes_break() -> None:
+    broken = RejectionCause("broken", 40, ("avoid fell",))
+    episodes = [replace(episode, cause=None if episode.success else broken) for episode in EPISODES]
+    lines = report_text({"sampled": evaluation_of(episodes)}).splitlines()
+    assert lines[7:9] == [
+        "sampled: 4 of 10 failed",
+        "  4 of 10 break `avoid fell`, at step 40",
+    ]
 
 
 def test_long_lists_of_episodes_are_truncated() -> None:

@@ -106,6 +106,31 @@ def test_a_policy_is_evaluated_and_its_episodes_play_again(tltlc: Run, tmp_path:
         assert picture.n_frames > 1  # type: ignore[attr-defined]
 
 
+def test_a_training_and_an_evaluation_name_the_clause_that_episodes_break(
+    folder: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(folder)
+    (folder / "wary.tltl").write_text(
+        "clock 10 Hz\nsignal has_key: bool\nsignal door_open: bool\n"
+        "spec wary { limit 20 s  reach door_open  avoid   has_key }\n"
+    )
+    options = ("--steps", "640", "--config", "settings.toml", "--out", "wary")
+    trained = tltlc("train", "wary.tltl", "--game", "corridor.game.toml:short", *options)
+    named = re.compile(r"  (\d+) of (\d+) break `avoid has_key`, (mostly )?at steps? \d+.*")
+    (line,) = filter(None, map(named.fullmatch, trained.out.splitlines()))
+    window = json.loads((folder / "wary" / "record.json").read_text())["window"]
+    (cause,) = window["causes"]
+    assert (cause["kind"], cause["clauses"]) == ("broken", ["avoid has_key"])
+    assert (cause["count"], window["episodes"]) == (int(line[1]), int(line[2]))
+    evaluated = tltlc("evaluate", "wary", "--episodes", "3", "--json", "wary.json")
+    assert any(map(named.fullmatch, evaluated.out.splitlines())), evaluated.out
+    report = json.loads((folder / "wary.json").read_text())
+    (cause,) = report["causes"]
+    assert (cause["clauses"], cause["count"], cause["episodes"]) == (["avoid has_key"], 3, [0, 1, 2])
+
+
 @pytest.mark.usefixtures("trained")
 def test_a_film_needs_the_game(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
     tltlc("evaluate", "run", "--episodes", "1", "--record", "all", "--out", tmp_path)

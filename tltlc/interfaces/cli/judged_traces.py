@@ -21,7 +21,7 @@ from tltlc.interfaces.cli.settings import CompileSettings
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.pool import judge_files
-from tltlc.tools.judge.summary import cause_groups, summary_text, trace_text, unread_codes
+from tltlc.tools.judge.summary import cause_groups, group_json, summary_text, trace_text, unread_codes
 from tltlc.tools.judge.trace_files import find_traces
 from tltlc.tools.judge.verdict import JudgedTrace, RejectionCause
 
@@ -173,15 +173,6 @@ def _end_json(traces: Sequence[JudgedTrace], total: int, others: Sequence[str]) 
         "unread": sum(codes.values()),
         "unread_codes": codes,
         "not_traces": list(others),
-        "causes": [
-            {
-                "kind": group.kind,
-                "clauses": list(group.clauses),
-                "count": len(group.traces),
-                "usual_step": group.usual_step,
-                "steps": dict(zip(("least", "median", "greatest"), group.step_range, strict=True)),
-            }
-            for group in cause_groups(traces)
-        ],
+        "causes": list(map(group_json, cause_groups(traces))),
     }
     print("\n], " + json.dumps(end)[1:])

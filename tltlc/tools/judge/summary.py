@@ -99,6 +99,17 @@ def group_text(group: CauseGroup, total: int | None = None) -> str:
     return f"{count} {'breaks' if one else 'break'} {clauses or 'the spec'}, {_steps_text(group)}"
 
 
+def group_json(group: CauseGroup) -> dict[str, object]:
+    """Return a group as JSON data, without the names of its traces."""
+    return {
+        "kind": group.kind,
+        "clauses": list(group.clauses),
+        "count": len(group.traces),
+        "usual_step": group.usual_step,
+        "steps": dict(zip(("least", "median", "greatest"), group.step_range, strict=True)),
+    }
+
+
 def _are(clauses: Sequence[str]) -> str:
     return "are" if len(clauses) > 1 else "is"
 

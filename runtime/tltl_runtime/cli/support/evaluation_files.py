@@ -21,7 +21,7 @@ from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.support.writable_folder import writable_folder
 from tltl_runtime.wire.lost_episodes import LostEpisodes
-from tltlc.api import Diagnostic, TltlError, cli, fileio
+from tltlc.api import Diagnostic, TltlError, cli, fileio, traces
 
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
@@ -277,7 +277,7 @@ def _is_report(path: Path) -> bool:
 
 
 def _as_json(evaluation: Evaluation) -> dict[str, Any]:
-    """Return the JSON data of an evaluation: figures, how failed episodes ended, and all episodes.
+    """Return the JSON data of an evaluation: figures, why and how failed episodes ended, and all episodes.
 
     The value of the key ``episodes`` is the list of episodes, not their number as in ``Figures``.
     """
@@ -285,6 +285,9 @@ def _as_json(evaluation: Evaluation) -> dict[str, Any]:
     return {
         **figures,
         **({"lost": [_lost_json(lost) for lost in evaluation.lost]} if evaluation.lost else {}),
+        "causes": [
+            {**traces.group_json(group), "episodes": list(map(int, group.traces))} for group in evaluation.causes
+        ],
         "ended": to_json(evaluation.ended),
         "episodes": [_episode_json(episode) for episode in evaluation.episodes],
     }

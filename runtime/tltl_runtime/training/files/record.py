@@ -23,7 +23,7 @@ from tltl_runtime.training.files.metrics import METRICS, WINDOW_MEANS, means, re
 from tltl_runtime.training.files.report import StopReason, TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, TrainingRun, read_run
 from tltl_runtime.training.files.versions import versions
-from tltlc.api import fileio, record, replace
+from tltlc.api import fileio, record, replace, traces
 
 _VERSION: Final = 1
 _MOST_POINTS: Final = 200
@@ -80,7 +80,11 @@ def training_record(
         "search": None if last.searched is None else to_json(last.searched),
         "imitated": None if last.imitated is None else {**to_json(last.imitated), "cloned": _cloning_steps(metrics)},
         "seconds": round(last.seconds, 3),
-        "window": {"episodes": last.window.count, **means(last.window)},
+        "window": {
+            "episodes": last.window.count,
+            **means(last.window),
+            "causes": list(map(traces.group_json, last.window.causes)),
+        },
         "versions": versions(),
         "machine": {
             "system": platform.platform(),

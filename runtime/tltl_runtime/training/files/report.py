@@ -10,7 +10,7 @@ from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.imitation.demonstrations import ImitationSummary
 from tltl_runtime.wire.lost_episodes import LostEpisodes
-from tltlc.api import record
+from tltlc.api import record, traces
 
 StopReason = Literal["met", "steps", "minutes"]
 
@@ -47,7 +47,9 @@ class EpisodeWindow:
     whatever the settings of the training. ``states`` maps an automaton state to the share of
     episodes that ended in it, or were in it just before they violated the spec. ``violated`` maps a
     state to the share of episodes that were in it just before they violated the spec. Both are
-    shares of all episodes, in (0, 1]; states that no episode ended in are left out.
+    shares of all episodes, in (0, 1]; states that no episode ended in are left out. ``causes`` are groups
+    of episodes that broke the same clauses of the spec. There are none if the clauses are not known of
+    all episodes that violated the spec, as after a training was resumed.
     """
 
     count: int
@@ -57,6 +59,7 @@ class EpisodeWindow:
     steps: float
     states: Mapping[int, float]
     violated: Mapping[int, float]
+    causes: tuple[traces.CauseGroup, ...] = ()
 
     @property
     def pass_rate(self) -> float:

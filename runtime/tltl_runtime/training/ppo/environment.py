@@ -13,6 +13,7 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.evaluation.clauses import ClauseJudge
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return, settled_end
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
@@ -25,7 +26,7 @@ from tltl_runtime.training.imitation.imitation_data import ImitationData
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.wire.lost_episodes import LostEpisodes
 from tltl_runtime.wire.surviving_env import LOST, faults_in
-from tltlc.api import Diagnostic, TltlError
+from tltlc.api import Diagnostic, TltlError, traces
 
 
 class TrainingEnv(VecEnv):
@@ -48,7 +49,7 @@ class TrainingEnv(VecEnv):
     to the undiscounted penalty minus the penalty that the environment's reward already contains.
     ``penalty_weight``, in [0, 1] and initially 0, is the share of this difference that is
     subtracted from the reward. ``limit_steps`` is the spec's limit in steps; None if it has no
-    limit.
+    limit. ``clause_judge`` says which clauses an episode broke; without it, summaries do not.
 
     An episode that is lost with its game (:class:`~tltl_runtime.wire.surviving_env.SurvivingEnv`) is
     cut off. It is neither a success nor a failure, so it is not among the finished episodes, and the
@@ -72,6 +73,7 @@ class TrainingEnv(VecEnv):
         limit_steps: int | None = None,
         layouts: SpaceLayouts | None = None,
         faults: list[Diagnostic] | None = None,
+        clause_judge: ClauseJudge | None = None,
     ) -> None:
         self.shapes, self.branches = _plain_shapes(env) if layouts is None else (layouts.shapes, ())
         self.env = env
@@ -99,7 +101,7 @@ class TrainingEnv(VecEnv):
             observation, infos = env.reset(seed=seed)
             self.faults += faults_in(infos)
             self._observation = self._tensors(observation)
-        self._limit_steps = limit_steps
+        self._limit_steps, self._clause_judge = limit_steps, clause_judge
         self._episode_count = 0
 
     def get_observations(self) -> TensorDict:
@@ -180,7 +182,7 @@ class TrainingEnv(VecEnv):
 
     def _summaries(self, infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, EpisodeSummary]:
         """Return the summaries of the episodes that ended in these rows, by row."""
-        summaries = _summaries(infos, rows, self._episode_count, self._limit_steps)
+        summaries = _summaries(infos, rows, self._episode_count, self._limit_steps, self._clause_judge)
         self._episode_count += len(summaries)
         return summaries
 
@@ -245,7 +247,11 @@ def _update_curriculum(
 
 
 def _summaries(
-    infos: Mapping[str, Any], rows: NDArray[np.int64], first_index: int, limit_steps: int | None
+    infos: Mapping[str, Any],
+    rows: NDArray[np.int64],
+    first_index: int,
+    limit_steps: int | None,
+    judge: ClauseJudge | None,
 ) -> dict[int, EpisodeSummary]:
     """Return the summaries of the episodes that ended in the environments ``rows``, by row.
 
@@ -254,12 +260,14 @@ def _summaries(
     """
     lengths = infos["episode"]["l"]
     return {
-        row: _summary(infos, row, index, int(lengths[row]), limit_steps)
+        row: _summary(infos, row, index, int(lengths[row]), limit_steps, judge)
         for index, row in enumerate(rows.tolist(), start=first_index)
     }
 
 
-def _summary(infos: Mapping[str, Any], row: int, index: int, steps: int, limit_steps: int | None) -> EpisodeSummary:
+def _summary(
+    infos: Mapping[str, Any], row: int, index: int, steps: int, limit_steps: int | None, judge: ClauseJudge | None
+) -> EpisodeSummary:
     success, progress = bool(infos["success"][row]), float(infos["progress"][row])
     return EpisodeSummary(
         index=index,
@@ -270,4 +278,13 @@ def _summary(infos: Mapping[str, Any], row: int, index: int, steps: int, limit_s
         reward=progress_return(success, progress, steps, limit_steps),
         steps=steps,
         unmet=int(infos["unmet"][row]),
+        cause=_cause(infos, row, steps, judge),
     )
+
+
+def _cause(infos: Mapping[str, Any], row: int, steps: int, judge: ClauseJudge | None) -> traces.RejectionCause | None:
+    """Return which clauses the last sample of an episode broke; None if it broke none, or nobody judges."""
+    if judge is None or infos["verdict"][row] != "violated":
+        return None
+    atoms = {atom.name: float(infos["atoms"][atom.name][row]) for atom in judge.fspa.atoms}
+    return traces.RejectionCause("broken", steps, judge.broken(atoms))

@@ -8,6 +8,7 @@ from typing import Any
 
 from tltl_runtime.spec.episode_summary import EpisodeSummary, progress_return
 from tltl_runtime.training.files.report import EpisodeWindow, Score
+from tltlc.api import traces
 
 _STANDSTILL_STEPS = 100_000
 """The training stands still if the pass rate has not risen for this many steps."""
@@ -98,6 +99,7 @@ class RecentEpisodes:
             steps=sum(episode.steps for episode in episodes) / max(count, 1),
             states={state: ended / count for state, ended in sorted(ends.items())},
             violated={state: ended / count for state, ended in sorted(violated.items())},
+            causes=_causes(episodes),
         )
 
     def _summary(
@@ -114,6 +116,13 @@ class RecentEpisodes:
             steps=steps,
             unmet=unmet,
         )
+
+
+def _causes(episodes: Sequence[EpisodeSummary]) -> tuple[traces.CauseGroup, ...]:
+    """Return groups of episodes that broke the same clauses; none if one of them has no known cause."""
+    violated = [episode for episode in episodes if episode.end == "violation"]
+    causes = [(str(episode.index), episode.cause) for episode in violated if episode.cause is not None]
+    return traces.group_causes(causes) if len(causes) == len(violated) else ()
 
 
 class Standstill:

@@ -15,6 +15,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.evaluation.clauses import clause_judge
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.policy import NotFiniteError, Policy
 from tltl_runtime.spec.wrapper import TltlEnv
@@ -212,8 +213,15 @@ def prepare_environment(
         limit_steps,
         spaces.layouts,
         faults,
+        clause_judge(run.fspa, run.params, _spec_source(run)),
     )
     return env, progress
+
+
+def _spec_source(run: TrainingRun) -> str | None:
+    """Return where the source text of the spec may be: the spec that the level is made for; None without one."""
+    spec = game_of(run.level).load_level(run.level, run.variant).spec
+    return spec.text if spec else None
 
 
 def _policy_function(run: TrainingRun, group: ProcessGroup, policy: Policy | None) -> PolicyFunction | None:
