@@ -26,6 +26,11 @@ class ComparisonName(str):
         name.left, name.operator, name.right = left, operator, right
         return name
 
+    @property
+    def opposite(self) -> str:
+        """The comparison that holds exactly where this one does not: ``fuel <= 5`` for ``fuel > 5``."""
+        return f"{self.left} {'>=' if self.operator == '<' else '<='} {self.right}"
+
     def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
         return self.left, self.operator, self.right
 

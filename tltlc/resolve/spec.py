@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tltlc.core.names import full_name
+from tltlc.core.names import ComparisonName, full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
@@ -67,6 +67,11 @@ class Atom:
     def name(self) -> str:
         """The full name: ``near(s1)`` for the base ``near`` with the argument ``s1``."""
         return full_name(self.base, self.arguments)
+
+    @property
+    def opposite(self) -> str | None:
+        """The comparison that holds where the atom does not: ``x <= 3`` for ``x > 3``; None for other atoms."""
+        return self.base.opposite if isinstance(self.base, ComparisonName) else None
 
 
 @record

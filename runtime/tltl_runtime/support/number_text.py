@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, floor
+from math import ceil, floor, inf
 from textwrap import wrap
 from typing import Final
 
@@ -35,13 +35,25 @@ def percent_exactly(value: float) -> str:
     return f"{100.0 * value:g}%"
 
 
-def count_text(count: int, total: int, noun: str = "") -> str:
+def count_text(count: int, total: int, noun: str = "", *, is_compared: bool = False) -> str:
     """Return a count out of a total, such as ``121 of 300 episodes (40%)`` or ``3 of 4``.
 
-    The percentage is left out if the total is at most 25, or the count is 0 or the total.
+    The percentage is left out if the count is 0 or the total. It is also left out if the total is at most
+    25, unless the count ``is_compared`` with one out of another total.
     """
     text = f"{count} of {total}{' ' * bool(noun)}{noun}"
-    return f"{text} ({percent(count / total)})" if total > _FEW and 0 < count < total else text
+    return f"{text} ({percent(count / total)})" if (is_compared or total > _FEW) and 0 < count < total else text
+
+
+def quantity_text(value: float, unit: str, gap: float = inf) -> str:
+    """Return a measured number with its unit, such as ``0.62 m`` or ``14.1``.
+
+    There are at most two decimals, or as many as show a difference of ``gap``, up to six.
+    """
+    decimals = 2 if abs(value) < 10.0 else 1
+    while decimals < 6 and round(gap, decimals) == 0.0:
+        decimals += 1
+    return f"{number(value, decimals)}{' ' * bool(unit)}{unit}"
 
 
 def interval_text(interval: tuple[float, float]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
@@ -17,6 +18,7 @@ from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
 from tltlc.core.record import replace
+from tltlc.tools.judge.measures import Measure
 
 SPEC = """import spatial
 import stealth
@@ -81,16 +83,19 @@ def test_the_first_changed_stage_and_the_ends_in_it_are_described(level: Stealth
         now[index] = an_episode(index, False, states=states_after(fspa, 2), **died)  # type: ignore[arg-type]
     # The episode with the best robustness was farther from its target.
     now[3] = replace(now[3], nearest=replace(near, robustness=-0.1, distance=6.0))
-    stage, end = findings(level, fspa, now, successes(fspa))
+    stage, end, remaining = findings(level, fspa, now, successes(fspa))
     assert stage.text == (
         "reaches `s1`, `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
     )
     assert stage.episodes == end.episodes == tuple(range(14))
     assert end.text == (
         "dies in the north hall by `guard` in 14 of 25 episodes; before: in 0 of 25 episodes; "
-        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit, below 1.0 m is enough); "
-        "in state 3, where this remained: Reach near(exit), and keep alive throughout."
+        "closest approach to `exit`: 3.2 m (`near(exit)` holds below 1.0 m)"
     )
+    assert (
+        remaining.text == "in 14 of 14 failures, this remained: Reach near(exit), and keep alive throughout (state 3)"
+    )
+    assert remaining.episodes == end.episodes
     assert stage.mentions == Mentions(("s1", "s2", "exit"))
     assert end.mentions == Mentions(("guard", "exit"), ("north_hall",))
 
@@ -111,7 +116,7 @@ def test_ends_are_grouped_by_kind_and_place_most_frequent_first(level: StealthLe
     for index in range(5, 12):
         now[index] = an_episode(index, False, states=states_after(fspa, 1), place=(8.5, 8.0, 0.0))
     texts = sentences(level, fspa, now)
-    assert [text.partition("; in state")[0] for text in texts[1:]] == [
+    assert texts[1:3] == [
         "runs out of time near `exit` in 7 of 25 episodes; before: in 0 of 25 episodes",
         "breaks the spec in the middle (`seen`), seen by `guard`, in 5 of 25 episodes; before: in 0 of 25 episodes",
     ]
@@ -169,21 +174,22 @@ def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Explained
 def last_sentence(
     level: StealthLevel, fspa: Fspa, now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode] = ()
 ) -> str:
-    return sentences(level, fspa, now, before or successes(fspa, 40))[-1]
+    texts = sentences(level, fspa, now, before or successes(fspa, 40))
+    return [text for text in texts if "this remained" not in text][-1]
 
 
 def test_rare_ends_share_one_sentence(level: StealthLevel, fspa: Fspa) -> None:
     now = successes(fspa, 40)
     now[:3] = [timed_out(fspa, index, 1) for index in range(3)]
-    assert "; in state" in last_sentence(level, fspa, now)
+    assert last_sentence(level, fspa, now).startswith("runs out of time")
     now[0] = timed_out(fspa, 0, 0)
-    (_, rest) = findings(level, fspa, now, successes(fspa, 40))
-    text = "runs out of time in the middle in 3 of 40 episodes; before: in 0 of 40 episodes"
+    (_, rest, *_) = findings(level, fspa, now, successes(fspa, 40))
+    text = "runs out of time in the middle in 3 of 40 episodes (7%); before: in 0 of 40 episodes"
     assert (rest.text, rest.episodes) == (text, (0, 1, 2))
     now[1] = timed_out(fspa, 1, 1, NORTH)
     assert last_sentence(level, fspa, now) == text.replace("the middle", "different places")
     now[2] = died(fspa, 2, 1)
-    assert last_sentence(level, fspa, now) == "fails in 3 of 40 episodes; before: in 0 of 40 episodes"
+    assert last_sentence(level, fspa, now) == "fails in 3 of 40 episodes (7%); before: in 0 of 40 episodes"
 
 
 def test_remaining_ends_with_a_known_cause_name_it(level: StealthLevel, fspa: Fspa) -> None:
@@ -193,11 +199,11 @@ def test_remaining_ends_with_a_known_cause_name_it(level: StealthLevel, fspa: Fs
     # The baseline counts episodes that died elsewhere in the same stage.
     before = successes(fspa, 40)
     before[:4] = [died(fspa, 0, 1), died(fspa, 1, 2), died(fspa, 2, 1, NORTH), timed_out(fspa, 3, 1)]
-    text = "dies elsewhere by `guard` before it reaches `s2` in 3 of 40 episodes; before: in 1 of 40 episodes"
+    text = "dies elsewhere by `guard` before it reaches `s2` in 3 of 40 episodes (7%); before: in 1 of 40 episodes (3%)"
     assert last_sentence(level, fspa, now, before) == text
     now[4] = died(fspa, 4, 0)
     assert last_sentence(level, fspa, now, before) == (
-        "dies elsewhere by `guard` in 3 of 40 episodes; before: in 2 of 40 episodes"
+        "dies elsewhere by `guard` in 3 of 40 episodes (7%); before: in 2 of 40 episodes (5%)"
     )
 
 
@@ -205,7 +211,7 @@ def test_a_single_remaining_cause_is_named(level: StealthLevel, fspa: Fspa) -> N
     now = successes(fspa, 40)
     now[0] = died(fspa, 0, 2, NORTH)
     assert last_sentence(level, fspa, now) == (
-        "dies in the north hall by `guard` in 1 of 40 episodes; before: in 0 of 40 episodes"
+        "dies in the north hall by `guard` in 1 of 40 episodes (3%); before: in 0 of 40 episodes"
     )
     # If other episodes died in the same place, the sentence names the stage.
     now[1:5] = [died(fspa, index, 1, NORTH) for index in range(1, 5)]
@@ -220,14 +226,17 @@ def test_rare_causes_share_one_sentence(level: StealthLevel, fspa: Fspa) -> None
     now = successes(fspa, 40)
     now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
     now[4:6] = [died(fspa, 4, 1), timed_out(fspa, 5, 1)]
-    assert last_sentence(level, fspa, now, now) == "fails otherwise in 2 of 40 episodes; before: in 2 of 40 episodes"
+    assert (
+        last_sentence(level, fspa, now, now)
+        == "fails otherwise in 2 of 40 episodes (5%); before: in 2 of 40 episodes (5%)"
+    )
 
 
 def test_ends_show_the_counts_of_the_baseline(level: StealthLevel, fspa: Fspa) -> None:
     now = [an_episode(index, index >= 10, states=states_after(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = sentences(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
-    assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes; ")
+    assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes")
 
 
 def test_the_state_of_failure_is_described_with_what_remained(level: StealthLevel, fspa: Fspa) -> None:
@@ -236,10 +245,11 @@ def test_the_state_of_failure_is_described_with_what_remained(level: StealthLeve
         an_episode(index, False, states=states_after(fspa, 0), unmet=first if index < 14 else other)
         for index in range(25)
     ]
-    # Each stage has its own sentence with its own state.
-    ends = [text for text in sentences(level, fspa, now) if "where this remained" in text]
-    assert [text.rpartition("; ")[2].partition(",")[0] for text in ends] == [f"in state {first}", f"in state {other}"]
-    assert ends[0].endswith(f"where this remained: {label_text(fspa, first)}")
+    # It is said once for each state, however the episodes ended.
+    assert [text for text in sentences(level, fspa, now) if "this remained" in text] == [
+        f"in 14 of 25 failures, this remained: {label_text(fspa, first).rstrip('.')} (state {first})",
+        f"in 11 of 25 failures, this remained: {label_text(fspa, other).rstrip('.')} (state {other})",
+    ]
 
 
 ANY_ORDER = SPEC.replace("near(s1) then near(s2) then near(exit)", "near(s1)  reach near(s2)  reach near(exit)")
@@ -290,13 +300,13 @@ def test_a_limit_of_less_than_half_is_called_most_often(level: StealthLevel, fsp
         *(NearestMiss(f"near({name})", -0.4, MIDDLE, name, 2.5) for name in ("s1", "s2")),
     ]
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
-    assert "; most often the limit is `alive`, -0.50 at best; in state 0, " in sentences(level, fspa, now)[1]
+    assert "; most often, `alive` was not reached (-0.50 at best, it holds above 0)" in sentences(level, fspa, now)[1]
 
 
 def test_a_limit_that_is_no_distance_names_the_atom(level: StealthLevel, fspa: Fspa) -> None:
     near = [NearestMiss("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near[index % 3]) for index in range(25)]
-    assert sentences(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
+    assert sentences(level, fspa, now)[1].endswith("; `alive` was not reached (-0.25 at best, it holds above 0)")
 
 
 def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) -> None:
@@ -305,18 +315,15 @@ def test_the_limit_of_most_episodes_is_named(level: StealthLevel, fspa: Fspa) ->
         an_episode(index, False, states=states_after(fspa, 0), nearest=best if index == 7 else most)
         for index in range(25)
     ]
-    assert (
-        "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m is enough); "
-        in sentences(level, fspa, now)[1]
-    )
+    assert "; closest approach to `s1`: 2.5 m (`near(s1)` holds below 1.0 m)" in sentences(level, fspa, now)[1]
 
 
 @pytest.mark.parametrize(
     ("came", "approach"),
     [
-        (1.06, "1.1 m (`near(s1)` is the limit, below 1.0 m is enough); "),
-        (1.04, "1.04 m (`near(s1)` is the limit, below 1.00 m is enough); "),
-        (1.0, "1.00 m (`near(s1)` is the limit, less is enough); "),
+        (1.06, "1.1 m (`near(s1)` holds below 1.0 m)"),
+        (1.04, "1.04 m (`near(s1)` holds below 1.00 m)"),
+        (1.0, "1.00 m (`near(s1)` holds below that)"),
     ],
 )
 def test_near_misses_have_enough_decimals(level: StealthLevel, fspa: Fspa, came: float, approach: str) -> None:
@@ -332,7 +339,7 @@ def test_a_distance_that_depends_on_a_param_has_no_threshold(level: StealthLevel
     near = NearestMiss("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
     assert (
-        "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` is the limit); "
+        "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` was not reached)"
         in sentences(level, fspa, now, successes(fspa))[1]
     )
 
@@ -345,18 +352,18 @@ def test_episodes_at_the_target_when_the_spec_broke_are_counted(level: StealthLe
         for index in range(25)
     ]  # type: ignore[arg-type]
     end = sentences(level, fspa, now)[1]
-    assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
+    assert end.endswith("; 14 of them were at `s1` when it broke")
     few = [replace(explained, arrived=explained.summary.index < 3) for explained in now]
-    approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m is enough); "
+    approach = "closest approach of the others to `s1`: 2.5 m (`near(s1)` holds below 1.0 m)"
     assert f"; 3 of them were at `s1` when it broke; {approach}" in sentences(level, fspa, few)[1]
 
 
 def test_an_atom_that_must_not_hold_is_described_as_such(level: StealthLevel, fspa: Fspa) -> None:
     near = NearestMiss("visible", -1.0, MIDDLE, wanted=False)
     now = [an_episode(index, False, states=states_after(fspa, 0), nearest=near) for index in range(25)]
-    assert "; the limit is that `visible` holds; " in sentences(level, fspa, now)[1]
+    assert sentences(level, fspa, now)[1].endswith("; `visible` still held")
     with_open = [replace(explained, nearest=NearestMiss("open", -1.0, MIDDLE)) for explained in now]
-    assert "; the limit is `open`; " in sentences(level, fspa, with_open)[1]
+    assert sentences(level, fspa, with_open)[1].endswith("; `open` was not reached")
 
 
 def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) -> None:
@@ -424,3 +431,59 @@ def test_findings_refer_to_existing_episodes(level: StealthLevel, fspa: Fspa) ->
     for finding in findings(level, fspa, now, successes(fspa)):
         assert set(finding.episodes) <= indices
         assert list(finding.episodes) == sorted(set(finding.episodes))
+
+
+MEASURED = """
+signal x: length in [0 m, 10 m]
+signal spin: number in [-50, 50]
+signal fell: bool
+spec go { limit 100 steps  reach x >= 7 m  keep spin < 12  avoid fell }
+"""
+
+
+def test_a_comparison_is_missed_by_a_length(level: StealthLevel) -> None:
+    (fspa,) = compile_text(MEASURED)
+    misses = [
+        NearestMiss("x < 7", -0.1, MIDDLE, wanted=False, missed=Measure("x", 7 - gap, gap, "m")) for gap in (3, 1)
+    ]
+    now = [an_episode(index, False, nearest=misses[index % 2]) for index in range(25)]
+    (stage, end, *_) = sentences(level, fspa, now, [an_episode(index, states=(0, 1)) for index in range(25)])
+    assert stage.startswith("makes `x >= 7` true in 0 of 25")
+    assert end.endswith("; `x >= 7` was missed by 1.00 m at best")
+
+
+def test_a_broken_clause_is_quoted_with_how_far_and_when_it_broke(level: StealthLevel) -> None:
+    (fspa,) = compile_text(MEASURED)
+    spins = [Measure("spin", 12 + gap, gap, "rad/s") for gap in (0.5, 2.1)]
+    broken: dict[str, Any] = {"cause": "violated", "by": ("spin < 12",), "place": NORTH}
+    now = [
+        replace(
+            an_episode(index, False, **broken),
+            clauses=("keep spin < 12 rad/s",),
+            measured=spins[index % 2],
+            seconds=2.0 + 0.1 * index,
+        )
+        for index in range(25)
+    ]
+    met = [an_episode(index, states=(0, 1)) for index in range(30)]
+    (end,) = [text for text in sentences(level, fspa, now, met) if "breaks" in text]
+    assert end == (
+        "breaks `keep spin < 12 rad/s` in the north hall in 25 of 25 episodes; before: in 0 of 30 episodes; "
+        "`spin` reached 14.1 rad/s at worst, at 2.0 s to 4.4 s"
+    )
+    (only, *_) = [text for text in sentences(level, fspa, [*now[:1], *met], met) if "breaks" in text]
+    assert "in 1 of 31 episodes (3%)" in only
+
+
+def test_a_clause_that_two_atoms_break_is_quoted_with_the_atom(level: StealthLevel) -> None:
+    (fspa,) = compile_text(MEASURED)
+    now = [
+        replace(
+            an_episode(index, False, cause="violated", by=("fell",) if index % 2 else ("spin < 12",)),
+            clauses=("keep spin < 12 and not fell",),
+        )
+        for index in range(24)
+    ]
+    texts = [text for text in sentences(level, fspa, now, now) if "breaks" in text]
+    clause = "breaks `keep spin < 12 and not fell` in the middle"
+    assert [text.partition(" in 12")[0] for text in texts] == [f"{clause} (`spin < 12`)", f"{clause} (`fell`)"]

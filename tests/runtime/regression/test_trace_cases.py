@@ -78,7 +78,7 @@ def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) ->
     assert reasons[0].strip() == "met in 30 of 100 traces (30%), before in 95 of 100 (95%): certainly in less than 50%"
     (burnt,) = (reason for reason in reasons if "breaks" in reason)
     assert burnt.strip().startswith(
-        "breaks `avoid on_lava` at step 2 in 65 of 100 traces; before: in 0 of 100 traces; "
+        "breaks `avoid on_lava` at step 2 in 65 of 100 traces (65%); before: in 0 of 100 traces; "
     )
     (short,) = (reason for reason in reasons if "ends before" in reason)
     assert short.strip().startswith(
@@ -211,7 +211,7 @@ def test_earlier_failures_at_another_stage_are_not_denied(tltlc: Run, here: Path
     write_traces(here / "late", (70, WON), (30, ["000", "010", "110"]))
     result = regress(tltlc, "--baseline", "early", "--now", "late")
     (burnt,) = (line.strip() for line in result.out.splitlines() if "breaks" in line)
-    assert burnt.startswith("breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces; ")
+    assert burnt.startswith("breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces (30%); ")
 
 
 @pytest.mark.parametrize(
@@ -258,7 +258,7 @@ def test_the_reports_have_the_same_verdict(tltlc: Run, here: Path) -> None:  # n
     assert case["traces"]["now"]["names"][:2] == ["new/000.csv", "new/001.csv"]
     assert case["accounts"][30]["by"] == ["avoid on_lava"]
     (failure,) = ET.parse(here / "report.xml").getroot().iter("failure")
-    assert str(failure.get("message")).startswith("fail: breaks `avoid on_lava` at step 2 in 65 of 100 traces")
+    assert str(failure.get("message")).startswith("fail: breaks `avoid on_lava` at step 2 in 65 of 100 traces (65%)")
     page = (here / "report.html").read_text(encoding="utf-8")
     assert "100 recorded traces of new · compared with 100 recorded traces of old · spec fetch" in page
     assert page.count('<figure class="trace"') == 7

@@ -16,7 +16,6 @@ _PHRASE: Final = Spelling(
     brackets_between_infix=True,
     brackets_around_comparisons=False,
 )
-_OPPOSITE: Final = {"<": ">=", ">": "<="}
 
 
 def phrase(state: Formula) -> str:
@@ -34,7 +33,7 @@ def _opposite(node: Formula) -> Formula | None:
     """Return the negation of a comparison as a comparison; None for any other formula."""
     if node.op != "not" or not isinstance(name := node.args[0].name, ComparisonName):
         return None
-    return atom(f"{name.left} {_OPPOSITE[name.operator]} {name.right}")
+    return atom(name.opposite)
 
 
 def bracketed_phrase(state: Formula) -> str:

@@ -6,6 +6,7 @@ subgoal that leads from them towards acceptance.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
@@ -19,7 +20,7 @@ from tltl_runtime.regression.explain.path_points import positions_along
 from tltl_runtime.regression.explain.phrase import phrase
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_phrase
 from tltl_runtime.support.number_text import count_text, percent
-from tltlc.api import Fspa, record
+from tltlc.api import Fspa, label_text, record
 
 _STAGE_TOLERANCE: Final = 0.05
 """The share of episodes that complete a stage has changed if it differs by at least this much."""
@@ -32,6 +33,9 @@ _REGION_DIFFERENCE: Final = 0.4
 
 _LENGTH_RATIO: Final = 1.15
 """Two mean lengths of episodes count as equal if the greater is less than this factor times the smaller."""
+
+_MOST_STATES: Final = 3
+"""What remained to be done is said for at most this many states: those in which most episodes failed."""
 
 _MIN_SUCCESSES: Final = 3
 """Lengths and regions are compared only if at least this many episodes succeed, both now and before."""
@@ -57,13 +61,14 @@ def findings(
 ) -> tuple[Finding, ...]:
     """Return sentences that compare the episodes ``now`` with the episodes ``before``, of the baseline.
 
-    They say which stages (parts of the spec) the episodes complete, how episodes fail, whether
-    successful episodes are longer or shorter, and through which regions of the level they pass.
+    They say which stages (parts of the spec) the episodes complete, how episodes fail, what remained to be
+    done then, whether successful episodes are longer or shorter, and through which regions of the level they pass.
     ``level`` is the level that was played now, or None for recorded traces, which have no regions.
     """
     return (
         *_stages(fspa, now, before, _noun(level)),
         *(finding for _, finding in _ends(level, fspa, now, before)),
+        *_remaining(fspa, now),
         *_lengths(now, before),
         *(_regions(level, now, before) if level is not None else ()),
     )
@@ -95,7 +100,7 @@ def _stages(
         prefix = phrase(subgoals_phrase(unchanged_stages), " as before, then ") if unchanged_stages else ""
         failed = tuple(episode.summary.index for episode in now if episode not in passed_now)
         counts = [
-            count_text(len(passed), len(episodes), noun)
+            count_text(len(passed), len(episodes), noun, is_compared=len(now) != len(before))
             for passed, episodes in ((passed_now, now), (passed_before, before))
         ]
         sentence = phrase(prefix, subgoals_phrase([stage]), f" in {counts[0]}; before: in {counts[1]}")
@@ -148,15 +153,26 @@ def _ends(
     did so, and details. The order is that of
     :func:`~tltl_runtime.regression.explain.failures.failures`. All texts are distinct.
     """
-    noun = _noun(level)
+    noun, is_compared = _noun(level), len(now) != len(before)
     ends_before = [end_of(level, fspa, episode) for episode in before if not episode.summary.success]
     for group in failures(level, fspa, now, ends_before):
         matches = [group.matches(end) for end in ends_before]
         ends_before = [end for end, is_match in zip(ends_before, matches, strict=True) if not is_match]
-        headline = phrase(group.text, f" in {_count_text(len(group.episodes), now, noun)}")
-        sentence = phrase(headline, f"; before: in {_count_text(sum(matches), before, noun)}", group.more)
+        headline = phrase(group.text, f" in {count_text(len(group.episodes), len(now), noun, is_compared=is_compared)}")
+        counted_before = count_text(sum(matches), len(before), noun, is_compared=is_compared)
+        sentence = phrase(headline, f"; before: in {counted_before}", group.more)
         indices = tuple(sorted(episode.summary.index for episode in group.episodes))
         yield headline.text, Finding(sentence.text, indices, mentions=sentence.mentions)
+
+
+def _remaining(fspa: Fspa, now: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
+    """Yield a finding for each of the states in which episodes failed most often: what remained to be done there."""
+    failed = [episode for episode in now if not episode.summary.success]
+    for state, count in Counter(episode.summary.unmet for episode in failed).most_common(_MOST_STATES):
+        counted = count_text(count, len(failed), f"failure{'s' * (len(failed) != 1)}")
+        text = f"in {counted}, this remained: {label_text(fspa, state).rstrip('.')} (state {state})"
+        indices = (episode.summary.index for episode in failed if episode.summary.unmet == state)
+        yield Finding(text, tuple(sorted(indices)))
 
 
 def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:
@@ -196,7 +212,3 @@ def _visits(episode: ExplainedEpisode, region: Region) -> bool:
     (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
     end = [] if episode.place is None else [episode.place[:2]]
     return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*positions_along(episode.way), *end))
-
-
-def _count_text(count: int, episodes: Sequence[ExplainedEpisode], noun: str) -> str:
-    return f"{count} of {len(episodes)} {noun}"

@@ -11,7 +11,7 @@ from tltl_runtime.game.geometry import Point
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
 from tltl_runtime.regression.explain.stages import distance_column, target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltlc.api import monitors, record, replace
+from tltlc.api import monitors, record, replace, traces
 
 _SEEN_WITHIN_S: Final = 3.0
 """An enemy is reported if it saw the player within this many seconds before the end."""
@@ -43,7 +43,8 @@ class NearestMiss:
 
     If the atom had to be true, and the player makes it true by approaching an entity, ``target`` is
     that entity. ``distance`` is then the least distance to the target, in metres, at which the atom
-    was still false. Otherwise, both are None.
+    was still false. Otherwise, both are None. ``missed`` measures the atom at that moment if it is a
+    comparison: its ``gap`` is by how much the episode missed it. Otherwise, it is None.
     """
 
     atom: str
@@ -52,6 +53,7 @@ class NearestMiss:
     target: str | None = None
     distance: float | None = None
     wanted: bool = True
+    missed: traces.Measure | None = None
 
 
 @record
@@ -70,6 +72,10 @@ class ExplainedEpisode:
     - ``arrived`` says whether the last step would have led towards acceptance but for the atoms in
       ``broke``.
     - ``shut`` are the barriers that were closed at the end and stop players.
+    - ``clauses`` are the clauses of the spec that the episode broke, as in its source text. They are not
+      known of episodes in older baselines.
+    - ``measured`` measures the comparison that broke the spec; None if no comparison did.
+    - ``seconds`` is the time since the reset when the spec broke; None if it did not.
 
     A recorded trace is an episode without a game: it has no places, no enemies and no barriers. Its
     ``by`` are the clauses of the spec that the trace breaks or does not meet.
@@ -90,6 +96,9 @@ class ExplainedEpisode:
     broke: tuple[str, ...] = ()
     arrived: bool = False
     shut: tuple[str, ...] = ()
+    clauses: tuple[str, ...] = ()
+    measured: traces.Measure | None = None
+    seconds: float | None = None
 
 
 def summaries_of(episodes: Iterable[ExplainedEpisode]) -> list[EpisodeSummary]:
@@ -101,9 +110,10 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
     """Return a recorded ``episode``, whose summary is ``summary``, with the facts that explain its result."""
     game, positions = episode.level.game, _positions(episode)
     cause = game.cause(episode)
+    broken = summary.cause if summary.cause and summary.cause.kind in ("broken", "blocked") else None
     return ExplainedEpisode(
         # Verdicts, reports and the files of baselines do not contain these fields.
-        summary=replace(summary, verdict=None, seconds=None, state=None, label=None),
+        summary=replace(summary, verdict=None, seconds=None, state=None, label=None, cause=None),
         cause=cause.kind,
         by=cause.by,
         place=None if cause.place is None else _rounded(cause.place),
@@ -114,6 +124,9 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
         broke=cause.broke,
         arrived=_has_arrived(episode, summary.unmet, cause.broke),
         shut=game.shut_barriers(episode),
+        clauses=broken.clauses if broken and broken.kind == "broken" else (),
+        measured=broken.measure if broken else None,
+        seconds=round(float(episode.times[broken.step]), 4) if broken else None,
     )
 
 
@@ -158,7 +171,16 @@ def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Poin
         target=target,
         distance=distance,
         wanted=nearest.wanted,
+        missed=_measure(episode, nearest.atom, steps[nearest.row] + 1),
     )
+
+
+def _measure(episode: RecordedEpisode, atom: int, row: int) -> traces.Measure | None:
+    """Measure an atom, given by its index, at a row of the episode's signals; None if it is no comparison."""
+    params = tuple(replace(param, value=episode.params.get(param.name, param.value)) for param in episode.fspa.params)
+    names = (signal.name for signal in episode.fspa.signals)
+    sample = dict(zip(names, episode.signals[row].tolist(), strict=True))
+    return traces.measure(replace(episode.fspa, params=params), atom, sample)
 
 
 def _last_stay(episode: RecordedEpisode, state: int) -> list[int]:

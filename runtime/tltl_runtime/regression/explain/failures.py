@@ -9,7 +9,7 @@ from typing import Final, TypeVar
 from tltl_runtime.game.episode import EndKind
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
-from tltl_runtime.regression.explain.nearest_miss import approach_phrase, remaining_text
+from tltl_runtime.regression.explain.nearest_miss import approach_phrase
 from tltl_runtime.regression.explain.phrase import Phrase, phrase, quoted_names, things_phrase
 from tltl_runtime.regression.explain.places import blocking_solids, place_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, subgoal
@@ -91,14 +91,26 @@ def failures(
             groups.setdefault(end_of(level, fspa, episode), []).append(episode)
     frequent = _frequent_groups(groups, len(episodes))
     stages = Counter(replace(end, undone=Subgoal()) for end in {*groups, *ends_before})
+    names_atoms = _is_ambiguous(episodes)
     for end in frequent:
         # If ends differ only in their subgoals, name the subgoal, so that the texts differ.
         stage = _stage_phrase(level, end) if stages[replace(end, undone=Subgoal())] > 1 else _NOTHING
         group = groups[end]
-        details = phrase(approach_phrase(level, fspa, end.undone, group), "; ", remaining_text(fspa, group))
-        yield Failures(phrase(_end_phrase(level, fspa, end, group), stage), tuple(group), end.__eq__, details)
+        details = approach_phrase(level, fspa, end.undone, group)
+        yield Failures(
+            phrase(_end_phrase(level, fspa, end, group, names_atoms=names_atoms), stage),
+            tuple(group),
+            end.__eq__,
+            details,
+        )
     remaining = {end: group for end, group in groups.items() if end not in frequent}
-    yield from _remaining_failures(level, fspa, remaining, frequent, len(episodes))
+    yield from _remaining_failures(level, fspa, remaining, frequent, len(episodes), names_atoms=names_atoms)
+
+
+def _is_ambiguous(episodes: Sequence[ExplainedEpisode]) -> bool:
+    """Whether episodes broke the same clauses by different atoms."""
+    broken = {(episode.clauses, tuple(sorted(episode.by))) for episode in episodes if episode.cause == "violated"}
+    return len({clauses for clauses, _ in broken}) < len(broken)
 
 
 def _frequent_groups(groups: Mapping[_T, Sequence[ExplainedEpisode]], episode_count: int) -> list[_T]:
@@ -117,6 +129,8 @@ def _remaining_failures(
     groups: Mapping[FailureEnd, Sequence[ExplainedEpisode]],
     frequent: Collection[FailureEnd],
     episode_count: int,
+    *,
+    names_atoms: bool,
 ) -> Iterator[Failures]:
     """Yield a group for each frequent cause of the ends in ``groups``, and one for all rare causes.
 
@@ -133,7 +147,7 @@ def _remaining_failures(
         rare_causes = []
     for cause in frequent_causes:
         same_cause = [end for end in groups if end.kind == cause]
-        text, matches = _phrase_for_cause(level, fspa, same_cause, causes[cause], frequent)
+        text, matches = _phrase_for_cause(level, fspa, same_cause, causes[cause], frequent, names_atoms=names_atoms)
         yield Failures(text, tuple(causes[cause]), matches)
     if rare_causes:
         otherwise = " otherwise" if frequent or frequent_causes else ""
@@ -147,6 +161,8 @@ def _phrase_for_cause(
     ends: Sequence[FailureEnd],
     episodes: Sequence[ExplainedEpisode],
     frequent: Collection[FailureEnd],
+    *,
+    names_atoms: bool,
 ) -> tuple[Phrase, Callable[[FailureEnd], bool]]:
     """Return a text that describes all of ``ends``, and a function that says whether it describes an end.
 
@@ -172,7 +188,8 @@ def _phrase_for_cause(
         )
         return end.kind == cause and same_place and (not is_one_stage or end.undone in stages)
 
-    return phrase(_end_phrase(level, fspa, replace(ends[0], where=where), episodes), stage), matches
+    text = _end_phrase(level, fspa, replace(ends[0], where=where), episodes, names_atoms=names_atoms)
+    return phrase(text, stage), matches
 
 
 def _stage_phrase(level: Level | None, end: FailureEnd) -> Phrase:
@@ -182,8 +199,12 @@ def _stage_phrase(level: Level | None, end: FailureEnd) -> Phrase:
     return Phrase(f"{also} before it {end.undone.text}", end.undone.mentions)
 
 
-def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode]) -> Phrase:
+def _end_phrase(
+    level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequence[ExplainedEpisode], *, names_atoms: bool
+) -> Phrase:
     """Describe how ``episodes`` failed, which all have the same ``end``: ``dies in the corridor``.
+
+    With ``names_atoms``, the text names the atoms that broke the spec beside the clauses.
 
     The caller appends the number of episodes. So if the text ends with a clause that is set off by
     a comma, a comma also follows the clause: ``dies, mostly seen by `guard`,``.
@@ -195,12 +216,15 @@ def _end_phrase(level: Level | None, fspa: Fspa, end: FailureEnd, episodes: Sequ
     saw = phrase(f", {adverb}seen by ", things_phrase(observers)) if observers else _NOTHING
     if end.cause == "killed":
         by = phrase(" by ", things_phrase(end.by)) if end.by else _NOTHING
-        atoms, adverb = _majority([episode.broke for episode in episodes])
-        broke = f", {adverb}breaking {quoted_names(atoms)}" if atoms else ""
-        return phrase("dies", place, by, broke, saw, "," if atoms or observers else "")
+        broken, adverb = _majority([episode.clauses or episode.broke for episode in episodes])
+        broke = f", {adverb}breaking {quoted_names(broken)}" if broken else ""
+        return phrase("dies", place, by, broke, saw, "," if broken or observers else "")
     if end.cause == "violated":
-        atom_names = f" ({quoted_names(end.by)})"
-        return phrase("breaks the spec", place, atom_names, saw, "," if observers else "")
+        clauses, adverb = _majority([episode.clauses for episode in episodes])
+        broken_text = f"{adverb}{quoted_names(clauses)}" if clauses else "the spec"
+        # Several atoms may break one clause, or one atom several of them. Each needs a text of its own.
+        atoms = f" ({quoted_names(end.by)})" if end.by and (names_atoms or not clauses) else ""
+        return phrase(f"breaks {broken_text}", place, atoms, saw, "," if observers else "")
     positions = [(episode.place, episode.shut) for episode in episodes if episode.place is not None]
     obstacles = blocking_solids(level, positions)
     mostly = (

@@ -1,4 +1,4 @@
-"""Describe how near failed episodes came to their next subgoals, and what remained to be done."""
+"""Describe by how much failed episodes broke the spec, and how near they came to their next subgoals."""
 
 from __future__ import annotations
 
@@ -9,37 +9,55 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
 from tltl_runtime.regression.explain.phrase import Phrase, phrase, things_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
-from tltl_runtime.support.number_text import number
-from tltlc.api import Fspa, label_text
+from tltl_runtime.support.number_text import number, quantity_text
+from tltlc.api import Fspa
 
 
 def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> Phrase:
-    """Describe how near failed episodes came to the subgoal ``undone``.
+    """Describe by how much failed episodes broke the spec, and how near they came to the subgoal ``undone``.
 
-    The first clause counts the episodes that had just reached the subgoal when another atom broke the
-    spec. The second clause describes the nearest miss of the other episodes. It is left out unless
+    The first clause says by how much and when they broke the spec, if they did. The second clause counts
+    the episodes that had just reached the subgoal when another atom broke the
+    spec. The third clause describes the nearest miss of the other episodes. It is left out unless
     such misses are known for more than half of all ``episodes``. Each clause begins with a semicolon.
     The text is empty if both are left out. ``level`` is None for recorded traces.
     """
-    clauses = Phrase("")
+    clauses = _breach_phrase(episodes)
     if arrived := sum(episode.arrived for episode in episodes):
         was = "was" if arrived == 1 else "were"
         position = f"{was} at {undone.place}" if undone.targets else "lacked nothing else"
-        clauses = Phrase(f"; {arrived} of them {position} when it broke", undone.mentions)
+        clauses = phrase(clauses, Phrase(f"; {arrived} of them {position} when it broke", undone.mentions))
     misses = [episode.nearest for episode in episodes if episode.nearest and not episode.arrived]
     if 2 * len(misses) <= len(episodes):
         return clauses
     return phrase(clauses, "; ", _limit_phrase(level, fspa, misses, " of the others" if arrived else ""))
 
 
-def remaining_text(fspa: Fspa, episodes: Sequence[ExplainedEpisode]) -> str:
-    """Return a clause with the state in which episodes failed most often, and what remained to be done there.
+def _breach_phrase(episodes: Sequence[ExplainedEpisode]) -> Phrase:
+    """Say how far and when episodes broke the spec: ``; `abs(spin)` reached 14.1 at worst, at 2.1 s to 5 s``.
 
-    For example, ``mostly in state 2, where this remained: reach near(exit)``.
+    Empty if they did not break it, or if nothing about it is known.
     """
-    ((state, count),) = Counter(episode.summary.unmet for episode in episodes).most_common(1)
-    often = "" if count == len(episodes) else "mostly " if 2 * count > len(episodes) else "most often "
-    return f"{often}in state {state}, where this remained: {label_text(fspa, state)}"
+    measured = [episode.measured for episode in episodes if episode.measured is not None]
+    times = [episode.seconds for episode in episodes if episode.seconds is not None]
+    if not times and not measured:
+        return Phrase("")
+    text = "; broken"
+    if measured:
+        worst = max(measured, key=lambda measure: measure.gap)
+        value = worst.gap if worst.value is None else worst.value
+        reached = "was off by" if worst.value is None else "reached"
+        text = f"; `{worst.quantity}` {reached} {quantity_text(value, worst.unit, worst.gap)}"
+        text += " at worst," * (len(measured) > 1)
+    return Phrase(text + _times_text(times))
+
+
+def _times_text(times: Sequence[float]) -> str:
+    """Return a clause with the range of some times in seconds: `` at 3.2 s`` or `` at 2.1 s to 5.0 s``."""
+    if not times:
+        return ""
+    first, last = (f"{time:.1f} s" for time in (min(times), max(times)))
+    return f" at {first}" if first == last else f" at {first} to {last}"
 
 
 def _limit_phrase(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss], of: str) -> Phrase:
@@ -50,30 +68,32 @@ def _limit_phrase(level: Level | None, fspa: Fspa, misses: Sequence[NearestMiss]
     """
     (((atom, must_hold), count),) = Counter((miss.atom, miss.wanted) for miss in misses).most_common(1)
     same_limit = [miss for miss in misses if (miss.atom, miss.wanted) == (atom, must_hold)]
-    often = "" if 2 * count > len(misses) else "most often "
-    if not must_hold:
-        return Phrase(f"{often}the limit is that `{atom}` holds")
-    if level is None:
-        return Phrase(_trace_limit_text(often, atom, max(miss.robustness for miss in same_limit)))
-    if distances := [miss.distance for miss in same_limit if miss.distance is not None]:
-        nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
-        target = same_limit[0].target
-        assert target is not None, "a distance is the distance to a target"
-        limit = f": {nearest} ({often}`{atom}` is the limit{sufficient})"
-        return phrase(f"closest approach{of} to ", things_phrase([target]), limit)
-    best = max(miss.robustness for miss in same_limit)
-    # A Boolean atom that does not hold has robustness -1, which says nothing.
-    return Phrase(f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else ""))
+    often = "" if 2 * count > len(misses) else "most often, "
+    distances = [miss.distance for miss in same_limit if miss.distance is not None]
+    if level is None or not distances:
+        return Phrase(often + _miss_text(fspa, same_limit))
+    nearest, sufficient = _distance_texts(min(distances), _sufficient_distance(level, fspa, atom))
+    target = same_limit[0].target
+    assert target is not None, "a distance is the distance to a target"
+    return phrase(f"{often}closest approach{of} to ", things_phrase([target]), f": {nearest} (`{atom}`{sufficient})")
 
 
-def _trace_limit_text(often: str, atom: str, best: float) -> str:
-    """Say that ``atom`` kept traces from the next subgoal.
+def _miss_text(fspa: Fspa, misses: Sequence[NearestMiss]) -> str:
+    """Say by how much episodes missed an atom at best: ```x >= 7` was missed by 0.5 m at best``.
 
-    ``best`` is the greatest value of the atom. It is left out if it is -1, as for a Boolean atom.
-    ``often`` comes before the name: empty or ``most often`` and a space.
+    All of ``misses`` have the same atom, and the same truth value that it had to have.
     """
-    value = f", with {number(best, 2)} at best: it holds above 0" if best > -1.0 else ""
-    return f"{often}`{atom}` was missing{value}"
+    atom, wanted = misses[0].atom, misses[0].wanted
+    opposite = next((known.opposite for known in fspa.atoms if known.name == atom), None)
+    if measured := [miss.missed for miss in misses if miss.missed is not None]:
+        least = min(measured, key=lambda measure: measure.gap)
+        gap = quantity_text(least.gap, least.unit, least.gap)
+        return f"`{atom if wanted else opposite}` was missed by {gap} at best"
+    if not wanted:
+        return f"`{atom}` still held" if opposite is None else f"`{opposite}` was not reached"
+    best = max(miss.robustness for miss in misses)
+    # A Boolean atom that does not hold has robustness -1, which says nothing.
+    return f"`{atom}` was not reached" + (f" ({number(best, 2)} at best, it holds above 0)" if best > -1.0 else "")
 
 
 def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
@@ -87,15 +107,15 @@ def _sufficient_distance(level: Level, fspa: Fspa, name: str) -> float | None:
 
 
 def _distance_texts(least: float, limit: float | None) -> tuple[str, str]:
-    """Return ``least`` as a text, and a clause about ``limit``: ``1.2 m`` and ``, below 1.0 m is enough``.
+    """Return ``least`` as a text, and a clause about ``limit``: ``1.2 m`` and `` holds below 1.0 m``.
 
     Both are in metres. ``least`` is the least distance to a target, and ``limit`` the distance that
-    would suffice. If ``limit`` is None, the clause is empty. Two decimals are shown if the distances
+    would suffice. If ``limit`` is None, the clause does not name it. Two decimals are shown if the distances
     differ only in the second.
     """
     if limit is None:
-        return f"{least:.1f} m", ""
+        return f"{least:.1f} m", " was not reached"
     for decimals in (1, 2):
         if (nearest := f"{least:.{decimals}f} m") != (sufficient := f"{limit:.{decimals}f} m"):
-            return nearest, f", below {sufficient} is enough"
-    return nearest, ", less is enough"
+            return nearest, f" holds below {sufficient}"
+    return nearest, " holds below that"

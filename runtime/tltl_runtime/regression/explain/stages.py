@@ -135,9 +135,17 @@ def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
     if targets := [target for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
         return Subgoal((tuple(targets),))
     for truth in (True, False):
-        if atoms := [f"`{fspa.atoms[atom].name}`" for atom, holds in literals if holds == truth]:
+        if atoms := [
+            f"`{name}`" for name, holds in (_literal(fspa, *literal) for literal in literals) if holds == truth
+        ]:
             return Subgoal(other=f"makes {' and '.join(atoms)} {str(truth).lower()}")
     return None
+
+
+def _literal(fspa: Fspa, atom: int, holds: bool) -> tuple[str, bool]:
+    """Return the text of an atom and whether it must hold: ``x >= 7`` that holds for ``x < 7`` that does not."""
+    opposite = fspa.atoms[atom].opposite
+    return (fspa.atoms[atom].name, holds) if holds or opposite is None else (opposite, True)
 
 
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:

@@ -36,7 +36,7 @@ def reasons(
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
     noun = "traces" if are_traces else "episodes"
-    met = f"met in {count_text(passed, len(now), noun)}, before in {count_text(passed_before, len(before))}"
+    met = f"met in {_count(passed, now, before, noun)}, before in {_count(passed_before, before, now)}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {fail_rate}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
@@ -54,6 +54,11 @@ def reasons(
         ):
             text = _uncertain_change_text(figure, now, before, paired=not are_traces)
             yield f"{text}; the difference is {getattr(thresholds, figure):g} or more, but not certain"
+
+
+def _count(count: int, episodes: Sequence[EpisodeSummary], others: Sequence[EpisodeSummary], noun: str = "") -> str:
+    """Return a count of ``episodes`` as a text, to be compared with a count of ``others``."""
+    return count_text(count, len(episodes), noun, is_compared=len(episodes) != len(others))
 
 
 def _change_text(figure: str, now: float, before: float) -> str:

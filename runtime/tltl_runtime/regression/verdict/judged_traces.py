@@ -175,7 +175,10 @@ def _explained(fspa: Fspa, index: int, verdict: traces.TraceVerdict, limit: int 
         arrivals=tuple(Arrival(state, step) for state, step in details.arrivals),
         nearest=None
         if nearest is None
-        else NearestMiss(fspa.atoms[nearest.atom].name, round(nearest.robustness, 4), wanted=nearest.wanted),
+        else NearestMiss(
+            fspa.atoms[nearest.atom].name, round(nearest.robustness, 4), wanted=nearest.wanted, missed=details.missed
+        ),
         way=(),
         broke=() if cause is None else cause.atoms,
+        measured=None if cause is None else cause.measure,
     )
