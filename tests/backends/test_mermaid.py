@@ -69,6 +69,13 @@ def test_the_diagram_of_cover_and_hide_has_its_states_and_guards() -> None:
     assert "    class s4 holding\n" in text
 
 
+def test_comparisons_are_written_as_a_designer_writes_them() -> None:
+    (fspa,) = compile_text("signal x: number in [0, 9]\nspec far { reach x >= 7 then x <= 1 }")
+    text = " ".join(words(mermaid_text(fspa)))
+    assert "(x >= 7)" in text and "(x <= 1)" in text
+    assert "¬" not in text
+
+
 def test_parallel_edges_share_an_arrow_that_shows_their_pairs() -> None:
     """Mermaid draws only one of two loops at a state."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")

@@ -8,6 +8,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.text.counts import NUMBERS, CountPrinter, foreign_range_text, range_text
+from tltlc.logic.text.phrases import with_opposites
 from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, words_text
 
 _LONGEST_IN_ENGLISH: Final = 2_000
@@ -39,15 +40,17 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
 
 
 def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "english") -> str:
-    """Return one text for the labels of two states: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+    """Return one text for the labels of two states, for people: ``F[0,39…2] p`` for ``F[0,39] p`` and ``F[0,2] p``.
+
+    The negation of ``x < 7`` is written ``x >= 7``, unlike in the labels of artefacts.
 
     If the labels differ in more than counts of steps, return both with an ellipsis between them.
     ``first`` and ``last`` are the ids of the states.
     """
-    texts = label_text(fspa, first, notation), label_text(fspa, last, notation)
+    texts = _shown_label(fspa, first, notation), _shown_label(fspa, last, notation)
     if texts[0] == texts[1]:
         return texts[0]
-    first_label, last_label = fspa.states[first].label, fspa.states[last].label
+    first_label, last_label = (_shown(fspa.states[state].label, notation) for state in (first, last))
     if isinstance(first_label, Formula) and isinstance(last_label, Formula):
         endless = fspa.semantics == "infinite"
         text = range_text(
@@ -58,20 +61,31 @@ def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "en
     return " … ".join(texts) if text is None else text
 
 
+def _shown_label(fspa: Fspa, state: int, notation: Notation) -> str:
+    if notation == "english":
+        return label_text(fspa, state)
+    return _text(_shown(fspa.states[state].label, notation), notation, endless=fspa.semantics == "infinite")
+
+
+def _shown(label: Formula | Text, notation: Notation) -> Formula | Text:
+    """Return a label for people. English sentences of labels write opposite comparisons by themselves."""
+    return label if isinstance(label, Text) or notation == "english" else with_opposites(label)
+
+
 def guard_text(guard: Guard, notation: Notation = "ascii") -> str:
-    """Return the short formula of a guard in a notation.
+    """Return the short formula of a guard in a notation, for people: ``x >= 7`` for ``!(x < 7)``.
 
     The notation ``english`` writes the operators as words: ``a and not b``.
     """
-    if isinstance(guard.formula, Formula) and notation == "english":
-        return words_text(guard.formula)
-    return _text(guard.formula, notation, endless=False)
+    if isinstance(guard.formula, Text):
+        return _text(guard.formula, notation, endless=False)
+    formula = with_opposites(guard.formula)
+    return words_text(formula) if notation == "english" else _text(formula, notation, endless=False)
 
 
 def guard_texts(fspa: Fspa) -> tuple[str, ...]:
-    """Return the guard of each edge in the ASCII notation, in the order of ``fspa.edges``."""
-    guards = {edge.guard.formula: edge.guard for edge in fspa.edges}
-    texts = {formula: guard_text(guard) for formula, guard in guards.items()}
+    """Return the guard of each edge in the ASCII notation, as artefacts have it, in the order of ``fspa.edges``."""
+    texts = {formula: _text(formula, "ascii", endless=False) for formula in {edge.guard.formula for edge in fspa.edges}}
     return tuple(texts[edge.guard.formula] for edge in fspa.edges)
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from tltl_runtime.regression.explain.stages import (
     Subgoal,
+    is_opposite_asked,
     near_enough,
     subgoal,
     subgoal_of_all,
@@ -73,6 +74,17 @@ def test_an_atom_without_a_target_is_made_true() -> None:
 def test_a_negated_goal_is_made_false() -> None:
     fspa = spec("reach not loud\n keep alive\n keep not seen", "signal loud: bool\n")
     assert subgoals(fspa) == ["makes `loud` false", "meets the spec"]
+
+
+COMPARED = "signal x: length in [0 m, 9 m]\nsignal v: speed in [0 m/s, 9 m/s]\n"
+
+
+def test_a_goal_with_an_inclusive_comparison_is_said_as_it_is_written() -> None:
+    fspa = spec("reach x >= 7 m and v > 1 m/s then x <= 1 m\n keep v <= 8 m/s", COMPARED)
+    assert subgoals(fspa) == ["makes `x >= 7` and `v > 1` true", "makes `x <= 1` true", "meets the spec"]
+    asked = [atom.opposite for row, atom in enumerate(fspa.atoms) if is_opposite_asked(fspa, row)]
+    assert asked == ["x >= 7", "x <= 1"]
+    assert subgoals(spec("reach x >= 7 m", COMPARED)) == ["makes `x >= 7` true", "meets the spec"]
 
 
 def test_an_invariant_is_no_stage() -> None:

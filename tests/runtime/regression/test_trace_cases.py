@@ -211,7 +211,9 @@ def test_earlier_failures_at_another_stage_are_not_denied(tltlc: Run, here: Path
     write_traces(here / "late", (70, WON), (30, ["000", "010", "110"]))
     result = regress(tltlc, "--baseline", "early", "--now", "late")
     (burnt,) = (line.strip() for line in result.out.splitlines() if "breaks" in line)
-    assert burnt.startswith("breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces (30%); ")
+    assert burnt.startswith(
+        "breaks `avoid on_lava` at step 3 before it makes `at_exit` true in 30 of 100 traces (30%); "
+    )
 
 
 @pytest.mark.parametrize(

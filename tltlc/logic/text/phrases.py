@@ -23,10 +23,18 @@ def phrase(state: Formula) -> str:
 
     The negation of ``fuel > 5`` is written ``fuel <= 5``.
     """
+    return write(with_opposites(state), _PHRASE)
+
+
+def with_opposites(formula: Formula) -> Formula:
+    """Return the formula for people, with ``fuel <= 5`` in place of ``!(fuel > 5)``.
+
+    No automaton has atoms with such names, so the result is only good for printing.
+    """
     done: dict[Formula, Formula] = {}
-    for node in state.bottom_up():
+    for node in formula.bottom_up():
         done[node] = _opposite(node) or rebuild(node, tuple(done[argument] for argument in node.args))
-    return write(done[state], _PHRASE)
+    return done[formula]
 
 
 def _opposite(node: Formula) -> Formula | None:

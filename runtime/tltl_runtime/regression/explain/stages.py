@@ -148,6 +148,17 @@ def _literal(fspa: Fspa, atom: int, holds: bool) -> tuple[str, bool]:
     return (fspa.atoms[atom].name, holds) if holds or opposite is None else (opposite, True)
 
 
+def is_opposite_asked(fspa: Fspa, atom: int) -> bool:
+    """Whether a goal asks for the opposite of a comparison, as ``reach x >= 7`` does of the atom ``x < 7``.
+
+    ``atom`` is the index of the atom. Clauses that hold at all steps, such as ``avoid x < 7``, do not count.
+    """
+    if fspa.atoms[atom].opposite is None or _is_invariant(fspa, atom, False):
+        return False
+    primes = (prime for edges in monitors.tables(fspa).improving for edge in edges for prime in edge.guard.primes)
+    return {truth for prime in primes for literal, truth in prime if literal == atom} == {False}
+
+
 def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
     """Return one subgoal for several states that all have the same ``distance`` from acceptance.
 

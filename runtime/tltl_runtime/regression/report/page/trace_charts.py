@@ -13,6 +13,7 @@ from typing import Final
 
 from markupsafe import Markup
 
+from tltl_runtime.regression.explain.stages import is_opposite_asked
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.trace_curves import TraceCurves
 from tltl_runtime.support.markup import coordinate, element
@@ -79,12 +80,13 @@ def anchor(slug: str, index: int) -> str:
 
 
 def _chart(fspa: Fspa, curves: TraceCurves) -> Markup:
-    names = [atom.name for atom in fspa.atoms]
-    height = _STATES + _ROW * len(names) + _AXIS
+    height = _STATES + _ROW * len(fspa.atoms) + _AXIS
     parts = [element("title", f"{curves.name}: states and atoms over {curves.steps} steps")]
     parts += _state_strip(fspa, curves)
-    for row, name in enumerate(names):
-        parts += _atom_row(name, [values[row] for values in curves.atoms], _STATES + _ROW * row)
+    for row, atom in enumerate(fspa.atoms):
+        # The row of a goal such as `x >= 7` shows this comparison, and not the atom that the compiler made of it.
+        name, sign = (atom.opposite or "", -1.0) if is_opposite_asked(fspa, row) else (atom.name, 1.0)
+        parts += _atom_row(name, [sign * values[row] for values in curves.atoms], _STATES + _ROW * row)
     parts += _axis(fspa, curves.steps, height - _AXIS)
     return element("svg", *parts, class_="diagram trace", viewBox=f"0 0 {_WIDTH} {height}", role="img")
 
