@@ -10,8 +10,9 @@ from tests.runtime.regression.handmade import PLAYED, summaries
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.suite.changed_lines import changed_lines
 from tltl_runtime.regression.suite.suite import Thresholds
-from tltl_runtime.regression.verdict.baseline import Identity
+from tltl_runtime.regression.verdict.baseline import Identity, text_sha256
 from tltl_runtime.regression.verdict.level_texts import Texts
 from tltl_runtime.regression.verdict.verdict import Judgement, judge
 from tltl_runtime.spec.task import load_task
@@ -126,6 +127,69 @@ def test_changed_keys_are_listed() -> None:
     assert edit_texts(now, PLAYED, [], new, old) == [
         "changed since the baseline: room.toml, assets/guard.toml (`walk_speed` 1.6 → 2.6), overlays/x.toml"
     ]
+
+
+YARD = """
+[game]
+process = ["./game"]
+[[scene]]
+name = "yard"
+options = { size = 6 }
+variants = { v1 = { options = { size = 8 } }, v2 = { options = { dog = 2 } } }
+[[scene]]
+name = "alley"
+options = { size = 3 }
+"""
+
+
+def scene_edits(now: str, before: str = YARD, variant: str = "v1", **others: str) -> list[str]:
+    """The edits of the scene `yard`, whose game file had the text ``before`` and has the text ``now``."""
+    old, new = [("g.game.toml", before)], [("g.game.toml", now)]
+    for name, text in others.items():
+        old.append((f"{name}.tscn", "\n".join("abcdefgh")))
+        new.append((f"{name}.tscn", text))
+    played, recorded = (
+        replace(PLAYED, level="yard", files=tuple((name, text_sha256(text)) for name, text in texts))
+        for texts in (new, old)
+    )
+    return edit_texts(replace(played, variant=variant), recorded, [], tuple(new), tuple(old))
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "text"),
+    [
+        ("size = 6", "size = 7", "`scene.yard.options.size` 6 → 7"),
+        ("size = 8", "size = 9", "`scene.yard.variants.v1.options.size` 8 → 9"),
+        ("./game", "./play", "`game.process`"),
+        ("size = 3", "size = 4", None),
+        ("dog = 2", "dog = 3", None),
+        ("[game]", "# A yard.\n[game]", None),
+    ],
+)
+def test_a_change_of_a_game_file_counts_only_for_the_scenes_that_it_affects(
+    before: str, now: str, text: str | None
+) -> None:
+    edited = scene_edits(YARD.replace(before, now))
+    expected = [] if text is None else [f"changed since the baseline: g.game.toml ({text}"]
+    assert [edit.partition(" [")[0].rstrip(")") for edit in edited] == [part.rstrip(")") for part in expected]
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("aBcdefgh", "line 2"),
+        ("aBcdeFGh", "line 2, lines 6 to 7"),
+        ("adefgh", "2 lines removed after line 1"),
+        ("abcdefghij", "lines 9 to 10"),
+        ("AbCdEfGh", "line 1, line 3, line 5 and 1 more"),
+    ],
+)
+def test_the_changed_lines_of_a_text_file_are_named(text: str, lines: str) -> None:
+    assert scene_edits(YARD, crates="\n".join(text)) == [f"changed since the baseline: crates.tscn ({lines})"]
+
+
+def test_files_with_very_many_changed_lines_are_not_compared_line_by_line() -> None:
+    assert changed_lines("a\n" * 2_000 + "b", "c\n" * 2_000 + "b") == "lines 1 to 2000"
 
 
 def test_the_things_whose_keys_have_changed_are_mentioned() -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import fmean
+from typing import Any
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_files import file_kind
+from tltl_runtime.game.level_name import is_scene
 from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.explain.phrase import Phrase
-from tltl_runtime.regression.suite.changed_keys import ChangedKeys, changed_keys
+from tltl_runtime.regression.suite.changed_keys import LAYOUT, ChangedKeys, changed_keys
+from tltl_runtime.regression.suite.changed_lines import changed_lines
 from tltl_runtime.regression.suite.thresholds import Thresholds
 from tltl_runtime.regression.verdict.baseline import Identity
 from tltl_runtime.regression.verdict.level_texts import Texts
@@ -105,24 +108,31 @@ def edits(
     """Yield sentences on how a case differs from its baseline: in files, overlays and versions.
 
     An overlay is a file that changes a level. ``now`` and ``before`` identify what was played now
-    and for the baseline. ``descriptions`` are the designer's descriptions of the overlays; each is
+    and for the baseline. ``descriptions`` say what the variant changes; each is
     yielded unchanged. ``texts`` and ``texts_before`` have the known texts of the level's files. If
-    both texts of a changed file are known, its sentence names the changed keys.
+    both texts of a changed file are known, its sentence names the changed keys or lines. A game file
+    whose changes are about other scenes or variants is left out.
     """
     old, new = dict(before.files), dict(now.files)
     changed_names = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
-    # If the variants differ, an overlay that only one of them uses has not changed since the baseline.
-    variant_overlays: set[str] = set()
+    # If the variants differ, a file that only one of them uses has not changed since the baseline.
+    variant_files: set[str] = set()
     if now.variant != before.variant:
-        variant_overlays = {name for name in changed_names if file_kind(name) == "overlay"} - (old.keys() & new.keys())
-    if own_changes := [name for name in changed_names if name not in variant_overlays]:
-        keys = [_changed_keys(dict(texts_before).get(name), dict(texts).get(name)) for name in own_changes]
-        files = (f"{name} ({its.text})" if its.text else name for name, its in zip(own_changes, keys, strict=True))
-        mentions = Mentions(tuple(part for its in keys for part in its.parts))
+        shared = old.keys() & new.keys()
+        variant_files = {name for name in changed_names if _is_of_variants(name, now)} - shared
+    own_changes = {
+        name: _changes(name, dict(texts_before).get(name), dict(texts).get(name), now)
+        for name in changed_names
+        if name not in variant_files
+    }
+    if named := {name: its for name, its in own_changes.items() if its is not None}:
+        files = (f"{name} ({its.text})" if its.text else name for name, its in named.items())
+        mentions = Mentions(tuple(part for its in named.values() for part in its.parts))
         yield Phrase(f"changed since the baseline: {', '.join(files)}", mentions)
-    if variant_overlays:
-        overlays = ", ".join(name for name in changed_names if name in variant_overlays)
-        yield Phrase(f"differs from `{before.variant}` by {overlays}")
+    # The description of a game's variant names its files.
+    if variant_files and not _is_game(now):
+        listed = ", ".join(name for name in changed_names if name in variant_files)
+        yield Phrase(f"differs from `{before.variant}` by {listed}")
     yield from map(Phrase, descriptions)
     for name, version in before.versions.items():
         if (version_now := now.versions.get(name)) != version:
@@ -130,6 +140,37 @@ def edits(
             yield Phrase(f"the baseline was recorded with {name} {version}, this run {this_run}")
 
 
-def _changed_keys(before: str | None, now: str | None) -> ChangedKeys:
-    """Return the changed keys of a file; their description is empty if one of the texts is unknown."""
-    return ChangedKeys("") if before is None or now is None else changed_keys(before, now)
+def _is_of_variants(name: str, now: Identity) -> bool:
+    """Whether a file may belong to some variants alone: an overlay, or a file that a scene depends on."""
+    return file_kind(name) == "overlay" or _is_game(now)
+
+
+def _is_game(now: Identity) -> bool:
+    """Whether the level is a scene of a game file, which is then the first of its files."""
+    return bool(now.files) and is_scene(now.files[0][0])
+
+
+def _changes(name: str, before: str | None, now: str | None, played: Identity) -> ChangedKeys | None:
+    """Return the changes of a file; their description is empty if one of the texts is unknown.
+
+    None if the file is a game file, and nothing in it has changed that the scene depends on.
+    """
+    if before is None or now is None:
+        return ChangedKeys("")
+    if is_scene(name):
+        changes = changed_keys(before, now, lambda document: _own_part(document, played))
+        return None if changes.text == LAYOUT else changes
+    return changed_keys(before, now) if name.endswith(".toml") else ChangedKeys(changed_lines(before, now))
+
+
+def _own_part(document: Mapping[str, Any], played: Identity) -> Mapping[str, Any]:
+    """Return the part of a game file that a scene depends on, without other scenes and other variants."""
+    tables = document.get("scene")
+    scenes = [table for table in tables if isinstance(table, dict)] if isinstance(tables, list) else []
+    own = [scene for scene in scenes if scene.get("name") == played.level]
+    return {**document, "scene": [{**scene, "variants": _own_variant(scene, played)} for scene in own]}
+
+
+def _own_variant(scene: Mapping[str, Any], played: Identity) -> Mapping[str, Any]:
+    variants = scene.get("variants")
+    return {played.variant: variants.get(played.variant)} if isinstance(variants, dict) else {}

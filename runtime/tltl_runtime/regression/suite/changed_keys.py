@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Final, TypeGuard
 
 from tltl_runtime.support.number_text import short_list
 from tltlc.api import SourceFile, TltlError, fileio, record
+
+LAYOUT: Final = "its layout"
+"""The description of a file in which no value has changed."""
 
 _MOST_KEYS: Final = 3
 """At most this many keys of a file are named. Further keys are counted."""
@@ -27,21 +30,23 @@ class ChangedKeys:
     parts: tuple[str, ...] = ()
 
 
-def changed_keys(before: str, now: str) -> ChangedKeys:
+def changed_keys(
+    before: str, now: str, part: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda table: table
+) -> ChangedKeys:
     """Describe the keys whose values differ between two TOML texts, for example ```speed` 1.6 → 2.6``.
 
     Long values are left out. The description is ``its layout`` if no value differs, and empty if a
     text is not TOML. Tables in a list are matched by their ``name`` if all have distinct names, else
-    by position, counted from 1.
+    by position, counted from 1. ``part`` returns the part of a TOML document that is compared.
     """
     try:
         old, new = (fileio.parse_toml(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
         return ChangedKeys("")
-    changes = list(_changes((), old, new))
+    changes = list(_changes((), part(old), part(new)))
     # Further keys are counted, not named.
     parts = tuple(dict.fromkeys(part for path, _ in changes[:_MOST_KEYS] for part in path))
-    return ChangedKeys(short_list([text for _, text in changes], _MOST_KEYS) or "its layout", parts)
+    return ChangedKeys(short_list([text for _, text in changes], _MOST_KEYS) or LAYOUT, parts)
 
 
 def _changes(
