@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from os.path import relpath
 from pathlib import Path
+from typing import Any
 
 from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant, split_scene
 from tltl_runtime.gymnasium_games.game_argument import scene_of, variant_of
-from tltl_runtime.gymnasium_games.game_file import GameFile, GameScene, read_game_file
+from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, GameScene, read_game_file
 from tltl_runtime.gymnasium_games.scene_hash import file_hashes, possible_files, scene_hash
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.spec_files import spec_files
@@ -40,7 +43,9 @@ class SceneFiles(LevelFiles[SceneLevel]):
         return ()
 
     def load_with_changes(self, name: str, variant: Variant) -> tuple[SceneLevel, tuple[str, ...]]:
-        """Load a scene in one of its variants; there are no overlays, so there are no descriptions.
+        """Load a scene in one of its variants; also return a sentence on what the variant changes in the scene.
+
+        Without a change in the game file, there is no sentence.
 
         Raises:
             TltlError: the errors of ``read_game_file``; TLT0800, there is no such scene or variant.
@@ -60,7 +65,8 @@ class SceneFiles(LevelFiles[SceneLevel]):
             files=file_hashes(game, scene.name, variant.name),
             place=f"{game.path}:{scene.name}",
         )
-        return level, ()
+        changes = _changes_text(game, scene, variant.name)
+        return level, ((changes,) if changes else ())
 
     def dependencies(self, name: str, variant: Variant) -> Iterator[Path]:
         """Yield the game file, the files of the scene, the Python files that the game imports, and the spec.
@@ -84,6 +90,23 @@ class SceneFiles(LevelFiles[SceneLevel]):
         """Yield the only path at which a file of the scene may be: its name is relative to the game file's folder."""
         del variant
         yield self.path(name).parent / file_name
+
+
+def _changes_text(game: GameFile, scene: GameScene, variant: str) -> str:
+    """Say which options and files of a scene a variant changes: ```large`: `size` = 8, was 6``; empty for none."""
+    first, own = (variant_of(game, scene.name, name) for name in (FIRST_VARIANT, variant))
+    texts = []
+    for name, value in own.options.items():
+        if name not in first.options:
+            texts.append(f"`{name}` = {_value_text(value)}")
+        elif first.options[name] != value:
+            texts.append(f"`{name}` = {_value_text(value)}, was {_value_text(first.options[name])}")
+    texts += [f"also {relpath(file, game.folder)}" for file in own.files if file not in first.files]
+    return f"`{variant}`: {'; '.join(texts)}" if texts else ""
+
+
+def _value_text(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def _scene(name: str) -> tuple[GameFile, GameScene]:

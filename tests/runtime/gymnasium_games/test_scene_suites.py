@@ -14,6 +14,7 @@ import pytest
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games import games
 from tests.runtime.regression.handmade import reference
+from tltl_runtime.game.level_name import Variant
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv
 from tltl_runtime.regression.suite.suite import read_suite
@@ -69,6 +70,16 @@ def test_a_package_that_one_game_lacks_costs_its_case_alone(
     first, second = json.loads((folder / "two.json").read_text())["cases"]
     assert first["verdict"] == "fail" and second["pass_rate"] is not None
     assert "TLT0730, the module `no_such_package` is not installed" in " ".join(first["reasons"])
+
+
+def test_a_variant_says_what_it_changes(folder: Path) -> None:
+    (folder / "map.txt").write_text("#")
+    own = "variants = { v1 = { options = { length = 8 } } }"
+    assert own in games.GAME
+    variants = 'variants = { v1 = { options = { length = 6, key = "left" }, files = ["map.txt"] }, v2 = {} }'
+    games.write(folder, changed__game__toml=games.GAME.replace(own, variants))
+    texts = [GAME.level_files.description("changed.game.toml:short", Variant(name)) for name in ("v0", "v1", "v2")]
+    assert texts == ["", '`v1`: `length` = 6, was 4; `key` = "left"; also map.txt', ""]
 
 
 @pytest.mark.parametrize(
