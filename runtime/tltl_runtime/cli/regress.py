@@ -120,7 +120,8 @@ def command(
     """Report which levels still play as designed: trained policies play them, or recorded play is judged.
 
     SUITE is a TOML file. Without it, the levels that come with tltlc are played in all of their variants. A case is not
-    played again if nothing has changed since the last time. Cases of a suite may also be recorded traces, of any game;
+    played again if nothing has changed since the last time. Actions are sampled, as in training and in the baseline;
+    `tltlc evaluate` also plays the most probable ones. Cases of a suite may also be recorded traces, of any game;
     --spec judges such traces without a suite. The exit status is 0 if all cases pass, and 1 if a case fails or needs a
     review; --retrain does not change it.
     """

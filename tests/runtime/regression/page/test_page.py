@@ -79,6 +79,10 @@ def test_each_case_has_a_row_and_a_section() -> None:
     ]
 
 
+def test_the_page_says_that_actions_are_sampled() -> None:
+    assert any("actions sampled, as in training" in text for text in page().texts)
+
+
 def test_cases_that_were_not_run_have_a_row_and_a_section_with_the_reason() -> None:
     not_run = (NotRun("<a>", "the run was stopped"), NotRun("b", "no file concerns it", "review"))
     parsed = Page(html_report(replace(samples.suite(), not_run=not_run)))

@@ -94,7 +94,11 @@ def _facts(report: CaseReport) -> list[str]:
     if report.reference:
         facts.append(f"compared with {report.reference.variant}")
     if report.played:
-        facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
+        facts += [
+            f"spec {report.played.spec}",
+            f"policy {report.played.policy[:12]}",
+            "actions sampled, as in training",
+        ]
     if report.figures and not report.certain:
         facts.append("not certain, though all of its episodes were played")
     return facts
