@@ -65,7 +65,7 @@ def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert re.fullmatch(
         r"room:v0   pass     (\d\d) of \1   progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
     )
-    assert lines[2].startswith("hopeless  fail      0 of 25   progress")
+    assert lines[2].startswith("hopeless  fail      0 of 25     0%  progress")
     assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
     assert all(line.startswith("    ") for line in lines[3:-1])
     assert lines[-1] == "3 cases: 2 pass, 1 fail"

@@ -65,7 +65,9 @@ def regress(tltlc: Run, *words: str) -> Outcome:  # noqa: F811
 def test_equal_traces_pass(tltlc: Run, here: Path) -> None:  # noqa: F811
     result = regress(tltlc, "--baseline", "old", "--now", "old")
     assert result.status == 0
-    assert result.out == ("fetch  pass     95 of 100  progress  0.97 ( 0.97)  reward  0.97 ( 0.97)\n1 case: 1 pass\n")
+    assert result.out == (
+        "fetch  pass     95 of 100   95%  progress  0.97 ( 0.97)  reward  0.97 ( 0.97)\n1 case: 1 pass\n"
+    )
     assert "wrote regression/fetch/report.html" in result.err
 
 
@@ -82,7 +84,7 @@ def test_a_broken_build_fails_and_the_clause_is_named(tltlc: Run, here: Path) ->
     )
     (short,) = (reason for reason in reasons if "ends before" in reason)
     assert short.strip().startswith(
-        "ends before `reach has_key then at_exit` is met in 5 of 100 traces; before: in 5 of 100 traces; "
+        "ends before `reach has_key then at_exit` is met in 5 of 100 traces (5%); before: in 5 of 100 traces (5%)"
     )
 
 

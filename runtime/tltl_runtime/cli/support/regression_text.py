@@ -10,7 +10,7 @@ from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.report.case_report import CaseReport
 from tltl_runtime.regression.report.retraining_result import OUTCOMES
-from tltl_runtime.support.number_text import number
+from tltl_runtime.support.number_text import number, percent
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
@@ -53,7 +53,7 @@ def _figures(report: CaseReport) -> str:
         return ""
     passed = round(now.pass_rate * now.episodes)
     parts = [
-        f"{passed:>3} of {now.episodes:<3}",
+        f"{passed:>3} of {now.episodes:<3}  {percent(now.pass_rate):>4}",
         _comparison("progress", now, before),
         _comparison("reward", now, before),
     ]
