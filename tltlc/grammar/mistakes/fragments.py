@@ -41,7 +41,8 @@ def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[T
     piece: list[Token] = []
     depth = 0
     for index, token in enumerate(tokens):
-        if piece and _begins_piece(source, tokens, index, DECLARATIONS, depth == 0):
+        is_inside = depth > 0 and _is_declared_inside(source, tokens, index)
+        if piece and not is_inside and _begins_piece(source, tokens, index, DECLARATIONS, depth == 0):
             yield piece
             piece, depth = [], 0
         piece.append(token)
@@ -64,7 +65,8 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
     """
     piece: list[Token] = []
     for index, token in enumerate(tokens):
-        if piece and _begins_piece(source, tokens, index, keywords, True):
+        is_declaration = _begins_other(source, tokens, index)
+        if piece and (is_declaration or _begins_piece(source, tokens, index, keywords, True)):
             yield piece
             piece = []
         piece.append(token)
@@ -84,6 +86,23 @@ def block_kind(piece: Sequence[Token]) -> str | None:
 def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
     """Whether a token is the first one on its line."""
     return index == 0 or "\n" in source.text[tokens[index - 1].end : tokens[index].start]
+
+
+def _begins_other(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
+    """Whether the token with this index begins a line, and a declaration that is no spec and no test."""
+    token = tokens[index]
+    return token.text in _OTHERS and token.type != "NAME" and is_first_on_line(source, tokens, index)
+
+
+def _is_declared_inside(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
+    """Whether a declaration begins at the token with this index, by mistake inside the braces of a spec or test.
+
+    It does if these braces are closed after it, and nothing else is opened before that.
+    """
+    if not _begins_other(source, tokens, index):
+        return False
+    following = next((token for token in tokens[index:] if token.type in ("LBRACE", "RBRACE", "SPEC", "TEST")), None)
+    return following is not None and following.type == "RBRACE"
 
 
 def _begins_piece(

@@ -91,6 +91,15 @@ def _unmatched_bracket(failure: ParseFailure) -> Diagnostic | None:
     return None
 
 
+def _declaration_in_block(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error if a declaration stands in the braces of a spec or of a test, else None."""
+    token, block = failure.token, {"clause": "spec", "test_item": "test"}.get(failure.start)
+    if block is None or failure.stop.index or token.text not in DECLARATIONS or token.type == "NAME":
+        return None
+    help_ = f"put it outside the braces, at the top of the file: {DECLARATIONS[token.text]}"
+    return failure.error("TLT0107", f"`{token.text}` cannot be used inside a {block}", help_)
+
+
 def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     """Return an error if the bound of a temporal operator is wrong, else None.
 
@@ -336,6 +345,7 @@ _RULES: Final = (
     _foreign_otherwise,
     *HABITS,
     *PUNCTUATION,
+    _declaration_in_block,
     *CLAUSE_RULES,
     _unmatched_bracket,
     _wrong_bound,
