@@ -13,6 +13,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
+from tltl_runtime.regression.report.film_cache import INDEX
 from tltl_runtime.regression.report.trace_report import report_on_broken_traces, report_on_traces
 from tltl_runtime.regression.suite.result_cache import cache_text, inputs_hash, read_cache
 from tltl_runtime.regression.suite.slugs import slugs
@@ -192,7 +193,8 @@ def _remove_cached(suite: Suite, cases: Sequence[SuiteCase], folder: Path) -> No
     If the run is stopped and continued, it then finds only its own results there.
     """
     for case in cases:
-        fileio.remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
+        for name in (_REPORT, INDEX):
+            fileio.remove_file(case_folder(suite, case.name, folder / CASES) / name, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:

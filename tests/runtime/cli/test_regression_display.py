@@ -33,6 +33,24 @@ def test_without_a_terminal_progress_is_printed_in_lines(capsys: pytest.CaptureF
     ]
 
 
+def test_films_are_announced_before_they_are_drawn(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with RegressionDisplay() as display:
+        for name, total in (("one", 3), ("other", 1)):
+            for count in range(total):
+                display.show_films(name, count, total)
+    assert capsys.readouterr().err.splitlines() == [
+        "one: drawing 3 films for the page",
+        "other: drawing 1 film for the page",
+    ]
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    with RegressionDisplay() as display:
+        display.show_films("one", 1, 3)
+    assert "one: drawing films for the page, 1 of 3" in re.sub(r"\s+", " ", sys.stderr.getvalue())  # type: ignore[attr-defined]
+
+
 def test_on_a_terminal_a_progress_bar_is_shown_and_removed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())

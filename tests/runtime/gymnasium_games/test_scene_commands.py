@@ -164,6 +164,25 @@ def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None
         assert (film.format, film.size) == ("WEBP", (320, 240))
         assert film.n_frames > 1  # type: ignore[attr-defined]
     assert "There is no film" not in page
+    assert re.search(r"^short:v0: drawing \d+ films? for the page$", result.err, re.MULTILINE)
+
+
+@pytest.mark.usefixtures("trained")
+def test_films_are_drawn_again_only_if_something_has_changed(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    assert tltlc("baseline", "suite.toml", "--workers", "1").status in (0, 1)
+    command = ("regress", "suite.toml", "--out", tmp_path, "--workers", "1")
+
+    def films(*options: str) -> tuple[bool, list[str]]:
+        err = tltlc(*command, *options).err
+        return "for the page" in err, re.findall(r"base64,([^\"]+)", (tmp_path / "report.html").read_text())
+
+    drawn, first = films()
+    assert drawn and first
+    assert films() == (False, first)
+    (kept, *_) = (tmp_path / "cases" / "short-v0").glob("*.webp")
+    kept.unlink()
+    assert films() == (True, first)
+    assert films("--fresh") == (True, first)
 
 
 @pytest.mark.slow

@@ -46,6 +46,16 @@ class RegressionDisplay:
         elif count == total:
             click.echo(f"{plain_text(case.name)}: {total} traces are judged", err=True)
 
+    def show_films(self, name: str, count: int, total: int) -> None:
+        """Show that ``count`` of all ``total`` films of a case are drawn for the page."""
+        if sys.stderr.isatty():
+            if not count:
+                self.clear()
+            self._update(name, count, total, f"drawing films for the page, {count} of {total}")
+        elif not count:
+            films = "1 film" if total == 1 else f"{total} films"
+            click.echo(f"{plain_text(name)}: drawing {films} for the page", err=True)
+
     def clear(self) -> None:
         """Remove the bar, so that other lines can be printed."""
         if self._bar is not None:

@@ -14,7 +14,8 @@ from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.game import Game
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.report.case_report import CaseReport
-from tltl_runtime.regression.report.episode_films import episode_films
+from tltl_runtime.regression.report.episode_films import CaseFilms, episode_films
+from tltl_runtime.regression.report.film_cache import films_hash, kept_films
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport, maps_of
 from tltl_runtime.regression.report.page.page import html_report
@@ -27,6 +28,7 @@ from tltl_runtime.regression.verdict.level_texts import baseline_level
 from tltl_runtime.regression.verdict.play import PreparedCase
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.number_text import short_list
+from tltl_runtime.support.record_json import to_json
 from tltlc.api import TltlError, fileio, record, replace
 
 PAGE: Final = "report.html"
@@ -52,7 +54,9 @@ class SuiteRun:
     ``folder`` is the folder of the run's reports and results. ``cases`` are the judged cases, in
     the suite's order. ``left_out`` are the names of the cases that depend on none of the
     ``changed`` files. ``missing`` are the names of the cases that were not judged because the run
-    was stopped. ``complete`` says whether all requested cases were judged and retrained.
+    was stopped. ``complete`` says whether all requested cases were judged and retrained. ``on_film``
+    is called before each film that is drawn for the page: with the name of the case, the number of its films
+    so far, and that of all its films.
     """
 
     suite: Suite
@@ -62,6 +66,7 @@ class SuiteRun:
     left_out: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     changed: tuple[str, ...] = ()
+    on_film: Callable[[str, int, int], None] = lambda *_: None
 
 
 def json_text(outcome: SuiteRun) -> str:
@@ -84,7 +89,7 @@ def _page_text(outcome: SuiteRun) -> str:
         seed=suite.seed if suite.played_cases else None,
         error=suite.error,
         versions=versions() if suite.played_cases else judging_versions(),
-        cases=tuple(_reported_case(case, suite, outcome.folder) for case in outcome.cases),
+        cases=tuple(_reported_case(case, outcome) for case in outcome.cases),
         complete=outcome.complete,
         not_run=tuple(_cases_not_run(outcome)),
         note=_NOTE if is_shipped else "",
@@ -154,7 +159,7 @@ def write_reports(outcome: SuiteRun, files: Mapping[str, Path]) -> Path | None:
     return files.get("--html", outcome.folder / PAGE)
 
 
-def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCase:
+def _reported_case(case: FinishedCase, outcome: SuiteRun) -> ReportedCase:
     """Return a case with the data that the HTML page needs to draw it."""
     if case.traces is not None:
         return ReportedCase(
@@ -166,7 +171,8 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
     game = case.prepared.level.game
-    episodes = _episodes(case.report, game, case_folder(suite, case.report.name, folder / CASES))
+    folder = case_folder(outcome.suite, case.report.name, outcome.folder / CASES)
+    episodes = _episodes(case.report, game, folder)
     # Some games show their levels only while they are played: take what the recordings show.
     level = game.played_level(case.prepared.level, (episodes[index] for index in sorted(episodes)))
     reported = ReportedCase(
@@ -176,18 +182,36 @@ def _reported_case(case: FinishedCase, suite: Suite, folder: Path) -> ReportedCa
         episodes=episodes,
         before=case.reference.episodes,
         baseline_level=_baseline_level(level, case.prepared, case.reference),
-        curve=_curve(case, folder),
+        curve=_curve(case, outcome.folder),
     )
     if maps_of(reported) is not None:
         return reported
-    place = case.prepared.setup.level, case.prepared.setup.variant.text
-    films = episode_films(game, place, case.report.explanation, episodes)
+    films = _films(case.report, case.prepared, episodes, folder, outcome)
     return replace(
         reported,
         curves={index: episode_curves(index, episodes[index]) for index in episodes},
         films=films.pictures,
         film_notes=films.notes,
     )
+
+
+def _films(
+    report: CaseReport,
+    prepared: PreparedCase,
+    episodes: Mapping[int, RecordedEpisode],
+    folder: Path,
+    outcome: SuiteRun,
+) -> CaseFilms:
+    """Return the films of a case; those in its ``folder``, if it was played and recorded in the same way before."""
+    place = prepared.setup.level, prepared.setup.variant.text
+    recordings = {index: folder / name for index, name in report.recordings if index in episodes}
+    inputs = films_hash([to_json(prepared.played), to_json(report.explanation)], place, recordings)
+
+    def draw() -> CaseFilms:
+        show = lambda count, total: outcome.on_film(report.name, count, total)  # noqa: E731
+        return episode_films(prepared.level.game, place, report.explanation, episodes, show)
+
+    return kept_films(folder, inputs, draw)
 
 
 def _baseline_level(level: Level, ready: PreparedCase, reference: Reference) -> Level | None:

@@ -29,7 +29,7 @@ from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.support.number_text import short_list
 from tltl_runtime.support.path_text import path_text
-from tltlc.api import Diagnostic, TltlError, cli, fileio, record, traces, workflow_command
+from tltlc.api import Diagnostic, TltlError, cli, fileio, record, replace, traces, workflow_command
 
 _MOST_NAMED: Final = 8
 """The most files that a message names."""
@@ -314,16 +314,25 @@ def _are_expected(outcome: SuiteRun) -> bool:
 
 
 def _report(outcome: SuiteRun, options: RegressOptions) -> None:
-    """Print the summary and write the requested reports."""
+    """Print the summary and write the requested reports; show how many films of the page are drawn."""
+    with RegressionDisplay() as display:
+        _write_and_print(replace(outcome, on_film=display.show_films), options, display)
+
+
+def _write_and_print(outcome: SuiteRun, options: RegressOptions, display: RegressionDisplay) -> None:
     reports = [case.report for case in outcome.cases]
     click.echo(summary_line(reports, outcome.missing), err=options.printed_option is not None)
     if outcome.suite.path == SHIPPED and _are_expected(outcome):
         click.echo(_EXPECTED_NOTE, err=options.printed_option is not None)
     if options.printed_option is not None:
         # Print the bytes that the file would have, whatever the encoding of the terminal is.
-        click.echo(REPORTS[options.printed_option](outcome).encode(), nl=False)
+        text = REPORTS[options.printed_option](outcome)
+        display.clear()
+        click.echo(text.encode(), nl=False)
     if options.github:
         for line in workflow_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
             click.echo(line)
-    if page := write_reports(outcome, options.report_files):
+    page = write_reports(outcome, options.report_files)
+    display.clear()
+    if page:
         click.echo(f"wrote {quote(str(page))}: open it in a browser", err=True)

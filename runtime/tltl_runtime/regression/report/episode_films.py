@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from io import BytesIO
 from itertools import chain
 from typing import Any, Final
@@ -49,19 +49,26 @@ NO_FILMS: Final = CaseFilms()
 
 
 def episode_films(
-    game: Game[Any, Any], place: tuple[str, str], findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]
+    game: Game[Any, Any],
+    place: tuple[str, str],
+    findings: Sequence[Finding],
+    episodes: Mapping[int, RecordedEpisode],
+    on_film: Callable[[int, int], None] = lambda *_: None,
 ) -> CaseFilms:
     """Return films of at most ``MOST_FILMS`` of the recorded ``episodes``.
 
     Examples of ``findings`` are preferred to other episodes. The game plays the episodes again to
-    draw them. ``place`` names the level and its variant, as for ``Game.load_level``. There are
+    draw them. ``place`` names the level and its variant, as for ``Game.load_level``. ``on_film`` is
+    called before each film, with the number of films so far and of all films. There are
     neither films nor notes if the game draws no pictures, or if Pillow cannot write WebP.
     """
     if game.films is None or not _can_write():
         return NO_FILMS
     pictures: dict[int, bytes] = {}
     failures: dict[str, list[int]] = {}
-    for index in _examples(findings, episodes):
+    examples = _examples(findings, episodes)
+    for count, index in enumerate(examples):
+        on_film(count, len(examples))
         try:
             episode = game.located(episodes[index], *place)
             pictures[index] = _film(game.films, episode)
