@@ -244,6 +244,46 @@ def test_episodes_that_are_lost_in_the_search_are_reported(tmp_path: Path) -> No
     assert report.lost.text.startswith("2 episodes were lost: the game `counter.game.toml` ended with exit status 3")
 
 
+WITH_CELLS = """
+import gymnasium
+from pathlib import Path
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.wire_game import WireGame
+
+class WithCells(gymnasium.Wrapper):
+    def reset(self, **options):
+        observation, info = self.env.reset(**options)
+        return observation, {**info, "cell": int(observation[0])}
+
+    def step(self, action):
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        return observation, reward, terminated, truncated, {**info, "cell": int(observation[0])}
+
+def make(scene):
+    return WithCells(WireEnv(WireGame("counter", Path(), COMMAND, "", WAIT_S, WAIT_S), scene=scene))
+"""
+"""A module that starts the counter, and says in which cell its player is."""
+
+
+def test_a_lost_game_with_its_own_cells_does_not_end_the_search(tmp_path: Path) -> None:
+    command = (sys.executable, str(MORTAL), "exit", str(tmp_path / "episodes"), "1002", "1003")
+    code = WITH_CELLS.replace("COMMAND", repr(command)).replace("WAIT_S", repr(HANG_S))
+    (tmp_path / "game").mkdir()
+    (tmp_path / "game" / "with_cells.py").write_text(code)
+    level = write_counter(tmp_path / "game", 'python = "with_cells:make"')
+    run = run_of(tmp_path / "run", level, exploration__steps=400)
+
+    def count_on(plan: SearchPlan) -> None:
+        assert (plan.cells, plan.obstacle) == ("own", None)
+        (tmp_path / "episodes").write_bytes(b"x" * 1000)
+
+    training = train(run, on_plan=count_on)
+    report = next(training)
+    training.close()
+    assert report.searched is not None and report.searched.places > 1
+    assert report.lost is not None and report.lost.count == 2
+
+
 @pytest.mark.slow
 def test_a_training_with_a_search_does_not_resume_without_one(tmp_path: Path) -> None:
     # The game is lost in all three measurements of the resumed training, and then no more.

@@ -35,12 +35,12 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     If a game in another process is lost on the way, the next reset begins at the level's start with
     another seed. Its info has this seed, as ``OTHER_SEED``. The snapshots of a lost game are forgotten.
 
-    ``info`` gains ``cell``, by ``grid``. ``game`` says where the player is. ``make`` makes the
-    environment.
+    ``info`` gains ``cell``, by ``grid``; without a ``grid``, the environment gives its own. ``game`` says
+    where the player is. ``make`` makes the environment.
     """
 
     def __init__(
-        self, make: Callable[[], TltlEnv], *, game: Game[Any, Any], grid: CellGrid, snapshots: bool = False
+        self, make: Callable[[], TltlEnv], *, game: Game[Any, Any], grid: CellGrid | None, snapshots: bool = False
     ) -> None:
         self._play = make()
         super().__init__(self._play)
@@ -168,6 +168,8 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         return flat_action(self._encoding.layout, action).tobytes()
 
     def _with_cell(self, info: dict[str, Any]) -> dict[str, Any]:
+        if self._grid is None:
+            return info
         position = None if self._grid.side is None else self._game.player_position(self._play)
         return {**info, "cell": cell_of(self._grid, position, self._play.sample)}
 

@@ -24,7 +24,6 @@ from tltl_runtime.training.exploration.replayed_starts import ReplayedStartEnv
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress
-from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.files.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
 from tltl_runtime.training.files.run_file import (
@@ -102,7 +101,7 @@ def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorE
         sensors=run.sensors,
         reward=settings.rewards,
         params=run.params,
-        wrapper=_wrapper(run, spaces.plan) if spaces.searches else surviving,
+        wrapper=_wrapper(run, spaces) if spaces.searches else surviving,
         info={**TLTL_INFO, "cell": np.int64} if spaces.searches else TLTL_INFO,
         **options,
     )
@@ -119,9 +118,13 @@ def _command_s(run: TrainingRun, spaces: TrainingSpaces, wire: WireGame) -> floa
     return (MOST_IN_A_ROW + 1) * (wire.start_s + wire.step_s) + (1 + replayed) * wire.step_s
 
 
-def _wrapper(run: TrainingRun, plan: SearchPlan | None) -> Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]]:
-    """Return the class of the environments of a search: those of games without own cells need a grid."""
-    if plan is None or plan.grid is None:
+def _wrapper(run: TrainingRun, spaces: TrainingSpaces) -> Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]]:
+    """Return the class of the environments of a search.
+
+    Those of games without own cells need a grid. Those of games in other processes must go on if a game is lost.
+    """
+    plan = spaces.plan
+    if plan is None or (plan.grid is None and spaces.wire is None):
         return ReplayedStartEnv
     return partial(_returning, game=game_of(run.level), grid=plan.grid, snapshots=plan.snapshots)
 
