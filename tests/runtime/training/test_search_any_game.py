@@ -18,7 +18,7 @@ from gymnasium.wrappers import TimeLimit
 from tests.runtime.gymnasium_games import maze
 from tests.runtime.training.runs import SMALL, checkpoint_of
 from tests.waiting import until
-from tltl_runtime.cli.support.training_text import no_search_line, plan_line
+from tltl_runtime.cli.support.training_text import dropped_line, no_search_line, plan_line
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import default_spec
 from tltl_runtime.game.level_name import Variant
@@ -28,6 +28,7 @@ from tltl_runtime.spec.task import load_task
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration import snapshots
 from tltl_runtime.training.exploration.cells import NO_CELL, cell_of, position_grid, signal_grid
+from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, UNREPEATED
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
 from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings, SuccessfulEpisode, TrajectorySearch
 from tltl_runtime.training.exploration.search_plan import SearchPlan, search_plan
@@ -281,12 +282,70 @@ def test_a_snapshot_that_fails_later_is_replaced_by_a_replay(
     }
 
 
-def test_an_episode_that_ends_on_the_way_is_an_error(returning: ReturningEnv) -> None:
+def test_an_episode_that_ends_on_the_way_is_replaced_by_another(returning: ReturningEnv) -> None:
     returning.next_start = 4, np.zeros((160, 1), np.int64)
-    with pytest.raises(TltlError, match=r"TLT0783: an episode of seed 4 ends within 160 actions") as caught:
-        returning.reset()
+    _, info = returning.reset()
+    assert info[UNREPEATED] and info[OTHER_SEED] != 4
+    _, again = returning.reset()
+    assert again == {key: value for key, value in info.items() if key != UNREPEATED}
+    returning.next_start = 4, np.zeros((3, 1), np.int64)
+    assert not {UNREPEATED, OTHER_SEED} & returning.reset()[1].keys()
+
+
+FORGETFUL = """
+
+class Forgetful(Outlined):
+    \"\"\"Of LATE seeds, one has episodes that end soon, except for the first one.\"\"\"
+
+    begun = {}
+
+    def reset(self, *, seed=None, options=None):
+        answer = super().reset(seed=seed)
+        self.steps, self.seed = 0, seed
+        self.begun[seed] = self.begun.get(seed, 0) + 1
+        return answer
+
+    def step(self, action):
+        self.steps += 1
+        observation, reward, opened, _, info = super().step(action)
+        is_wrong = self.begun[self.seed] > 1 and self.seed % LATE == 0
+        return observation, reward, opened, is_wrong and self.steps > 2, info
+
+
+KINDS["outlined"] = Forgetful
+"""
+
+
+def forgetful(tmp_path: Path, late: int) -> Path:
+    """Write the maze whose episodes do not repeat themselves if their seeds are multiples of ``late``."""
+    game = maze.write(tmp_path)
+    code = tmp_path / "maze.py"
+    code.write_text(code.read_text() + FORGETFUL.replace("LATE", str(late)))
+    return game
+
+
+def forgetful_search(game: Path) -> TrajectorySearch:
+    wrapper = partial(ReturningEnv, game=GAME, grid=position_grid(CORNERS, []))
+    env = make_vec(f"{game}:outlined", "v0", 1, 1, wrapper=wrapper, info={**TLTL_INFO, "cell": np.int64})
+    return TrajectorySearch(env, SearchSettings(ways=3, steps=20_000, parts=4, imitation=0), np.random.SeedSequence(7))
+
+
+def test_places_to_which_a_game_does_not_lead_again_are_left_out(tmp_path: Path) -> None:
+    search = forgetful_search(forgetful(tmp_path, 3))
+    (*_, last) = search.run()
+    search._env.close()
+    assert len(last.lengths) >= 3 and last.complete
+    assert 0 < last.dropped < 100
+    assert (dropped_line(last) or "").startswith(f"the search left out {last.dropped} place")
+
+
+def test_a_search_ends_if_the_game_does_not_lead_to_most_places_again(tmp_path: Path) -> None:
+    search = forgetful_search(forgetful(tmp_path, 1))
+    with pytest.raises(TltlError, match="TLT0783: the game does not repeat its episodes") as caught:
+        list(search.run())
+    search._env.close()
     # A training that is resumed keeps its `ways`.
-    assert "begin a new training" in str(caught.value)
+    assert "begin a new training" in (caught.value.diagnostics[0].help or "")
 
 
 def test_the_moments_of_an_environment_are_bounded(returning: ReturningEnv, monkeypatch: pytest.MonkeyPatch) -> None:

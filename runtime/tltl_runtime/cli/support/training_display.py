@@ -16,6 +16,7 @@ from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     SEARCHED_AGAIN,
     demonstrations_line,
+    dropped_line,
     plan_line,
     recording_line,
     report_line,
@@ -118,6 +119,8 @@ class _LineDisplay:
             self._print(demonstrations_line(report.imitated), always=True)
         if first and report.searched:
             self._print(search_result_line(report.searched), always=True)
+            if dropped := dropped_line(report.searched):
+                self._print(dropped, always=True)
         if first:
             self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {self._again}", always=True)
         self._print(report_line(report, self._run.settings.stop), always=first or report.stop is not None)

@@ -15,6 +15,7 @@ from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     confirmation_line,
     demonstrations_line,
+    dropped_line,
     plan_line,
     rate,
     recording_line,
@@ -200,6 +201,7 @@ def _figures(report: TrainingReport, stop: Stop, since: float) -> list[str]:
         f"{report.steps:,} of at most {stop.steps:,} steps{speed}",
         f"{duration(report.seconds + since)} so far, {end}",
         *([search_result_line(report.searched)] if report.searched else ()),
+        *([dropped] if report.searched and (dropped := dropped_line(report.searched)) else ()),
         *([demonstrations_line(report.imitated)] if report.imitated else ()),
     ]
 

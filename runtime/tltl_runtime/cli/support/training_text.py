@@ -99,6 +99,14 @@ def search_result_line(progress: SearchProgress) -> str:
     return f"search: {count} way{'s' * (count > 1)} found in {spent}, the shortest of {min(progress.lengths)} steps"
 
 
+def dropped_line(progress: SearchProgress) -> str | None:
+    """Say, in at most 72 characters, how many places the search has left out; None if it left out none."""
+    count = progress.dropped
+    if not count:
+        return None
+    return f"the search left out {count:,} place{'s' * (count > 1)}: the game did not lead there again"
+
+
 def confirmation_line(number: int, confirmation: Confirmation) -> str:
     """Say, in at most 72 characters, whether a policy met the spec in fresh episodes, too.
 

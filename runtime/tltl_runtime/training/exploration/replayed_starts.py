@@ -20,13 +20,22 @@ from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Ro
 from tltl_runtime.vector import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
 from tltl_runtime.wire.surviving_env import faults_in
-from tltlc.api import Diagnostic, record, replace
+from tltlc.api import Diagnostic, TltlError, record, replace
 
 OTHER_SEED: Final = "other_seed"
 """The key of a reset's info that has the seed of an episode whose game was lost on the way to its start.
 
 The episode begins at the level's start instead, with this seed.
 """
+
+UNREPEATED: Final = "unrepeated"
+"""The key of a reset's info that is True where the episode ended on the way to its start, as it did not before.
+
+The episode begins elsewhere, as :data:`OTHER_SEED` says.
+"""
+
+_LEAST_UNREPEATED: Final = 10
+"""Fewer starts than these may be left out, however few there are in all."""
 
 
 @record
@@ -123,9 +132,11 @@ class EpisodesInProgress:
     start of its current episode, and all actions of the episode, including the replayed ones. If an
     environment says with ``OTHER_SEED`` that its episode begins elsewhere, ``starts`` has that start.
     ``replayed`` counts all replayed actions. What happens to games that are lost is added to ``faults``.
+    ``unrepeated`` has the starts to which the game did not lead again, because their episodes ended on the way.
 
     Raises:
         WorkerError: from any method, a worker was lost; the error names the seeds of the episodes.
+        TltlError: TLT0783, from any method, the game has not led to most of the starts again.
     """
 
     def __init__(
@@ -139,7 +150,10 @@ class EpisodesInProgress:
         self.starts = list(self._next)
         self.actions: list[list[Row]] = [[] for _ in self._next]
         self.replayed = 0
+        self.unrepeated: list[EpisodeStart] = []
+        self._returns = 0
         self._other_seeds: dict[int, int] = {}
+        self._ended_on_the_way: set[int] = set()
         self._send_starts(range(env.num_envs))
         with self._starts_in_errors():
             self.observation, infos = env.reset()
@@ -198,18 +212,24 @@ class EpisodesInProgress:
             start = self.starts[row] = self._next[row]
             self.actions[row] = [list(action) for action in start.actions]
             self.replayed += len(start.actions)
+            self._returns += bool(len(start.actions))
             self._next[row] = self._draw()
 
     def _note_losses(self, infos: Mapping[str, Any]) -> None:
         """Note which games were lost, and which of the episodes that have just begun begin elsewhere."""
         self.faults += faults_in(infos)
         self._other_seeds = _other_seeds(infos)
+        self._ended_on_the_way = {*np.flatnonzero(infos.get(f"_{UNREPEATED}", ())).tolist()}
 
     def _begin_elsewhere(self) -> None:
-        """Set the starts of the episodes whose games were lost on the way."""
+        """Set the starts of the episodes that ended, or whose games were lost, on the way."""
         for row, seed in self._other_seeds.items():
+            if row in self._ended_on_the_way:
+                self.unrepeated.append(self.starts[row])
             self.starts[row], self.actions[row] = EpisodeStart(seed), []
-        self._other_seeds = {}
+        self._other_seeds, self._ended_on_the_way = {}, set()
+        if len(self.unrepeated) >= _LEAST_UNREPEATED and 2 * len(self.unrepeated) > self._returns:
+            raise _not_repeated_error(len(self.unrepeated), self._returns, self.unrepeated[-1])
 
     @contextmanager
     def _starts_in_errors(self) -> Iterator[None]:
@@ -234,6 +254,16 @@ class EpisodesInProgress:
             next_starts[row] = self._next[row].seed, self._encoding.flat(self._next[row].actions)
         with self._starts_in_errors():
             self._env.set_attr("next_start", next_starts)
+
+
+def _not_repeated_error(count: int, returns: int, last: EpisodeStart) -> TltlError:
+    example = f"the episode of seed {last.seed} ends within {len(last.actions)} actions that did not end it before"
+    title = f"the game does not repeat its episodes: {count} of {returns} ended on the way, where they did not before"
+    help_ = (
+        f"{example}; begin a new training, with equal plays for equal seeds and actions, or with `ways = 0` under "
+        "`[exploration]`: no search"
+    )
+    return TltlError([Diagnostic("TLT0783", title, help=help_)])
 
 
 def _other_seeds(infos: Mapping[str, Any]) -> dict[int, int]:

@@ -15,10 +15,9 @@ from tltl_runtime.policies.spaces.values import flat_action
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.cells import CellGrid, cell_of
-from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED
+from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, UNREPEATED
 from tltl_runtime.training.exploration.snapshots import SnapshotStore, restore, save
 from tltl_runtime.wire.errors import REPORTED, WireError
-from tltlc.api import Diagnostic, TltlError
 
 _SNAPSHOT_INTERVAL: Final = 16
 """An episode is saved each time it has gone on for this many steps."""
@@ -33,7 +32,9 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     saved moment on the way, and replays only the remaining actions.
 
     If a game in another process is lost on the way, the next reset begins at the level's start with
-    another seed. Its info has this seed, as ``OTHER_SEED``. The snapshots of a lost game are forgotten.
+    another seed. Its info has this seed, as ``OTHER_SEED``. The snapshots of a lost game are forgotten. If
+    the episode ends on the way, so that the game does not play it again, the same reset begins with
+    another seed; its info also has ``UNREPEATED``.
 
     ``info`` gains ``cell``, by ``grid``; without a ``grid``, the environment gives its own. ``game`` says
     where the player is. ``make`` makes the environment.
@@ -71,21 +72,27 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         ``seed`` and ``options`` are used only before ``next_start`` is first set.
 
         Raises:
-            TltlError: TLT0783, the episode ends on the way, so the game does not play it again.
             WireError: the game is lost on the way.
         """
         if self._next_start is None:
             observation, info = self._play.reset(seed=seed, options=options)
             return observation, self._with_cell(info)
         self._seed, flat = self._next_start
+        unrepeated: dict[str, Any] = {}
         try:
-            observation, info = self._go_to_start([self._encoding.value(action) for action in flat])
+            arrival = self._go_to_start([self._encoding.value(action) for action in flat])
+            if arrival is None:
+                self._seed = self._begin_elsewhere(flat)
+                unrepeated = {UNREPEATED: True}
+                arrival = self._nearest(())[:2]
         except WireError:
             # The game may be lost on this way each time.
-            self._next_start, self._is_elsewhere = (_other_seed(self._seed), flat[:0]), True
+            self._begin_elsewhere(flat)
             self._forget_snapshots()
             raise
-        return observation, {**self._with_cell(info), **({OTHER_SEED: self._seed} if self._is_elsewhere else {})}
+        observation, info = arrival
+        elsewhere = {OTHER_SEED: self._seed} if self._is_elsewhere else {}
+        return observation, {**self._with_cell(info), **elsewhere, **unrepeated}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Take a step; ``info`` says in which cell the player then is. Raises WireError if the game is lost."""
@@ -98,13 +105,22 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             raise
         return observation, reward, terminated, truncated, self._with_cell(info)
 
-    def _go_to_start(self, values: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """Go where the actions ``values`` lead from the seed; return the observation and the info there."""
+    def _begin_elsewhere(self, flat: NDArray[Any]) -> int:
+        """Let the next episodes begin at the level's start, with another seed; return this seed."""
+        seed = _other_seed(self._seed)
+        self._next_start, self._is_elsewhere = (seed, flat[:0]), True
+        return seed
+
+    def _go_to_start(self, values: Sequence[Any]) -> tuple[Any, dict[str, Any]] | None:
+        """Go where the actions ``values`` lead from the seed; return the observation and the info there.
+
+        None if the episode ends on the way.
+        """
         observation, info, done = self._nearest(values)
         for value in values[done:]:
             observation, _, terminated, truncated, info = self._play.step(value)
             if terminated or truncated:
-                raise _not_repeated_error(self._seed, len(values))
+                return None
             self._record(value, observation, info)
         if self._unsaved:
             self._save(observation, info)
@@ -176,12 +192,3 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 def _other_seed(seed: int) -> int:
     return int(np.random.default_rng(seed).integers(2**31))
-
-
-def _not_repeated_error(seed: int, count: int) -> TltlError:
-    title = f"an episode of seed {seed} ends within {count} actions that did not end it before"
-    help_ = (
-        "begin a new training, with equal plays for equal seeds and actions, or with `ways = 0` under `[exploration]`: "
-        "no search"
-    )
-    return TltlError([Diagnostic("TLT0783", f"{title}: {help_}")])

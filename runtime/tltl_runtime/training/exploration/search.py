@@ -101,7 +101,8 @@ class SearchProgress:
     the cells that were reached: pairs of a place in the level and an automaton state. ``lengths``
     are the lengths of the demonstrations, in decisions. ``complete`` is true if the search ended
     because it had enough demonstrations or had taken enough steps. It is false if the search goes
-    on or the training ran out of time.
+    on or the training ran out of time. ``dropped`` counts the cells that were left out, because the game
+    did not lead there again.
     """
 
     steps: int
@@ -110,6 +111,7 @@ class SearchProgress:
     places: int
     lengths: tuple[int, ...]
     complete: bool
+    dropped: int = 0
 
 
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
@@ -124,6 +126,7 @@ def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchPr
         places=later.places,
         lengths=(*before.lengths, *later.lengths),
         complete=later.complete,
+        dropped=before.dropped + later.dropped,
     )
 
 
@@ -170,6 +173,7 @@ class TrajectorySearch:
         self._random = np.random.default_rng(seed)
         self._archive = _CellArchive(self._random)
         self._cells: set[tuple[int, int]] = set()
+        self._dropped = 0
         self.demonstrations: list[SuccessfulEpisode] = []
 
     def run(self) -> Iterator[SearchProgress]:
@@ -206,10 +210,11 @@ class TrajectorySearch:
             if used_up.any():
                 episodes.cut_off(used_up)
             decisions_left[over | used_up] = _RANDOM_DECISIONS
+            self._drop(episodes.unrepeated)
             if time.perf_counter() - reported > _REPORT_INTERVAL_S:
                 reported = time.perf_counter()
-                yield self._progress(steps, episodes.replayed, reported - began, complete=False)
-        yield self._progress(steps, episodes.replayed, time.perf_counter() - began, complete=True)
+                yield self._progress(steps, episodes, reported - began, complete=False)
+        yield self._progress(steps, episodes, time.perf_counter() - began, complete=True)
 
     def _random_actions(self) -> NDArray[Any]:
         """Draw random actions, as rows [num_envs, width].
@@ -257,9 +262,18 @@ class TrajectorySearch:
         length = len(failure.actions)
         return EpisodeStart(failure.seed, failure.actions[: int(self._random.integers(length // 2, length))])
 
-    def _progress(self, steps: int, replayed: int, seconds: float, *, complete: bool) -> SearchProgress:
+    def _drop(self, starts: Sequence[EpisodeStart]) -> None:
+        """Leave out the cells and the failed episodes to which the game did not lead again."""
+        for start in starts[self._dropped :]:
+            self._archive.drop(start)
+            self._failures = [failure for failure in self._failures if failure.seed != start.seed]
+        self._dropped = len(starts)
+
+    def _progress(self, steps: int, episodes: EpisodesInProgress, seconds: float, *, complete: bool) -> SearchProgress:
         lengths = tuple(sorted(len(demonstration.actions) for demonstration in self.demonstrations))
-        return SearchProgress(steps, replayed, seconds, len(self._cells), lengths, complete)
+        return SearchProgress(
+            steps, episodes.replayed, seconds, len(self._cells), lengths, complete, len(episodes.unrepeated)
+        )
 
 
 class _CellArchive:
@@ -298,6 +312,16 @@ class _CellArchive:
         cell = list(draw_counts)[self._random.choice(len(weights), p=weights / weights.sum())]
         draw_counts[cell] += 1
         return self._starts[state][cell]
+
+    def drop(self, start: EpisodeStart) -> None:
+        """Remove the cell to which this start leads, unless other actions have been found since."""
+        for state, starts in list(self._starts.items()):
+            cell = next((cell for cell, known in starts.items() if known is start), None)
+            if cell is None:
+                continue
+            del starts[cell], self._draw_counts[state][cell]
+            if not starts:
+                del self._starts[state], self._draw_counts[state]
 
     def remove(self, seed: int) -> None:
         """Remove the cells whose actions are from episodes with this seed."""

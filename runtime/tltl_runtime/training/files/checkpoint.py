@@ -202,7 +202,7 @@ def _check_figures(checkpoint: Checkpoint) -> None:
     if best:
         _check_counts({"best.steps": best.steps}, checkpoint.steps)
     if searched:
-        counts = ("steps", "replayed", "seconds", "places")
+        counts = ("steps", "replayed", "seconds", "places", "dropped")
         _check_counts({f"it.searched.{name}": getattr(searched, name) for name in counts})
         _check_counts({f"it.searched.lengths[{index}]": length for index, length in enumerate(searched.lengths)})
 
