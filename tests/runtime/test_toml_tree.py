@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.support.toml_tree import Tree, read_tree
+from tltl_runtime.support.toml_tree import Tree, read_tree, value_label
 from tltlc.core.source import SourceFile
 
 
@@ -37,3 +37,23 @@ def test_the_label_of_a_value_is_its_key_however_it_is_quoted(key: str, name: st
     table = tree.pop("t").value
     assert texts_of(tree) == {name: key, "z": "z"}
     assert texts_of(table) == {name: f"t.{key}", "x": "x"}
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ('a = "b c"', '"b c"'),
+        ("a.b='c' # d", "'c'"),
+        (r'a = "b\"c"', r'"b\"c"'),
+        ("a = 3", "a"),
+        ('a = """b"""', "a"),
+        ("a = ['b']", "a"),
+        ('a = { b = "c" }', "a"),
+    ],
+)
+def test_a_text_in_one_line_has_a_label_of_its_own(line: str, text: str) -> None:
+    entry = read_tree(SourceFile("it.toml", f"z = 1\n{line}\n"))["a"]
+    while isinstance(entry.value, dict):
+        entry = entry.value["b"]
+    label = value_label(entry.label)
+    assert label.source.text[label.span.start : label.span.end] == text

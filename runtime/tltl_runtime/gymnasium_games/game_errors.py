@@ -20,16 +20,19 @@ _LONGEST: Final = 200
 
 
 @contextmanager
-def guarded(game: GameFile, code: str, what: str, label: Label) -> Iterator[None]:
+def guarded(
+    game: GameFile, code: str, what: str, label: Label, unless: tuple[type[Exception], ...] = ()
+) -> Iterator[None]:
     """Turn an exception of the game's code in the ``with`` block into a TltlError.
 
     The error has the code ``code``. ``what`` is the subject of its message, for example "the game's
     `step`". Its label is the innermost line in the game's folder that took part in the exception; if there
-    is none, ``label``, a place in the game file. A TltlError is raised unchanged.
+    is none, ``label``, a place in the game file. A TltlError is raised unchanged, and so is an exception of
+    a type in ``unless``.
     """
     try:
         yield
-    except TltlError:
+    except (TltlError, *unless):
         raise
     except Exception as error:
         raise TltlError([raised(game, code, what, error, label)]) from error

@@ -17,7 +17,7 @@ from tltl_runtime.gymnasium_games.scene_options import read_options
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.support.toml_tree import Entry, read_tree
+from tltl_runtime.support.toml_tree import Entry, Tree, read_tree, value_label
 from tltl_runtime.wire.wire_game import PROTOCOLS, START_S, STEP_S, TLTL, WireGame, address
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 
@@ -67,10 +67,14 @@ class SceneVariant:
 
 @record
 class GameScene:
-    """A scene of a game, with its variants by name; the first one is ``v0``."""
+    """A scene of a game, with its variants by name; the first one is ``v0``.
+
+    ``label`` is the place of its name in the game file.
+    """
 
     name: str
     variants: Mapping[str, SceneVariant]
+    label: Label
 
 
 @record
@@ -228,7 +232,7 @@ class _Reader:
         """Read the scenes; if there are none, return one that is named after the file, with the label ``around``."""
         if not tables:
             first = SceneVariant({}, (), None, around)
-            return (GameScene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}),)
+            return (GameScene(self._path.name.removesuffix(SUFFIX), {FIRST_VARIANT: first}, around),)
         scenes: dict[str, GameScene] = {}
         for table in tables:
             scene = self._scene(table)
@@ -255,7 +259,7 @@ class _Reader:
             variants[variant] = self._variant(own, first)
             own.report_unknown_keys()
         table.report_unknown_keys(dict.fromkeys(_GAME_KEYS, "[game]"))
-        return GameScene(name, variants)
+        return GameScene(name, variants, value_label(table.label_of("name")))
 
     def _variant(self, table: CheckedTable, base: SceneVariant) -> SceneVariant:
         """Read a variant from its table; ``base`` gives the values that the table does not set.

@@ -15,6 +15,7 @@ _HELP: Final = 'write values as in `at = [1.0, 2.0, 0.0]`, and texts as in `asse
 _KEY: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
 _DOTTED: Final = re.compile(rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*")
 _BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_TEXT_VALUE: Final = re.compile(r"[ \t]*=[ \t]*(\"(?!\"\")(?:\\.|[^\"\\\n])*\"|'(?!'')[^'\n]*')")
 _VALUE_PART: Final = re.compile(
     r"\"\"\"(?:\\.|(?!\"\"\")[^\\])*\"{3,5}|'''(?:(?!''').)*'{3,5}|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*'|#[^\n]*|[\[\]{}\n]|.",
     re.DOTALL,
@@ -47,6 +48,15 @@ def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> 
     """
     data = fileio.parse_toml(source, code, help_)
     return _tree(data, (), _key_spans(source.text), Label(source, Span(0, 0)))
+
+
+def value_label(key: Label) -> Label:
+    """Return the label of the text that is the value of a key; ``key`` is the label of the key.
+
+    If something else than a text in one line follows the key, return ``key``.
+    """
+    match = _TEXT_VALUE.match(key.source.text, key.span.end)
+    return Label(key.source, Span(match.start(1), match.end(1))) if match else key
 
 
 def _tree(data: dict[str, Any], path: tuple[str | int, ...], spans: dict[Any, Span], around: Label) -> Tree:

@@ -32,6 +32,18 @@ _METHODS: Final = {
 """For each optional method, the capability that it needs, and the method that does the work."""
 
 
+class UnknownSceneError(ValueError):
+    """Raised for the name of a scene that a game does not have; ``scenes`` are the names of those that it has."""
+
+    def __init__(self, game: str, scene: str, scenes: tuple[str, ...]) -> None:
+        super().__init__(f"the game `{game}` has no scene `{scene}`; it has {', '.join(scenes)}")
+        self.scenes = scenes
+
+
+class NoPicturesError(ValueError):
+    """Raised for a ``render_mode`` that a game does not have."""
+
+
 class WireEnv(gymnasium.Env[Any, Any]):
     """A game that speaks the protocol ``tltl/1``; ``game`` says how it is started or found.
 
@@ -59,7 +71,9 @@ class WireEnv(gymnasium.Env[Any, Any]):
     Raises:
         WireError: the game does not start, or its ``hello`` is wrong.
         TltlError: TLT0803, ``game.connect`` is no address.
-        ValueError: there is no such scene, the game cannot render, or ``repeat`` is below 1.
+        UnknownSceneError: there is no such scene.
+        NoPicturesError: the game cannot render.
+        ValueError: ``repeat`` is below 1.
     """
 
     tltl_clock_s: float
@@ -90,7 +104,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
             if hello.SCREENSHOT in self.hello.capabilities:
                 self.metadata["render_modes"] = ["rgb_array"]
             if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-                raise ValueError(f"the game `{game.name}` cannot render `{render_mode}`")
+                raise NoPicturesError(f"the game `{game.name}` cannot render `{render_mode}`")
         except ValueError:
             self._session.close()
             raise
@@ -108,7 +122,8 @@ class WireEnv(gymnasium.Env[Any, Any]):
 
         Raises:
             WireError: the game does not start, is lost, or has no such scene or variant.
-            ValueError: there is no such scene, or the seed is 2^53 or greater.
+            UnknownSceneError: there is no such scene.
+            ValueError: the seed is 2^53 or greater.
         """
         super().reset(seed=seed)
         if seed is not None and seed >= _LARGEST_SEED:
@@ -226,7 +241,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
         if scene is None:
             return scenes[0] if scenes else None
         if scenes and scene not in scenes:
-            raise ValueError(f"the game `{self._game.name}` has no scene `{scene}`; it has {', '.join(scenes)}")
+            raise UnknownSceneError(self._game.name, scene, tuple(scenes))
         return scene
 
     def _restart(self) -> None:

@@ -78,10 +78,32 @@ def test_an_episode_is_recorded_with_places_and_played_again() -> None:
     assert GAME.check_replay(located) == ()
 
 
-def test_a_scene_that_the_game_lacks_is_an_error(game: Path) -> None:
-    game.write_text(game.read_text().replace('"short"', '"cellar"'))
-    with pytest.raises(TltlError, match=r"TLT0780: the game raises ValueError: .*cellar"):
-        make_base_env(read_game_file(game), "cellar")
+@pytest.mark.parametrize(
+    ("name", "help_"),
+    [
+        ("shrot", "did you mean `short`? (it declares `short`, `long`)"),
+        ("cellar", "it declares `short`, `long`"),
+    ],
+)
+def test_a_scene_that_the_game_lacks_is_an_error_of_the_game_file(game: Path, name: str, help_: str) -> None:
+    game.write_text(game.read_text().replace('"short"', f'"{name}"'))
+    with pytest.raises(TltlError, match=f"TLT0803: the game has no scene `{name}`") as caught:
+        make_base_env(read_game_file(game), name)
+    (diagnostic,) = caught.value.diagnostics
+    (label,) = diagnostic.labels
+    assert label.source.text[label.span.start : label.span.end] == f'"{name}"'
+    assert diagnostic.help == help_
+
+
+def test_a_game_without_screenshots_says_how_to_add_pictures(tmp_path: Path) -> None:
+    game = write(tmp_path, sys.executable, str(Path(__file__).parents[1] / "wire" / "games" / "faulty.py"), "none")
+    game.write_text(game.read_text().replace('"short"', '"main"'))
+    with pytest.raises(TltlError, match="TLT0731: the game of `main` sends no pictures") as caught:
+        make_base_env(read_game_file(game), "main", render_mode="rgb_array")
+    (diagnostic,) = caught.value.diagnostics
+    (label,) = diagnostic.labels
+    assert label.source.text[label.span.start :].startswith("process")
+    assert "declare the capability `screenshot` in its `hello`" in (diagnostic.help or "")
 
 
 def test_options_are_for_environments_in_this_process(game: Path) -> None:

@@ -118,16 +118,24 @@ def test_a_game_that_cannot_be_played_again_has_a_note(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old", "new", "advice"),
     [
-        ("return picture\n", "return None\n"),
-        ("length=5, render_mode=None):\n    return", "length=5):\n    render_mode = None\n    return"),
+        ("return picture\n", "return None\n", "let `render()` return an array, height x width x 3, or "),
+        (
+            "length=5, render_mode=None):\n    return",
+            "length=5):\n    render_mode = None\n    return",
+            "give `corridor:make` an argument `render_mode`, ",
+        ),
     ],
 )
-def test_a_game_without_pictures_has_no_films(tmp_path: Path, old: str, new: str) -> None:
+def test_a_game_without_pictures_has_no_films(tmp_path: Path, old: str, new: str, advice: str) -> None:
     assert old in games.GRID
     game = games.write(tmp_path, corridor__py=games.GRID.replace(old, new))
-    assert films_of(game, {1: recorded(game, 3)}) == CaseFilms()
+    films = films_of(game, {1: recorded(game, 3)})
+    (note,) = films.notes
+    assert not films.pictures and not films.may_change
+    title = "the game of `short` renders no pictures (`render_mode` `rgb_array`)"
+    assert note.startswith(f"There are no films: {title}. To see some, {advice}")
 
 
 def test_films_are_equal_for_equal_episodes(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from tltl_runtime.game.films import Films, Picture
 from tltl_runtime.game.game import Game
 from tltl_runtime.regression.explain.explain import Finding
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import EMPTY, TltlError, record
+from tltlc.api import EMPTY, Diagnostic, TltlError, record
 
 MOST_FILMS: Final = 6
 """A case has at most this many films."""
@@ -38,11 +38,13 @@ class CaseFilms:
     """The films of some episodes of a case.
 
     ``pictures`` are animated WebP pictures, by the index of the episode. ``notes`` are sentences
-    about films that could not be made, with the reason.
+    about films that could not be made, with the reason. ``may_change`` says that another try
+    may make other films, because the game failed.
     """
 
     pictures: Mapping[int, bytes] = EMPTY
     notes: tuple[str, ...] = ()
+    may_change: bool = False
 
 
 NO_FILMS: Final = CaseFilms()
@@ -60,7 +62,8 @@ def episode_films(
     Examples of ``findings`` are preferred to other episodes. The game plays the episodes again to
     draw them. ``place`` names the level and its variant, as for ``Game.load_level``. ``on_film`` is
     called before each film, with the number of films so far and of all films. There are
-    neither films nor notes if the game draws no pictures, or if Pillow cannot write WebP.
+    neither films nor notes if the game has no films, or if Pillow cannot write WebP. A game that could
+    have films, but gives no pictures, has one note.
     """
     if game.films is None or not _can_write():
         return NO_FILMS
@@ -74,9 +77,9 @@ def episode_films(
             pictures[index] = _film(game.films, episode)
         except TltlError as error:
             if error.diagnostics[0].code == _LACKS_PICTURES:
-                return NO_FILMS
+                return CaseFilms(notes=(_no_pictures_note(error.diagnostics[0]),))
             failures.setdefault(error.diagnostics[0].title, []).append(index)
-    return CaseFilms(pictures, tuple(_note(indices, title) for title, indices in failures.items()))
+    return CaseFilms(pictures, tuple(_note(indices, title) for title, indices in failures.items()), bool(failures))
 
 
 def _examples(findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisode]) -> list[int]:
@@ -92,6 +95,11 @@ def _examples(findings: Sequence[Finding], episodes: Mapping[int, RecordedEpisod
 def _note(indices: Sequence[int], why: str) -> str:
     numbers = short_list([str(index) for index in indices], MOST_FILMS)
     return f"There is no film of {'episodes' if len(indices) > 1 else 'episode'} {numbers}: {why}."
+
+
+def _no_pictures_note(diagnostic: Diagnostic) -> str:
+    help_ = diagnostic.help or ""
+    return f"There are no films: {diagnostic.title}." + (f" To see some, {help_}." if help_ else "")
 
 
 def _film(films: Films[Any], episode: RecordedEpisode) -> bytes:

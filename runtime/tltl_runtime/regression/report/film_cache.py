@@ -20,9 +20,10 @@ _SUFFIX: Final = ".webp"
 
 @record
 class _KeptFilms:
-    """The name of the file of each film, by the index of its episode."""
+    """The name of the file of each film, by the index of its episode, and the notes beside the films."""
 
     files: Mapping[str, str]
+    notes: tuple[str, ...]
 
 
 def films_hash(played: Any, place: tuple[str, str], recordings: dict[int, Path]) -> str:
@@ -38,20 +39,20 @@ def films_hash(played: Any, place: tuple[str, str], recordings: dict[int, Path])
 def kept_films(folder: Path, inputs: str, draw: Callable[[], CaseFilms]) -> CaseFilms:
     """Return the films in ``folder`` if they were drawn from equal ``inputs``; otherwise, ``draw`` and keep them.
 
-    ``inputs`` is the hash of :func:`films_hash`. If a film could not be drawn, nothing is kept: the next
-    page tries again. A folder that cannot be written keeps nothing, either.
+    ``inputs`` is the hash of :func:`films_hash`. If the game failed, nothing is kept: the next page tries
+    again. A folder that cannot be written keeps nothing, either.
     """
     kept = read_cache(_KeptFilms, folder / INDEX, inputs)
     if kept is not None:
         with suppress(OSError):
-            return CaseFilms({int(index): (folder / name).read_bytes() for index, name in kept.files.items()})
+            return CaseFilms({int(index): (folder / name).read_bytes() for index, name in kept.files.items()}, kept.notes)
     films = draw()
-    if not films.notes:
+    if not films.may_change:
         files = {str(index): f"{index}{_SUFFIX}" for index in films.pictures}
         pictures = {files[str(index)]: picture for index, picture in films.pictures.items()}
         with suppress(TltlError, OSError):
             for path in folder.glob(f"*{_SUFFIX}"):
                 path.unlink(missing_ok=True)
-            index = cache_text(inputs, _KeptFilms(files))
+            index = cache_text(inputs, _KeptFilms(files, films.notes))
             fileio.write_files(folder, {**pictures, INDEX: index}, "", over_inputs=True)
     return films
