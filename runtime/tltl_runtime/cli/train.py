@@ -12,9 +12,9 @@ import click
 from tltl_runtime.cli.support.level_options import level_options
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
+from tltl_runtime.cli.support.place_title import place_title
 from tltl_runtime.cli.support.sensor_options import sensor_options
 from tltl_runtime.cli.support.worker_options import WorkersType
-from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.support.number_text import duration, share
 from tltl_runtime.training.files.choices import Method
 from tltlc.api import cli
@@ -216,7 +216,7 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
-    place = f"{level_stem(run.level)} {run.variant.text}"
+    place = place_title(run.level, run.variant.text)
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     if run.initial and not (run.folder / CHECKPOINT).exists():

@@ -14,11 +14,12 @@ from tltl_runtime.game.level_name import Variant
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.blas_threads import blas_threads
-from tltl_runtime.policies.compatibility import check_spaces
+from tltl_runtime.policies.compatibility import check_spaces, other_clock_error
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.spec.episode_summary import EpisodeSummary
+from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.wire.errors import WireError
-from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, record, replace
+from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, TltlError, record, replace
 
 RecordMode = Literal["none", "failures", "all"]
 
@@ -27,6 +28,9 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 
 _POLICY: Final = "policy"
 """The first word of the name of every policy in recordings."""
+
+_OTHER_CLOCK: Final = "TLT0617"
+"""The code of the error of an environment whose clock is not that of its spec."""
 
 _HASH_DIGITS: Final = 8
 """The name of a policy in recordings has this many digits of the hash of its file."""
@@ -143,7 +147,7 @@ class PolicyPlayer:
     Each instance has an environment of its own.
 
     Raises:
-        TltlError: TLT0843, the observations or actions of the environment are not those of the
+        TltlError: TLT0843, the observations or actions of the environment, or its clock, are not those of the
             policy; the errors of :meth:`~tltl_runtime.game.game.Game.make_env`.
     """
 
@@ -151,14 +155,7 @@ class PolicyPlayer:
         self._setup = setup
         card = setup.policy.card
         self._game = game_of(setup.level)
-        self._env: gymnasium.Env[Any, Any] = self._game.make_env(
-            setup.level,
-            setup.variant,
-            setup.fspa,
-            sensors=card.sensors,
-            reward=RewardOptions(),
-            params=setup.params,
-        )
+        self._env: gymnasium.Env[Any, Any] = self._made_env()
         self._judge = setup.clause_judge.judge() if setup.clause_judge else None
         self._recorder: EpisodeRecorder[Any] | None = None
         try:
@@ -167,6 +164,24 @@ class PolicyPlayer:
                 self._env = self._recorder = self._game.recorder(self._env)
         except BaseException:
             self._env.close()
+            raise
+
+    def _made_env(self) -> TltlEnv:
+        setup, card = self._setup, self._setup.policy.card
+        try:
+            return self._game.make_env(
+                setup.level,
+                setup.variant,
+                setup.fspa,
+                sensors=card.sensors,
+                reward=RewardOptions(),
+                params=setup.params,
+            )
+        except TltlError as error:
+            # The spec has the clock of the training: `set_up` has checked that.
+            if any(diagnostic.code == _OTHER_CLOCK for diagnostic in error.diagnostics):
+                level = self._game.load_level(setup.level, setup.variant)
+                raise other_clock_error(card, level) from error
             raise
 
     def play(self, request: EpisodeRequest) -> PlayedEpisode | LostEpisode:

@@ -101,6 +101,11 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         del level
         return {}
 
+    def clock_s(self, level: LevelT) -> float | None:
+        """Return the seconds of a step on a level; None if that is not known before it is played."""
+        del level
+        return None
+
     @abstractmethod
     def check_fit(self, level: LevelT, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Raise TltlError if a level lacks something that a spec needs.

@@ -78,7 +78,7 @@ def summary_text(values: Mapping[str, Any], figures: GameFigures) -> str:
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [
-        f"  level    {values['level']} {values['variant']}, spec {values['spec']}",
+        f"  level    {values['level']}:{values['variant']}, spec {values['spec']}",
         column("  player   ", f"{values['player']}, seed {values['seed']}"),
         f"  end      {end}, after {values['steps']}{limit} steps, {values['seconds']:.2f} s",
         *([] if values["success"] else [column("  why      ", values["cause"]["text"])]),

@@ -32,9 +32,9 @@ def guarded(
     """
     try:
         yield
-    except (TltlError, *unless):
-        raise
     except Exception as error:
+        if isinstance(error, (TltlError, *unless)):
+            raise
         raise TltlError([raised(game, code, what, error, label)]) from error
 
 

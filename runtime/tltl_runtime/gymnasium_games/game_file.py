@@ -17,7 +17,7 @@ from tltl_runtime.gymnasium_games.scene_options import read_options
 from tltl_runtime.support.checked_table import CheckedTable, wrong_value
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.support.toml_tree import Entry, Tree, read_tree, value_label
+from tltl_runtime.support.toml_tree import Entry, read_tree, value_label
 from tltl_runtime.wire.wire_game import PROTOCOLS, START_S, STEP_S, TLTL, WireGame, address
 from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 

@@ -20,6 +20,7 @@ from tltl_runtime.game.level_name import GAME_FILE, Variant, is_scene, parse_var
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.gymnasium_games.entity_positions import PLAYER
+from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.scene_cause import scene_cause
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_episode_file import (
@@ -60,6 +61,10 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         :func:`~tltl_runtime.gymnasium_games.scene_hash.scene_hash` lists them.
         """
         return level.content_hash
+
+    def clock_s(self, level: SceneLevel) -> float | None:
+        """Return the clock of the game file; None if it has none, or if it is unknown where the scene is."""
+        return read_game_file(Path(split_scene(level.place)[0])).clock_s if level.place else None
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Do nothing: the signals of a scene are known only when it is played."""

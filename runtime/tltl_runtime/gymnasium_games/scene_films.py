@@ -12,7 +12,10 @@ from tltl_runtime.game.films import Films, Picture
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltlc.api import Diagnostic, Notation, TltlError, label_text
 
-_ADVICE: Final = "let `render()` return an array, height x width x 3, or write the signals instead: `tltlc replay RECORDING -o NAME.csv`"
+_ADVICE: Final = (
+    "let `render()` return an array, height x width x 3, or write the signals instead: "
+    "`tltlc replay RECORDING -o NAME.csv`"
+)
 
 
 class SceneFilms(Films[SceneEpisode]):

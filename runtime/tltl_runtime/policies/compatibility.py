@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import isclose
 from typing import Any, Final
 
 from gymnasium import spaces
@@ -13,7 +14,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts, space_layouts
 from tltl_runtime.policies.spaces.observation_layout import ObservationPart
 from tltl_runtime.support.number_text import short_list
-from tltlc.api import Diagnostic, Fspa, TltlError, label_text
+from tltlc.api import Diagnostic, Fspa, TltlError, label_text, monitors
 
 _MOST: Final = 3
 """A message names at most this many differences."""
@@ -40,6 +41,9 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     if card.spaces is None and game.branches and card.branches != game.branches:
         own, sizes = _sizes(card.branches), _sizes(game.branches)
         raise _unfit_error(f"the policy chooses among {own} actions, and the game has {sizes}")
+    clock_s = game.clock_s(level)
+    if clock_s and card.fspa.clock_s and not isclose(clock_s, card.fspa.clock_s, rel_tol=1e-9):
+        raise other_clock_error(card, level, f"{monitors.number_text(clock_s)} s")
     missing = [*game.missing_sensors(level, card.sensors)]
     if missing:
         title = f"the policy senses {short_list(missing, _MOST)}, which the level `{level.name}` does not have"
@@ -50,6 +54,16 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
         raise _unfit_error(title, "let it play its own spec, or train one for this spec")
+
+
+def other_clock_error(card: Card, level: Level, step: str = "another time") -> TltlError:
+    """Return the error TLT0843 for a level whose steps take another time than those of the training.
+
+    ``step`` says how long a step of the level takes.
+    """
+    own = "" if card.fspa.clock_s is None else f", whose steps take {monitors.number_text(card.fspa.clock_s)} s"
+    title = f"the policy was trained for `{card.level}:{card.variant}`{own}"
+    return _unfit_error(f"{title}; it cannot play `{level.name}:{level.variant}`, whose steps take {step}", _OWN_GAME)
 
 
 def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Space[Any]) -> None:
@@ -67,13 +81,14 @@ def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Spac
         if own == (dict(card.shapes), list(card.branches)):
             return
     if layouts is None or card.spaces is None:
-        title = "the policy was trained for another game, whose observations or actions are of other kinds"
-        raise _unfit_error(title, _OWN_GAME)
+        title = f"the policy was trained for another game, with the level `{card.level}`"
+        raise _unfit_error(f"{title}, whose observations or actions are of other kinds", _OWN_GAME)
     before, after = _parts_by_key(card.spaces), _parts_by_key(layouts)
     wrong = [f"another observation `{key}`" for key in {**before, **after} if before.get(key) != after.get(key)]
     wrong += ["another action"] if card.spaces.action != layouts.action else []
     if wrong:
-        raise _unfit_error(f"the policy was trained for another game: {short_list(wrong, _MOST)}", _OWN_GAME)
+        title = f"the policy was trained for another game, with the level `{card.level}`: {short_list(wrong, _MOST)}"
+        raise _unfit_error(title, _OWN_GAME)
 
 
 def _parts_by_key(layouts: SpaceLayouts) -> dict[str, ObservationPart]:

@@ -116,7 +116,7 @@ def test_a_recording_is_summarized_and_checked(tltlc: Run) -> None:  # noqa: F81
     assert (result.status, result.err) == (0, "")
     assert result.out == (
         "run.episode.npz\n"
-        "  level    corridor v0, spec far\n"
+        "  level    corridor:v0, spec far\n"
         "  player   hand, seed 7\n"
         "  end      success, after 4 of 8 steps, 0.40 s\n"
         "  reward   0.500, progress 1.000\n"

@@ -52,7 +52,7 @@ def test_the_text_report(tltlc: Run, policy: Path) -> None:  # noqa: F811
     result = tltlc("evaluate", policy, "--episodes", "3", "--seed", "5")
     assert result.status == 0
     lines = result.out.splitlines()
-    assert lines[0] == f"cover_and_hide v0, spec soon, seed 5: {policy}"
+    assert lines[0] == f"cover_and_hide:v0, spec soon, seed 5: {policy}"
     assert lines[1] == "note: the level has changed since the policy was trained on it"
     assert lines[5] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
     assert "sampled: 3 of 3 failed" in lines

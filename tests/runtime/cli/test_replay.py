@@ -66,7 +66,7 @@ def test_the_text_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-unt
     result: Outcome = tltlc("replay", FILE)
     lines = result.out.splitlines()
     assert (result.status, result.err, lines[0]) == (0, "", FILE)
-    assert lines[1] == "  level    branching v0, spec branching"
+    assert lines[1] == "  level    branching:v0, spec branching"
     assert lines[2].startswith("  player   hand, seed ")
     assert lines[3] == "  end      stopped, pending, after 20 of 600 steps, 3.00 s"
     changes = lines[lines.index("    time  state  progress  what remains") + 1 :]

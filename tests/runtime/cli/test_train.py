@@ -174,7 +174,7 @@ def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> N
     Path("run/checkpoint.pt").unlink()
     result = tltlc("train", "--resume", "run", "--steps", "192")
     assert result.err.splitlines()[:2] == [
-        "training cover_and_hide on cover_and_hide v0, seed 0, in run",
+        "training cover_and_hide on cover_and_hide:v0, seed 0, in run",
         "there is no checkpoint.pt in run: the training starts again, its measurements are lost, "
         "and so is its record, and policy.safetensors stays until there is a new one",
     ]
@@ -244,7 +244,7 @@ def test_a_training_ends_when_the_spec_is_met(tltlc: TltlcFunction, here: Path) 
     result = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "runs/soon", "--no-map")
     assert result.status == 0, result.err
     assert result.err.splitlines()[:2] == [
-        "training soon on cover_and_hide v0, seed 0, in runs/soon",
+        "training soon on cover_and_hide:v0, seed 0, in runs/soon",
         "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume runs/soon",
     ]
     assert result.err.count("\n") == 3
@@ -276,7 +276,7 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
     assert again == Outcome(
         1,
         "",
-        "training soon on cover_and_hide v0, seed 0, in second\n"
+        "training soon on cover_and_hide:v0, seed 0, in second\n"
         "error[TLT0867]: `second` already contains a training\n"
         "  help: continue it with `tltlc train --resume second`, or name another folder with --out\n",
     )
@@ -397,7 +397,7 @@ def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> No
     Path("far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
     result = interrupted("far.tltl", "--level", "navigation:v2", "--config", "small.toml")
     first, warned = result.err.splitlines()[:2]
-    assert first == "training far on navigation v2, seed 0, in training/navigation-v2-far-0"
+    assert first == "training far on navigation:v2, seed 0, in training/navigation-v2-far-0"
     assert warned.startswith("warning[TLT0814]: nobody can reach `exit` in `navigation:v2`")
 
 
@@ -405,7 +405,7 @@ def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> No
 def test_a_level_file_beside_the_spec_is_preferred(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     assert tltlc("new", "mine", "--level", "vault").status == 0
     result = interrupted("mine/vault.tltl", "--config", "small.toml")
-    assert result.err.startswith("training unseen on vault v0, seed 0, in training/vault-v0-unseen-0\n")
+    assert result.err.startswith("training unseen on vault.toml:v0, seed 0, in training/vault-v0-unseen-0\n")
     run = json.loads(Path("training/vault-v0-unseen-0/run.json").read_text())
     assert run["level"] == str(Path("mine/vault.toml").resolve())
 
@@ -413,7 +413,7 @@ def test_a_level_file_beside_the_spec_is_preferred(tltlc: TltlcFunction, interru
 @pytest.mark.usefixtures("here")
 def test_a_level_may_be_named_in_place_of_a_spec(interrupted: TltlcFunction) -> None:  # noqa: F811
     result = interrupted("navigation:v1", "--config", "small.toml")
-    assert result.err.startswith("training navigation on navigation v1, ")
+    assert result.err.startswith("training navigation on navigation:v1, ")
     assert Path("training/navigation-v1-navigation-0").is_dir()
 
 
@@ -533,7 +533,7 @@ def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.Monke
     shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", output.result().decode())
     assert ended.value.code == 1
     assert "playing the first steps" in shown
-    last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
+    last = shown[shown.rindex("cover_and_hide on cover_and_hide:v0, seed 0") :]
     for text in ("spec met", "met in a row", "of 2, then the policy is confirmed", "state 0", "Reach near(s1)"):
         assert text in last
     assert "128 of at most 128 steps" in last

@@ -46,7 +46,7 @@ def test_the_spec_the_sensors_and_the_network_come_from_the_policy(tltlc: TltlcF
     assert result.status == 0, result.err
     folder = Path("training/cover_and_hide-v1-soon-0-tuned")
     assert result.err.splitlines()[:2] == [
-        f"training soon on cover_and_hide v1, seed 0, in {folder}",
+        f"training soon on cover_and_hide:v1, seed 0, in {folder}",
         "it begins with the weights of old.safetensors; "
         "its critic is new: only the critic learns in the first 5 iterations",
     ]
@@ -68,7 +68,7 @@ def test_the_default_level_is_the_level_of_the_policy(tltlc: TltlcFunction, here
     )
     again = tltlc("train", "--from", "it", "--config", "small.toml", "--out", "again")
     assert again.status == 0, again.err
-    assert "training soon on cover_and_hide v1, seed 0, in again" in again.err
+    assert "training soon on cover_and_hide:v1, seed 0, in again" in again.err
 
 
 @pytest.mark.usefixtures("here")
@@ -76,7 +76,7 @@ def test_a_shipped_policy_is_named_by_its_level(tltlc: TltlcFunction, interrupte
     result = tltlc("train", "--from", "cover_and_hide", "--print-config")
     assert result.status == 0
     started = interrupted("--from", "cover_and_hide:v2", "--config", "small.toml", "--out", "it")
-    assert "training cover_and_hide on cover_and_hide v2, seed 0, in it" in started.err
+    assert "training cover_and_hide on cover_and_hide:v2, seed 0, in it" in started.err
     assert json.loads(Path("it/run.json").read_text())["initial"]["path"] == str(shipped_policy("cover_and_hide"))
 
 

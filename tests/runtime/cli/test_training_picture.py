@@ -46,7 +46,7 @@ def test_the_display_fits_and_no_figure_is_cut_off(
     assert {len(line) for line in shown} == {min(100, columns - 4)}
     text = "\n".join(shown)
     for part in (
-        "cover_and_hide on cover_and_hide v0, seed 3",
+        "cover_and_hide on cover_and_hide:v0, seed 3",
         "of 100, then the policy is confirmed",
         "reward 0.65, 130 steps an episode; best so far: met in 80%",
         "8,192,000 of at most 12,000,000 steps, 2,048 a second (25% learning)",

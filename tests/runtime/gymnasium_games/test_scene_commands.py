@@ -79,7 +79,7 @@ def _trained(folder: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Path:
         options = ("--steps", "192", "--config", "settings.toml", "--out", "run")
         result = tltlc("train", "--game", "corridor.game.toml:short", *options)
         assert result.status == 1, result.err
-        assert "training fetch on short v0, seed 0, in run" in result.err
+        assert "training fetch on corridor.game.toml:short:v0, seed 0, in run" in result.err
     return folder
 
 
@@ -88,7 +88,7 @@ def test_a_policy_is_evaluated_and_its_episodes_play_again(tltlc: Run, tmp_path:
     out = tmp_path / "out"
     result = tltlc("evaluate", "run", "--episodes", "2", "--record", "all", "--out", out)
     assert result.status == 0, result.err
-    assert "corridor.game.toml:short v0, spec fetch, seed 0: run/policy.safetensors" in result.out
+    assert "corridor.game.toml:short:v0, spec fetch, seed 0: run/policy.safetensors" in result.out
     recording = out / "short-v0-0-0-sampled.episode.npz"
     replayed = tltlc("replay", recording, "--check", "--game", "corridor.game.toml", "--format", "json")
     assert replayed.status == 0, replayed.err
@@ -263,13 +263,13 @@ def test_the_game_of_a_project_needs_no_option(tltlc: Run, tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     games.write(tmp_path, tltl__toml='game = "corridor.game.toml"\n', settings__toml=SETTINGS)
     options = ("--steps", "64", "--config", "settings.toml", "--out", "run")
-    assert "training fetch on short v0" in tltlc("train", "corridor.tltl:fetch", *options).err
+    assert "training fetch on corridor.game.toml:short:v0" in tltlc("train", "corridor.tltl:fetch", *options).err
     (tmp_path / "other.tltl").write_text("clock 10 Hz signal door_open: bool spec other { reach door_open limit 9 s }")
     assert "`other` does not name a level: name one with --level" in tltlc("train", "other.tltl").err
     (tmp_path / "named.tltl").write_text(
         "clock 10 Hz signal door_open: bool spec named { level long reach door_open limit 9 s }"
     )
-    assert "training named on long v0" in tltlc("train", "named.tltl", *options[:-1], "named").err
+    assert "training named on corridor.game.toml:long:v0" in tltlc("train", "named.tltl", *options[:-1], "named").err
 
 
 EXPERT = """

@@ -83,6 +83,32 @@ def test_a_variant_says_what_it_changes(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("clock", "lost", "step"),
+    [('clock = "20 Hz"', "", "0.05 s"), ("", "    tltl_clock_s = 0.05\n", "another time")],
+    ids=["in the game file", "of the environment"],
+)
+def test_a_policy_of_another_game_is_named_with_its_scene(
+    tltlc: Run,  # noqa: F811
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    clock: str,
+    lost: str,
+    step: str,
+) -> None:
+    cave = games.GAME.replace("corridor:", "cave:").replace('clock = "10 Hz"', clock).replace('"short"', '"deep"')
+    code = games.GRID.replace('    metadata = {"render', f'{lost}    metadata = {{"render')
+    monkeypatch.delitem(sys.modules, "cave", raising=False)
+    spec = games.SPEC.replace("10 Hz", "20 Hz")
+    games.write(folder, cave__game__toml=cave.replace("corridor.tltl", "cave.tltl"), cave__py=code, cave__tltl=spec)
+    (folder / "other_game.toml").write_text(case("cave.game.toml", scene="deep"))
+    result = tltlc("baseline", "other_game.toml", "--workers", "1")
+    assert result.status == 1
+    title = "the policy was trained for `short:v0`, whose steps take 0.1 s; it cannot play `deep:v0`, whose steps take"
+    assert "error[TLT0843]: " in result.err and f"{title} {step}\n" in result.err
+    assert "TLT0617" not in result.err
+
+
+@pytest.mark.parametrize(
     ("before", "after"),
     [(b"\xe9t\xe9 \x80", b"\xe9t\xe9 \x81"), (b"\xef\xbb\xbf###\r\n", b"\xef\xbb\xbf##\r\n"), (b"\0\r\n", b"\0\r\r")],
     ids=["not UTF-8", "byte order mark", "binary"],

@@ -158,7 +158,7 @@ def test_only_the_first_process_of_a_command_prints(tmp_path: Path) -> None:
     with _started(*torchrun, *train, *limits) as process:
         output, errors = process.communicate(timeout=HANG_S)
     assert output.count("ended by the limit of steps after 256 steps") == 1, errors
-    assert errors.count("training navigation on navigation v2") == 1
+    assert errors.count("training navigation on navigation:v2") == 1
     assert errors.count("nobody can reach `s2`") == 1
     assert read_policy(tmp_path / "run" / POLICY).card.variant == "v2"
 

@@ -8,16 +8,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
+from tltl_runtime.cli.support.place_title import place_title
 from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
 from tltl_runtime.evaluation.player import CHOICES, LostEpisode, PlayedEpisode, Setup, is_labelled_policy
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import Trajectory
-from tltl_runtime.game.level_name import level_file, with_level_file
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
-from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.record_json import to_json
 from tltl_runtime.support.writable_folder import writable_folder
 from tltl_runtime.wire.lost_episodes import LostEpisodes
@@ -139,9 +138,8 @@ class EvaluationFiles:
         """Return the text report."""
         setup = self._setup
         # Show the path of a user's level, which may have the name of a level of the package.
-        file = level_file(setup.level)
-        level = self._level.name if file is None else with_level_file(setup.level, Path(path_text(file)))
-        head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
+        place = place_title(setup.level, self._level.variant)
+        head = f"{place}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(evaluations)}"
         failed = [episode.index for episodes in self._summaries.values() for episode in episodes if not episode.success]

@@ -11,6 +11,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from tltl_runtime.cli.support.place_title import place_title
 from tltl_runtime.cli.support.training_text import (
     SEARCH_IS_LOST,
     confirmation_line,
@@ -24,7 +25,6 @@ from tltl_runtime.cli.support.training_text import (
     search_result_line,
     seconds_left,
 )
-from tltl_runtime.game.level_name import level_stem
 from tltl_runtime.support.number_text import duration, number, percent, share
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.exploration.search_plan import SearchPlan
@@ -87,7 +87,7 @@ class TrainingDisplay:
         """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
-        title = f"{run.fspa.name} on {level_stem(run.level)} {run.variant.text}, seed {run.seed}"
+        title = f"{run.fspa.name} on {place_title(run.level, run.variant.text)}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
             # Two lines are for the border, and one line below the border stays free.
