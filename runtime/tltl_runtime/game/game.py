@@ -96,6 +96,14 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
     def level_hash(self, level: LevelT) -> str:
         """Return the SHA-256, in hexadecimal, of everything in a level that can change an episode."""
 
+    def installed_code(self, level: LevelT) -> str:
+        """Return a hash of the installed code that plays a level and that its hash does not cover; empty without any.
+
+        The hash may differ on another machine, where the code does the same.
+        """
+        del level
+        return ""
+
     def params(self, level: LevelT) -> dict[str, float]:
         """Return the values that a level gives to the params of specs, in SI units; by default none."""
         del level

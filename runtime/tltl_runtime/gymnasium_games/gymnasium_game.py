@@ -21,6 +21,7 @@ from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.sensors import SensorChoice
 from tltl_runtime.gymnasium_games.entity_positions import PLAYER
 from tltl_runtime.gymnasium_games.game_file import read_game_file
+from tltl_runtime.gymnasium_games.installed_code import installed_code_hash
 from tltl_runtime.gymnasium_games.scene_cause import scene_cause
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_episode_file import (
@@ -65,6 +66,12 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
     def clock_s(self, level: SceneLevel) -> float | None:
         """Return the clock of the game file; None if it has none, or if it is unknown where the scene is."""
         return read_game_file(Path(split_scene(level.place)[0])).clock_s if level.place else None
+
+    def installed_code(self, level: SceneLevel) -> str:
+        """Return a hash of the packages that the game file names; empty if it is unknown where the scene is."""
+        if not level.place:
+            return ""
+        return installed_code_hash(read_game_file(Path(split_scene(level.place)[0])))
 
     def check_fit(self, level: SceneLevel, fspa: Fspa, spec: str | Path | Fspa) -> None:
         """Do nothing: the signals of a scene are known only when it is played."""

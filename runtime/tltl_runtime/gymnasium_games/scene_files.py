@@ -12,6 +12,7 @@ from tltl_runtime.game.level_files import LevelFiles
 from tltl_runtime.game.level_name import Variant, split_scene
 from tltl_runtime.gymnasium_games.game_argument import scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_file import FIRST_VARIANT, GameFile, GameScene, read_game_file
+from tltl_runtime.gymnasium_games.installed_code import own_package_files
 from tltl_runtime.gymnasium_games.scene_hash import file_hashes, possible_files, scene_hash
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
 from tltl_runtime.spec.spec_files import spec_files
@@ -79,6 +80,7 @@ class SceneFiles(LevelFiles[SceneLevel]):
             own = variant_of(game, scene.name, variant.name)
             yield from (game.folder / file for file, _ in file_hashes(game, scene.name, variant.name))
             yield from possible_files(game)
+            yield from own_package_files(game)
         except TltlError:
             # Any file in the folder may have the error, or a file may be missing in it.
             yield self.path(name).parent

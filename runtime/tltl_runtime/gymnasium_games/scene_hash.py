@@ -76,7 +76,7 @@ def game_files(game: GameFile) -> dict[str, bytes]:
     Raises:
         TltlError: TLT0001 or TLT0004, a file cannot be read or is too large.
     """
-    contents = python_files(game.folder, (*_named_modules(game), *_run_modules(game)))
+    contents = python_files(game.folder, (*named_modules(game), *_run_modules(game)))
     for word in game.wire.process if game.wire else ():
         file = game.folder / word
         if not fileio.is_file(file) or not file.resolve().is_relative_to(game.folder.resolve()):
@@ -90,7 +90,7 @@ def game_files(game: GameFile) -> dict[str, bytes]:
 
 def possible_files(game: GameFile) -> list[Path]:
     """Return the paths of the Python files that a game may import, whether they exist or not."""
-    return possible_python_files(game.folder, (*_named_modules(game), *_run_modules(game)))
+    return possible_python_files(game.folder, (*named_modules(game), *_run_modules(game)))
 
 
 def _package_versions(game: GameFile) -> dict[str, str]:
@@ -99,14 +99,14 @@ def _package_versions(game: GameFile) -> dict[str, str]:
     A module is left out unless an installed package has its name.
     """
     versions: dict[str, str] = {}
-    for module in _named_modules(game):
+    for module in named_modules(game):
         top = module.partition(".")[0]
         with suppress(PackageNotFoundError):
             versions[top] = version(top)
     return versions
 
 
-def _named_modules(game: GameFile) -> list[str]:
+def named_modules(game: GameFile) -> list[str]:
     """Return the Python modules that a game file names, for example in ``import`` and ``signals``."""
     functions = [function.module for function in (game.python, game.signals) if function]
     registering, colon, _ = (game.gymnasium or "").partition(":")

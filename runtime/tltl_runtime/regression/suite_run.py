@@ -275,6 +275,7 @@ def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
         [atom.name for atom in fspa.atoms],
         [label_text(fspa, state.id) for state in fspa.states],
         prepared.outdated,
+        prepared.level.game.installed_code(prepared.level),
     ]
     return inputs_hash(parts)
 

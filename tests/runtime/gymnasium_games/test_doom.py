@@ -19,7 +19,7 @@ from tltl_runtime.gymnasium_games.scene_env import make_scene_env
 
 # The folder of the package ViZDoom, if it is not among the installed packages.
 if folder := os.environ.get("VIZDOOM"):
-    sys.path.append(os.path.dirname(folder))
+    sys.path.append(str(Path(folder).parent))
 pytest.importorskip("vizdoom")
 
 Run = Callable[..., Outcome]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games import games
 from tests.runtime.regression.handmade import reference
 from tltl_runtime.game.level_name import Variant
+from tltl_runtime.gymnasium_games.game_file import read_game_file
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
+from tltl_runtime.gymnasium_games.installed_code import installed_code_hash, own_package_files
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv
 from tltl_runtime.regression.suite.suite import read_suite
 from tltl_runtime.regression.verdict.unnamed_changes import unnamed_changes
@@ -80,6 +83,44 @@ def test_a_variant_says_what_it_changes(folder: Path) -> None:
     games.write(folder, changed__game__toml=games.GAME.replace(own, variants))
     texts = [GAME.level_files.description("changed.game.toml:short", Variant(name)) for name in ("v0", "v1", "v2")]
     assert texts == ["", '`v1`: `length` = 6, was 4; `key` = "left"; also map.txt', ""]
+
+
+def test_edits_of_a_package_of_the_user_are_noticed(
+    tltlc: Run,  # noqa: F811
+    folder: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    package = tmp_path / "own_package"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "env.py").write_text(games.GRID)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    games.write(folder, packaged__game__toml=games.GAME.replace("corridor:", "own_package.env:"))
+    (folder / "packaged.toml").write_text(case("packaged.game.toml"))
+    assert tltlc("baseline", "packaged.toml", "--workers", "1").status in (0, 1)
+
+    def is_played(*options: str) -> bool:
+        result = tltlc("regress", "packaged.toml", "--workers", "1", *options)
+        return "(as before)" not in result.out and "short:v0" in result.out
+
+    assert [is_played(), is_played()] == [True, False]
+    (package / "env.py").write_text(f"{games.GRID}\n# edited\n")
+    assert [is_played(), is_played()] == [True, False]
+    assert [is_played("--changed", str(package / name)) for name in ("env.py", "__init__.py")] == [False, False]
+    chosen = tltlc("regress", "packaged.toml", "--workers", "1", "--changed", str(package / "env.py"))
+    assert "left out" not in chosen.err and "short:v0" in chosen.out
+
+
+def test_an_installed_package_counts_by_what_was_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    game = games.write(tmp_path, corridor__game__toml=games.GAME.replace("[game]", '[game]\nimport = ["click"]'))
+    before = installed_code_hash(read_game_file(game))
+    assert before and before == installed_code_hash(read_game_file(game))
+    assert not [*own_package_files(read_game_file(game))]
+    record = (distribution("click").read_text("RECORD") or "") + "click/other.py,sha256=0,0\n"
+    monkeypatch.setattr(type(distribution("click")), "read_text", lambda self, name: record)
+    assert installed_code_hash(read_game_file(game)) != before
+    assert installed_code_hash(read_game_file(games.write(tmp_path / "none"))) == ""
 
 
 @pytest.mark.parametrize(

@@ -205,7 +205,8 @@ def _films(
     """Return the films of a case; those in its ``folder``, if it was played and recorded in the same way before."""
     place = prepared.setup.level, prepared.setup.variant.text
     recordings = {index: folder / name for index, name in report.recordings if index in episodes}
-    inputs = films_hash([to_json(prepared.played), to_json(report.explanation)], place, recordings)
+    code = prepared.level.game.installed_code(prepared.level)
+    inputs = films_hash([to_json(prepared.played), to_json(report.explanation), code], place, recordings)
 
     def draw() -> CaseFilms:
         show = lambda count, total: outcome.on_film(report.name, count, total)  # noqa: E731

@@ -45,7 +45,9 @@ def kept_films(folder: Path, inputs: str, draw: Callable[[], CaseFilms]) -> Case
     kept = read_cache(_KeptFilms, folder / INDEX, inputs)
     if kept is not None:
         with suppress(OSError):
-            return CaseFilms({int(index): (folder / name).read_bytes() for index, name in kept.files.items()}, kept.notes)
+            return CaseFilms(
+                {int(index): (folder / name).read_bytes() for index, name in kept.files.items()}, kept.notes
+            )
     films = draw()
     if not films.may_change:
         files = {str(index): f"{index}{_SUFFIX}" for index in films.pictures}
