@@ -263,6 +263,11 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         del env
         return None
 
+    def runs_already(self, level: LevelT) -> bool:
+        """Return whether the game of a level was started by somebody else, who plays for one environment at a time."""
+        del level
+        return False
+
     def plays_at_once(self, env: gymnasium.Env[Any, Any]) -> bool:
         """Return whether several environments like this one can play at the same time; by default True."""
         del env

@@ -140,6 +140,11 @@ class GymnasiumGame(Game[SceneLevel, SceneEpisode]):
         outline = env.get_wrapper_attr("scene_outline")()
         return None if outline is None else outline.bounds
 
+    def runs_already(self, level: SceneLevel) -> bool:
+        """Return whether the game file says with ``connect`` where the game is running."""
+        wire = read_game_file(Path(split_scene(level.place)[0])).wire if level.place else None
+        return wire is not None and bool(wire.connect)
+
     def plays_at_once(self, env: gymnasium.Env[Any, Any]) -> bool:
         """Return whether the game file starts the game; a game that is running plays for one environment."""
         wire = env.get_wrapper_attr("game_file").wire

@@ -59,6 +59,29 @@ def test_a_running_game_refuses_to_play_for_several_environments(tltlc: Run, fol
     assert not fileio.exists(folder / "run" / "run.json")
 
 
+@pytest.mark.parametrize("envs", [1, 2])
+def test_nothing_connects_to_a_running_game_that_cannot_be_trained_in(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    envs: int,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "counter.tltl").write_text(SPEC)
+    scene = '[[scene]]\nname = "short"\nspec = "counter.tltl:count"\n'
+    # No game listens there: a connection would be another error.
+    (tmp_path / "counter.game.toml").write_text(f'[game]\nconnect = "127.0.0.1:{free_port()}"\n\n{scene}')
+    if envs == 1:
+        for name, value in {"RANK": 0, "WORLD_SIZE": 2, "LOCAL_RANK": 0, "LOCAL_WORLD_SIZE": 2}.items():
+            monkeypatch.setenv(name, str(value))
+    result = train(tltlc, tmp_path, envs)
+    assert result.status == 1
+    reason = "the training has 2" if envs == 2 else "torchrun has started 2 processes, each with its own"
+    title = "the game of `counter.game.toml:short` plays for one environment at a time, and"
+    assert f"error[TLT0862]: {title} {reason}\n" in result.err
+    assert not fileio.exists(tmp_path / "run" / "run.json")
+
+
 def test_a_policy_is_confirmed_in_the_running_game_in_which_it_was_trained(
     tltlc: Run,  # noqa: F811
     folder: Path,

@@ -17,6 +17,7 @@ from tltl_runtime.training.exploration.search_plan import (
 )
 from tltl_runtime.training.files.checkpoint import Checkpoint
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, resume_command
+from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api import Diagnostic, TltlError, record, replace
@@ -44,15 +45,12 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
     """Make an environment of the training, examine its spaces and its info, and close it.
 
     Raises:
-        TltlError: TLT0844, policies do not support its spaces; TLT0862, there are several environments,
-            and the game plays for one at a time; the errors of ``make_env`` and of the game, which may
+        TltlError: TLT0844, policies do not support its spaces; the errors of ``make_env`` and of the game, which may
             also be lost at each reset (WireError).
     """
     game, env = game_of(run.level), env_function(run)()
     try:
         plays_at_once = game.plays_at_once(env)
-        if not plays_at_once and run.settings.rollout.envs > 1:
-            raise _one_environment_error(run)
         layouts = space_layouts(env.observation_space, env.action_space, run.sensors)
         info = first_info(env, run.seed)
         plan = search_plan(env, game, has_cells="cell" in info) if run.settings.searches else None
@@ -62,11 +60,28 @@ def training_spaces(run: TrainingRun) -> TrainingSpaces:
     return TrainingSpaces(layouts, plan is not None and plan.obstacle is None, plan, wire, plays_at_once)
 
 
-def _one_environment_error(run: TrainingRun) -> TltlError:
-    envs = run.settings.rollout.envs
-    title = f"the game of `{run.level}` plays for one environment at a time, and the training has {envs}"
-    help_ = "set `envs = 1` under `[rollout]`, or write `process` in place of `connect`: then tltlc starts the game"
-    return TltlError([Diagnostic("TLT0862", title, help=help_)])
+def check_one_at_a_time(run: TrainingRun) -> None:
+    """Check that a game that is running already plays for one environment of one process alone.
+
+    Raises:
+        TltlError: TLT0862, the training has several environments, or torchrun has started several processes.
+    """
+    game, envs, processes = game_of(run.level), run.settings.rollout.envs, process_group().count
+    if (envs == 1 and processes == 1) or not game.runs_already(game.load_level(run.level, run.variant)):
+        return
+    title, help_ = (
+        f"the game of `{run.level}` plays for one environment at a time, and",
+        "set `envs = 1` under `[rollout]`",
+    )
+    if processes > 1:
+        title, help_ = (
+            f"{title} torchrun has started {processes} processes, each with its own",
+            "train without torchrun",
+        )
+    else:
+        title = f"{title} the training has {envs}"
+    help_ += ", or write `process` in place of `connect`: then tltlc starts the game"
+    raise TltlError([Diagnostic("TLT0862", title, help=help_)])
 
 
 def spaces_of(spaces: TrainingSpaces, checkpoint: Checkpoint | None) -> TrainingSpaces:
