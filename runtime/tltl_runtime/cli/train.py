@@ -213,19 +213,24 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     If the training is resumed without a checkpoint, it starts again. Then the last line says what
     happens to its files.
     """
+    from tltl_runtime.cli.support.training_text import limits_line
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
     place = place_title(run.level, run.variant.text)
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
+    yield limits_line(run.settings.stop)
     if run.initial and not (run.folder / CHECKPOINT).exists():
         count = run.settings.ppo.warm_up
         iterations = "iteration" if count == 1 else f"{count} iterations"
         critic_note = f"; its critic is new: only the critic learns in the first {iterations}" if count else ""
         yield f"it begins with the weights of {run.initial.path}{critic_note}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
-    if not resume or not files or (run.folder / CHECKPOINT).exists():
+    if not resume or (run.folder / CHECKPOINT).exists():
+        return
+    if not files:
+        yield f"it was interrupted before it learned anything: with no {CHECKPOINT}, it starts from its beginning"
         return
     fates = {
         METRICS: "its measurements are lost",

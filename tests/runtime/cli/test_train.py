@@ -173,8 +173,9 @@ def test_a_limit_that_has_already_passed_is_rejected(tltlc: TltlcFunction) -> No
 def test_without_a_checkpoint_a_training_starts_again(tltlc: TltlcFunction) -> None:  # noqa: F811
     Path("run/checkpoint.pt").unlink()
     result = tltlc("train", "--resume", "run", "--steps", "192")
-    assert result.err.splitlines()[:2] == [
+    assert result.err.splitlines()[:3] == [
         "training cover_and_hide on cover_and_hide:v0, seed 0, in run",
+        "it ends when the spec is met, at the latest after 192 steps",
         "there is no checkpoint.pt in run: the training starts again, its measurements are lost, "
         "and so is its record, and policy.safetensors stays until there is a new one",
     ]
@@ -243,11 +244,13 @@ def test_another_spec_with_the_same_name_is_rejected(tltlc: TltlcFunction) -> No
 def test_a_training_ends_when_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     result = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "runs/soon", "--no-map")
     assert result.status == 0, result.err
-    assert result.err.splitlines()[:2] == [
+    assert result.err.splitlines()[:4] == [
         "training soon on cover_and_hide:v0, seed 0, in runs/soon",
+        "it ends when the spec is met, at the latest after 128 steps",
+        "starting 4 environments in 1 process",
         "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume runs/soon",
     ]
-    assert result.err.count("\n") == 3
+    assert result.err.count("\n") == 5
     first, _, last = result.out.splitlines()
     assert re.fullmatch(r"the spec is met after 64 steps, \d+ s: met in 2 of the last 2 episodes, .*", first)
     assert last == "to evaluate it: tltlc evaluate runs/soon"
@@ -261,13 +264,34 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
     Path("search.toml").write_text(SMALL.replace("ways = 0", "ways = 2\nsteps = 640"))
     result = tltlc("train", "soon.tltl", "--config", "search.toml", "--out", "second")
     assert result.status in (0, 1), result.err
-    _, searched, lost, *lines = result.err.splitlines()
+    _, _, _, searched, lost, *lines = result.err.splitlines()
     assert searched == (
         "searching first for ways to meet the spec, with random actions. "
         "The search ends when 2 ways are found, at the latest after 640 steps."
     )
     assert lost == "Ctrl-C stops it; when you continue, an unfinished search starts again."
     assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume second" in lines
+
+
+def test_a_training_that_has_only_begun_is_explained(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    options = ("soon.tltl", "--config", "small.toml", "--out", "begun", "--no-map")
+    assert tltlc("train", *options).status == 0
+    for path in Path("begun").iterdir():
+        if path.is_file() and path.name != "run.json":
+            path.unlink()
+    again = tltlc("train", *options)
+    assert (again.status, again.err.splitlines()[-2:]) == (
+        1,
+        [
+            "error[TLT0867]: `begun` already contains a training, which was interrupted before it learned anything",
+            "  help: start this training again with `tltlc train --resume begun`; for another one, remove the folder, "
+            "or name another folder with --out",
+        ],
+    )
+    resumed = tltlc("train", "--resume", "begun")
+    assert resumed.status == 0, resumed.err
+    note = "it was interrupted before it learned anything: with no checkpoint.pt, it starts from its beginning"
+    assert note in resumed.err.splitlines()
 
 
 @pytest.mark.usefixtures("second")
@@ -277,6 +301,7 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F81
         1,
         "",
         "training soon on cover_and_hide:v0, seed 0, in second\n"
+        "it ends when the spec is met, at the latest after 128 steps\n"
         "error[TLT0867]: `second` already contains a training\n"
         "  help: continue it with `tltlc train --resume second`, or name another folder with --out\n",
     )
@@ -396,7 +421,7 @@ def test_a_settings_file_changes_only_the_settings_it_contains(
 def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> None:  # noqa: F811
     Path("far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
     result = interrupted("far.tltl", "--level", "navigation:v2", "--config", "small.toml")
-    first, warned = result.err.splitlines()[:2]
+    first, _, warned = result.err.splitlines()[:3]
     assert first == "training far on navigation:v2, seed 0, in training/navigation-v2-far-0"
     assert warned.startswith("warning[TLT0814]: nobody can reach `exit` in `navigation:v2`")
 
@@ -405,7 +430,7 @@ def test_an_unreachable_goal_is_reported_first(interrupted: TltlcFunction) -> No
 def test_a_level_file_beside_the_spec_is_preferred(tltlc: TltlcFunction, interrupted: TltlcFunction) -> None:  # noqa: F811
     assert tltlc("new", "mine", "--level", "vault").status == 0
     result = interrupted("mine/vault.tltl", "--config", "small.toml")
-    assert result.err.startswith("training unseen on vault.toml:v0, seed 0, in training/vault-v0-unseen-0\n")
+    assert result.err.startswith("training unseen on mine/vault.toml:v0, seed 0, in training/vault-v0-unseen-0\n")
     run = json.loads(Path("training/vault-v0-unseen-0/run.json").read_text())
     assert run["level"] == str(Path("mine/vault.toml").resolve())
 
@@ -448,7 +473,7 @@ def test_a_training_ended_by_a_signal_resumes(
         # An iteration steps 16 times; the signal arrives in the middle of the second one.
         signal_at_call(patch, Runner, "_step", getattr(signal, name), call=16 + 8)
         stopped = with_signals(*_arguments("--steps", "100000000"))
-    assert stopped.err.splitlines()[2].startswith("iteration 1: 64 steps in "), stopped.err
+    assert stopped.err.splitlines()[4].startswith("iteration 1: 64 steps in "), stopped.err
     _check_stopped(stopped.status, status, stopped.err)
     _check_resumed(tltlc, here / "run", done=1)
 
@@ -458,7 +483,7 @@ def test_a_training_ended_by_a_signal_resumes(
 def test_a_process_that_trains_ends_by_a_signal(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
     with _training(here, "--steps", "100000000") as process:
         assert process.stderr is not None
-        first = [process.stderr.readline() for _ in range(3)][-1]
+        first = [process.stderr.readline() for _ in range(5)][-1]
         assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
         process.send_signal(getattr(signal, name))
         _, err = process.communicate(timeout=HANG_S)
@@ -494,7 +519,7 @@ def test_a_killed_worker_is_reported(
     monkeypatch.setattr(Runner, "iterations", with_a_kill)
     result = tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run", "--steps", "100000000")
     assert result.status == 1
-    assert result.err.splitlines()[2].startswith("iteration 1: ")
+    assert result.err.splitlines()[4].startswith("iteration 1: ")
     assert "error[TLT0871]: the training was interrupted: worker 0 was killed by SIGKILL\n" in result.err
     assert "to go on from the last checkpoint: tltlc train --resume run" in result.err
     assert (here / "run" / "checkpoint.pt").is_file()

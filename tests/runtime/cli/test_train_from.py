@@ -45,8 +45,9 @@ def test_the_spec_the_sensors_and_the_network_come_from_the_policy(tltlc: TltlcF
     result = tltlc(*TRAIN_FROM, "--level", "cover_and_hide:v1")
     assert result.status == 0, result.err
     folder = Path("training/cover_and_hide-v1-soon-0-tuned")
-    assert result.err.splitlines()[:2] == [
+    assert result.err.splitlines()[:3] == [
         f"training soon on cover_and_hide:v1, seed 0, in {folder}",
+        "it ends when the spec is met, at the latest after 128 steps",
         "it begins with the weights of old.safetensors; "
         "its critic is new: only the critic learns in the first 5 iterations",
     ]

@@ -8,6 +8,9 @@ from tests.runtime.training.reports import a_report
 from tltl_runtime.cli.support.training_text import (
     confirmation_line,
     duration,
+    environments_line,
+    limits_line,
+    measuring_line,
     minutes,
     report_line,
     search_end,
@@ -19,6 +22,17 @@ from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.report import Confirmation
 from tltl_runtime.training.files.settings import Stop, read_settings
 from tltlc.core.record import replace
+
+
+def test_the_lines_before_a_training() -> None:
+    settings = read_settings()
+    stop, rollout = replace(settings.stop, steps=4_000_000), replace(settings.rollout, envs=16, workers=2)
+    assert limits_line(stop) == "it ends when the spec is met, at the latest after 4,000,000 steps"
+    assert limits_line(replace(stop, minutes=1.0)).endswith("after 4,000,000 steps or 1 minute, whichever comes first")
+    assert environments_line(replace(settings, rollout=rollout)) == "starting 16 environments in 2 processes"
+    one = replace(settings, rollout=replace(rollout, envs=1))
+    assert environments_line(one) == "starting 1 environment in 1 process"
+    assert measuring_line(searches=True).endswith(", and playing it twice for 200 steps, to see whether it repeats")
 
 
 @pytest.fixture(scope="module")

@@ -79,7 +79,12 @@ def _trained(folder: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> Path:
         options = ("--steps", "192", "--config", "settings.toml", "--out", "run")
         result = tltlc("train", "--game", "corridor.game.toml:short", *options)
         assert result.status == 1, result.err
-        assert "training fetch on corridor.game.toml:short:v0, seed 0, in run" in result.err
+        assert result.err.splitlines()[:4] == [
+            "training fetch on corridor.game.toml:short:v0, seed 0, in run",
+            "it ends when the spec is met, at the latest after 192 steps",
+            "starting the game once, to see what it observes and does",
+            "starting 4 environments in 1 process",
+        ]
     return folder
 
 

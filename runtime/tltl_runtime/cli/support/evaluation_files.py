@@ -198,7 +198,7 @@ class EvaluationFiles:
         """Yield the name and the content of each picture of trajectories."""
         for sampled, trajectories in self._trajectories.items():
             if trajectories and self._game.pictures:
-                title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
+                title = f"{self._level.name}:{self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
                 picture = self._game.pictures.trajectories(self._level, self._setup.fspa, trajectories, title)
                 yield _PICTURES[sampled], picture
 
@@ -212,7 +212,7 @@ class EvaluationFiles:
             return ""
         if (level.name, level.variant) == (card.level, card.variant):
             return "note: the level has changed since the policy was trained on it\n"
-        return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
+        return f"note: the policy was trained on another level, {card.level}:{card.variant}\n"
 
     def _remove_older(self, folder: Path) -> tuple[str, ...]:
         """Remove the pictures and the report of an earlier evaluation; return the names of removed files.

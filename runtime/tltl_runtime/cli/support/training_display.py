@@ -17,6 +17,8 @@ from tltl_runtime.cli.support.training_text import (
     SEARCHED_AGAIN,
     demonstrations_line,
     dropped_line,
+    environments_line,
+    measuring_line,
     plan_line,
     recording_line,
     report_line,
@@ -36,6 +38,12 @@ _SECONDS_BETWEEN_LINES: Final = 10.0
 
 class Display(Protocol):
     """Shows the progress of a training."""
+
+    def show_measuring(self, *, searches: bool) -> None:
+        """Show that the game is started and tried; for a search, this takes longer."""
+
+    def show_start(self) -> None:
+        """Show that the environments are started."""
 
     def show_plan(self, plan: SearchPlan) -> None:
         """Show how the game is searched for ways to meet the spec, or why it is not."""
@@ -71,6 +79,12 @@ def display(run: TrainingRun, again: str) -> Iterator[Display]:
 
 
 class _NoDisplay:
+    def show_measuring(self, *, searches: bool) -> None:
+        pass
+
+    def show_start(self) -> None:
+        pass
+
     def show_plan(self, plan: SearchPlan) -> None:
         pass
 
@@ -91,6 +105,12 @@ class _LineDisplay:
         self._run, self._again = run, again
         self._next = 0.0
         self._has_searched = self._has_trained = False
+
+    def show_measuring(self, *, searches: bool) -> None:
+        print(measuring_line(searches=searches), file=sys.stderr, flush=True)
+
+    def show_start(self) -> None:
+        print(environments_line(self._run.settings), file=sys.stderr, flush=True)
 
     def show_plan(self, plan: SearchPlan) -> None:
         if text := plan_line(plan):

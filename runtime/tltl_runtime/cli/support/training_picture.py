@@ -17,6 +17,8 @@ from tltl_runtime.cli.support.training_text import (
     confirmation_line,
     demonstrations_line,
     dropped_line,
+    environments_line,
+    measuring_line,
     plan_line,
     rate,
     recording_line,
@@ -55,13 +57,21 @@ class TrainingDisplay:
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
         self._report: TrainingReport | None = None
-        self._plan = ""
+        self._plan = self._stage = ""
         self._search: SearchProgress | None = None
         self._attempt: Attempt | None = None
         self._confirmation = ""
         self._report_time = time.monotonic()
         self._checkpoint: float | None = None
         self._resumed = (run.folder / CHECKPOINT).exists()
+
+    def show_measuring(self, *, searches: bool) -> None:
+        """Store that the game is started and tried."""
+        self._stage = measuring_line(searches=searches)
+
+    def show_start(self) -> None:
+        """Store that the environments are started."""
+        self._stage = environments_line(self._run.settings)
 
     def show_plan(self, plan: SearchPlan) -> None:
         """Store how the game is searched, or why it is not."""
@@ -106,7 +116,7 @@ class TrainingDisplay:
         if attempt := self._attempt:
             return Text(recording_line(attempt, self._run.settings.imitation.demonstrations))
         if searched is None:
-            return Text("\n\n".join(filter(None, (self._plan, "playing the first steps …"))))
+            return Text("\n\n".join(filter(None, (self._plan, self._stage or "playing the first steps …"))))
         count = len(searched.lengths)
         table = _grid(bar)
         required = f"of at least {exploration.ways}"

@@ -25,7 +25,9 @@ def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> Trainin
         training = train(
             run,
             resume=resume,
+            on_measuring=progress.show_measuring,
             on_plan=progress.show_plan,
+            on_start=progress.show_start,
             on_search=progress.show_search,
             on_attempt=progress.show_attempt,
         )

@@ -6,9 +6,9 @@ from typing import Final
 
 from tltl_runtime.support.number_text import duration, number, share
 from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings
-from tltl_runtime.training.exploration.search_plan import SearchPlan, obstacle_text
+from tltl_runtime.training.exploration.search_plan import MEASURED_STEPS, SearchPlan, obstacle_text
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
-from tltl_runtime.training.files.settings import Stop
+from tltl_runtime.training.files.settings import Stop, TrainingSettings
 from tltl_runtime.training.imitation.demonstrations import Attempt, ImitationSummary
 
 SEARCH_IS_LOST: Final = "Ctrl-C stops it; when you continue, an unfinished search starts again."
@@ -34,6 +34,32 @@ def report_line(report: TrainingReport, stop: Stop) -> str:
     if not report.stop:
         parts.append(f"at most {duration(seconds_left(report, stop))} left")
     return ", ".join(parts)
+
+
+def limits_line(stop: Stop) -> str:
+    """Say in one line when a training ends at the latest."""
+    limit = f"after {stop.steps:,} steps"
+    if stop.minutes:
+        limit += f" or {minutes(stop.minutes)}, whichever comes first"
+    return f"it ends when the spec is met, at the latest {limit}"
+
+
+def measuring_line(*, searches: bool) -> str:
+    """Say in one line that the game is started and tried, which comes before everything else."""
+    tries = "starting the game once, to see what it observes and does"
+    return f"{tries}, and playing it twice for {MEASURED_STEPS} steps, to see whether it repeats" if searches else tries
+
+
+def environments_line(settings: TrainingSettings) -> str:
+    """Say in one line that the environments of a training are started."""
+    envs, workers = settings.rollout.envs, settings.rollout.workers
+    games = "1 environment" if envs == 1 else f"{envs:,} environments"
+    from tltl_runtime.training.ppo.distributed import cores  # it imports torch, which takes seconds
+
+    if settings.rollout.pool == "ray":
+        return f"starting {games} in a Ray cluster"
+    count = min(workers or cores(), envs)
+    return f"starting {games} in {count} process{'es' * (count != 1)}"
 
 
 def recording_line(attempt: Attempt, requested: int) -> str:

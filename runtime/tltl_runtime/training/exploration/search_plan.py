@@ -37,7 +37,7 @@ THE_END: Final = "the end"
 THE_OBSERVATION: Final = "the observation"
 
 _SEED: Final = 1
-_STEPS: Final = 200
+MEASURED_STEPS: Final = 200
 """The steps of a play, as in ``tltlc check --game``."""
 _REPEAT_PROBABILITY: Final = 0.7
 """The probability that an action is that of the step before, so that the player gets around."""
@@ -166,7 +166,7 @@ def _measured(env: TltlEnv, game: Game[Any, Any], *, has_cells: bool) -> SearchP
     return SearchPlan("signals", grid, snapshots, obstacle)
 
 
-def _actions(env: gymnasium.Env[Any, Any], seed: int = _SEED, count: int = _STEPS) -> list[Any]:
+def _actions(env: gymnasium.Env[Any, Any], seed: int = _SEED, count: int = MEASURED_STEPS) -> list[Any]:
     space, random = deepcopy(env.action_space), np.random.default_rng(seed)
     space.seed(seed)
     actions = [space.sample()]

@@ -26,6 +26,7 @@ from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurricul
 from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress
 from tltl_runtime.training.exploration.self_imitation import SelfImitation
 from tltl_runtime.training.files.checkpoint import Checkpoint, checkpoint_error, level_changed_error, read_checkpoint
+from tltl_runtime.training.files.metrics import METRICS
 from tltl_runtime.training.files.run_file import (
     CHECKPOINT,
     RUN,
@@ -78,6 +79,12 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
     if (run.folder / RUN).exists():
         title = f"`{run.folder}` already contains a training"
         help_ = f"continue it with `{resume_command(run.folder)}`, or name another folder with --out"
+        if not (run.folder / CHECKPOINT).exists() and not (run.folder / METRICS).exists():
+            title += ", which was interrupted before it learned anything"
+            help_ = (
+                f"start this training again with `{resume_command(run.folder)}`; for another one, remove the folder, "
+                "or name another folder with --out"
+            )
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
     write_run(run)
     return None

@@ -9,6 +9,7 @@ from contextlib import ExitStack, closing
 import torch
 from rsl_rl.algorithms import PPO
 
+from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.compatibility import check_spaces
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.support.record_json import RecordJsonError
@@ -39,7 +40,13 @@ from tltl_runtime.training.run.preparation import (
 )
 from tltl_runtime.training.run.process_exchange import gather_iteration, process_state, set_generators
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_after_standstill
-from tltl_runtime.training.run.spaces import TrainingSpaces, check_search, spaces_of, training_spaces
+from tltl_runtime.training.run.spaces import (
+    TrainingSpaces,
+    check_one_at_a_time,
+    check_search,
+    spaces_of,
+    training_spaces,
+)
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.wire.lost_episodes import LostEpisodes, together
@@ -52,7 +59,9 @@ def train(
     resume: bool = False,
     on_search: SearchCallback = lambda searched: None,
     on_attempt: Callable[[Attempt], None] = lambda attempt: None,
+    on_measuring: Callable[..., None] = lambda *, searches: None,
     on_plan: Callable[[SearchPlan], None] = lambda plan: None,
+    on_start: Callable[[], None] = lambda: None,
 ) -> Generator[TrainingReport]:
     """Train in ``run.folder``; yield a report after each iteration.
 
@@ -65,7 +74,9 @@ def train(
     the checkpoint; a training that is over yields its last report again.
 
     First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
-    progress. ``on_plan`` is called before, with how the game is searched, or why it is not. If the
+    progress. ``on_plan`` is called before, with how the game is searched, or why it is not. ``on_measuring``
+    is called before the game is played to find that out; it says with ``searches`` whether the training
+    wants a search. ``on_start`` is called before the environments are started. If the
     training begins with a policy, that policy plays first in the search. With imitation, there is
     no search. If no demonstrations are given, demonstrations of the expert are recorded first;
     ``on_attempt`` is called with each attempt.
@@ -92,6 +103,9 @@ def train(
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
     # A new training writes nothing if it cannot begin. A resumed one first checks that nothing has changed.
+    check_one_at_a_time(run)
+    if not game_of(run.level).promises_replays:
+        on_measuring(searches=run.settings.searches)
     spaces = None if resume else _checked_spaces(run)
     with ExitStack() as stack:
         group, device = stack.enter_context(join_process_group(device_of(run.settings.device)))
@@ -108,6 +122,7 @@ def train(
             on_plan(spaces.plan)
         imitation_data = load_imitation_data(run, group, spaces, on_attempt)
         initial = initial_policy(run, group, checkpoint)
+        on_start()
         vector_env = stack.enter_context(closing(make_environments(run, spaces)))
         if initial:
             check_spaces(initial.card, vector_env.single_observation_space, vector_env.single_action_space)
