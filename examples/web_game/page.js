@@ -61,6 +61,8 @@ function playByHand() {
     before = structuredClone(game.now);
     monitor.reset();
     recorder.begin("yard", "v0", seed);
+    // Saving ends a trace: only a whole ride can be saved.
+    element("save").disabled = true;
     start = performance.now();
     askAgent();
   }

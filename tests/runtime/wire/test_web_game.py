@@ -197,6 +197,9 @@ def test_a_person_plays_the_page_and_saves_the_ride(tltlc: Run, tmp_path: Path) 
             page.click("#save")
         for download in downloads:
             download.save_as(tmp_path / download.suggested_filename)
+        # In the next ride, nothing can be saved that would divide its trace in two.
+        page.keyboard.press("ArrowRight")
+        assert page.is_disabled("#save")
         assert errors == []
     names = [download.suggested_filename for download in downloads]
     assert names == ["courier-trace-0001.csv", "courier-trace-0001.tape.jsonl"]
