@@ -48,7 +48,7 @@ def test_the_label_of_a_value_is_its_key_however_it_is_quoted(key: str, name: st
         ("a = 3", "a"),
         ('a = """b"""', "a"),
         ("a = ['b']", "a"),
-        ('a = { b = "c" }', "a"),
+        ('a = { b = "c" }', '"c"'),
     ],
 )
 def test_a_text_in_one_line_has_a_label_of_its_own(line: str, text: str) -> None:
@@ -57,3 +57,24 @@ def test_a_text_in_one_line_has_a_label_of_its_own(line: str, text: str) -> None
         entry = entry.value["b"]
     label = value_label(entry.label)
     assert label.source.text[label.span.start : label.span.end] == text
+
+
+def test_a_key_in_an_inline_table_has_its_own_label() -> None:
+    lines = [
+        'a = { b = { c = 1, "d e" = "}, x = 2" }, f.g = [1, { h = 3 }], i = { } }',
+        "j = [{ k = 1 }, { k = 2, l = [",
+        "  # no key",
+        "  { m = 'x' }, 3,",
+        "] }]",
+        "n = 1979-05-27T07:32:00Z",
+        "[o]",
+        "p = { q = '''}''', r = 1 }",
+    ]
+    tree = read_tree(SourceFile("it.toml", "\n".join(lines)))
+    labels = [entry["k"].label for entry in (item.value for item in tree["j"].value)]
+    assert [(label.source.text[label.span.start : label.span.end], label.span.start) for label in labels] == [
+        ("k", len(lines[0]) + 1 + lines[1].index("k")),
+        ("k", len(lines[0]) + 1 + lines[1].rindex("k")),
+    ]
+    names = {"a": "a", "b": "b", "c": "c", "d e": '"d e"', "f": "f.g", "g": "f.g", "i": "i", "j": "j", "n": "n"}
+    assert texts_of(tree) == {**names, "o": "o", "p": "p", "q": "q", "r": "r"}

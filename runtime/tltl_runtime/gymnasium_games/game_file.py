@@ -19,7 +19,7 @@ from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
 from tltl_runtime.support.toml_tree import Entry, read_tree, value_label
 from tltl_runtime.wire.wire_game import PROTOCOLS, START_S, STEP_S, TLTL, WireGame, address
-from tltlc.api import Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
+from tltlc.api import EMPTY, Diagnostic, Label, SourceFile, Span, TltlError, fileio, record, replace, specs
 
 SUFFIX: Final = ".game.toml"
 FIRST_VARIANT: Final = "v0"
@@ -57,12 +57,14 @@ class SceneVariant:
     ``options`` are the keyword arguments with which the environment is made. ``files`` are the files
     that the scene depends on. ``spec`` is the spec that the scene is made for; None if there is
     none. ``label`` is the place of the options in the game file; without options, that of the scene.
+    ``option_labels`` are the places of the options.
     """
 
     options: Mapping[str, Any]
     files: tuple[Path, ...]
     spec: LevelSpec | None
     label: Label
+    option_labels: Mapping[str, Label] = EMPTY
 
 
 @record
@@ -274,6 +276,10 @@ class _Reader:
             files=tuple(dict.fromkeys((*base.files, *(file for file in files if file is not None)))),
             spec=self._spec(table) or base.spec,
             label=table.label_of("options"),
+            option_labels={
+                **base.option_labels,
+                **({key: entry.label for key, entry in options.entries.items()} if options else {}),
+            },
         )
 
     def _spec(self, table: CheckedTable) -> LevelSpec | None:

@@ -45,7 +45,8 @@ def env_in_process(
     if given:
         title = f"a game in another process takes no option `{next(iter(given))}`"
         help_ = "leave it out: the game gets the names of the scene and of the variant"
-        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
+        label = own.option_labels.get(next(iter(given)), own.label)
+        raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
     # A game file that names no scenes means the first one of the game.
     named = scene if game.has_scenes else None
     try:
@@ -91,7 +92,7 @@ def _parameter(key: str, value: Any, own: SceneVariant) -> float:
             f"the environment parameter `{key}` must be a number",
             "ML-Agents has parameters of no other type",
         )
-        raise TltlError([Diagnostic("TLT0803", title, (own.label,), help_)])
+        raise TltlError([Diagnostic("TLT0803", title, (own.option_labels.get(key, own.label),), help_)])
     return float(value)
 
 

@@ -335,7 +335,8 @@ def _check_options(
     if unknown:
         title = f"{what} takes no option `{unknown[0]}`"
         help_ = suggestion(unknown[0], names) if names else "leave it out"
-        raise TltlError([Diagnostic(CANNOT_START, title, (own.label,), help_)])
+        label = own.option_labels.get(unknown[0], own.label)
+        raise TltlError([Diagnostic(CANNOT_START, title, (label,), help_)])
 
 
 def _check_offers(game: GameFile, env: gymnasium.Env[Any, Any], own: SceneVariant) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final, TypeVar
 
-from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, suggestion
+from tltl_runtime.support.suggestion import MOST_SUGGESTIONS, similar_name, suggestion
 from tltl_runtime.support.toml_tree import Entry, Tree
 from tltlc.api import EMPTY, Diagnostic, Label
 
@@ -112,14 +112,21 @@ class CheckedTable:
         """Add a diagnostic (TLT0802) to ``log`` for each key that no method has read.
 
         ``elsewhere`` maps keys of other tables to the names of those tables. If this table has such
-        a key, the help says to which table the key belongs.
+        a key, or a more similar one than this table, the help says to which table the key belongs.
         """
         known = dict.fromkeys(self._read_keys)
         for key, entry in self.entries.items():
             if key not in known:
-                hint = suggestion(key, known) if len(self.log) < MOST_SUGGESTIONS else None
-                help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else hint
+                help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else self._hint(key, known, elsewhere)
                 self.log.append(Diagnostic("TLT0802", f"{self.description} has no key `{key}`", (entry.label,), help_))
+
+    def _hint(self, key: str, known: Mapping[str, Any], elsewhere: Mapping[str, str]) -> str | None:
+        if len(self.log) >= MOST_SUGGESTIONS:
+            return None
+        close = similar_name(key, [*known, *elsewhere])
+        if close is None or close in known:
+            return suggestion(key, known)
+        return f"did you mean `{close}`, a key of `{elsewhere[close]}`?"
 
     def _read(
         self,

@@ -16,6 +16,13 @@ _LONGEST: Final = 100
 """For a name longer than this, in characters, no similar name is searched, because that takes too long."""
 
 
+def similar_name(name: str, known: Iterable[str]) -> str | None:
+    """Return the most similar name of ``known``; None if there is none."""
+    names = list(known)
+    close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
+    return next(iter(close or [candidate for candidate in names if candidate.lower() == name.lower()]), None)
+
+
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
     """Return a hint for an unknown name, with a similar name of ``known``, or else with all of them.
 
@@ -23,10 +30,9 @@ def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> st
     replaces the list of all names.
     """
     names = list(known)
-    close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
-    close = close or [candidate for candidate in names if candidate.lower() == name.lower()]
-    if close:
-        return f"did you mean `{close[0]}`?"
+    close = similar_name(name, names)
+    if close is not None:
+        return f"did you mean `{close}`?"
     if listed is not None:
         return f"there are: {listed}"
     return "there are: " + ", ".join(f"`{candidate}`" for candidate in names) if names else "there are none"

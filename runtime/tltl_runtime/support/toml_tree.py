@@ -16,6 +16,10 @@ _KEY: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
 _DOTTED: Final = re.compile(rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*")
 _BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
 _TEXT_VALUE: Final = re.compile(r"[ \t]*=[ \t]*(\"(?!\"\")(?:\\.|[^\"\\\n])*\"|'(?!'')[^'\n]*')")
+_SCALAR: Final = re.compile(
+    r"\"\"\"(?:\\.|(?!\"\"\")[^\\])*\"{3,5}|'''(?:(?!''').)*'{3,5}|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*'|[^\n,#\]}]*",
+    re.DOTALL,
+)
 _VALUE_PART: Final = re.compile(
     r"\"\"\"(?:\\.|(?!\"\"\")[^\\])*\"{3,5}|'''(?:(?!''').)*'{3,5}|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*'|#[^\n]*|[\[\]{}\n]|.",
     re.DOTALL,
@@ -39,8 +43,6 @@ Tree = dict[str, Entry]
 
 def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> Tree:
     """Parse a TOML text; return its top-level table, with a label for every value.
-
-    The label of a value inside an inline table is that of the key before the table.
 
     Raises:
         TltlError: the error ``code``, with the help ``help_``, if the text is not TOML; TLT0006 if
@@ -102,8 +104,41 @@ def _key_spans(text: str) -> dict[tuple[str | int, ...], Span]:
             table = path
             position = text.find("]", end) + brackets
         else:
-            position = _value_end(text, text.index("=", end) + 1)
+            begin = text.index("=", end) + 1
+            position = _value_end(text, begin)
+            if "{" in text[begin:position]:
+                _inline_spans(text, begin, path, spans)
     return spans
+
+
+def _inline_spans(
+    text: str, position: int, path: tuple[str | int, ...], spans: dict[tuple[str | int, ...], Span]
+) -> int:
+    """Add the spans of the keys in the inline tables of the value at ``position``; return where the value ends.
+
+    ``path`` is the path of the value. Items of a list have the paths ``(*path, 0)``, ``(*path, 1)`` and so on.
+    """
+    position = _end(_BLANK, text, position)
+    opening = text[position : position + 1]
+    if opening not in ("{", "["):
+        return _end(_SCALAR, text, position)
+    position, number = _end(_BLANK, text, position + 1), 0
+    while position < len(text) and text[position] not in "}]":
+        before = position
+        if opening == "{":
+            end = _end(_DOTTED, text, position)
+            own = _dotted_path(text[position:end], path, {})
+            for length in range(len(path) + 1, len(own) + 1):
+                spans.setdefault(own[:length], Span(position, end))
+            position = _end(_BLANK, text, end) + 1
+        else:
+            own = (*path, number)
+            number += 1
+        position = _end(_BLANK, text, _inline_spans(text, position, own, spans))
+        position = _end(_BLANK, text, position + (text[position : position + 1] == ","))
+        if position <= before:
+            break
+    return position + 1
 
 
 def _dotted_path(

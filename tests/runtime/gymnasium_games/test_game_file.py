@@ -109,6 +109,28 @@ name = "twice"
     assert message.count("error[") == message.count("\n  corridor.game.toml:")
 
 
+def test_a_misspelt_key_is_labelled_where_it_stands(folder: Path) -> None:
+    message = errors_of(
+        folder,
+        """\
+[game]
+gymnasium = "A-v0"
+optoins = { size = 4 }
+
+[[scene]]
+name = "x"
+signls = "a:b"
+variants = { v1 = { optins = { size = 3 } } }
+""",
+    )
+    for place, help_ in (
+        ("3:1", "did you mean `options`, a key of `[[scene]]`?"),
+        ("7:1", "did you mean `signals`, a key of `[game]`?"),
+        ("8:21", "did you mean `options`?"),
+    ):
+        assert f"corridor.game.toml:{place}\n" in message and help_ in message
+
+
 def test_a_file_without_a_game_is_an_error(folder: Path) -> None:
     assert "the game file lacks `game`" in errors_of(folder, '[[scene]]\nname = "a"\n')
     assert "`[game]` does not say how the environment is made" in errors_of(folder, "[game]\n")

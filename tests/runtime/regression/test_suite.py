@@ -187,7 +187,38 @@ def test_the_help_for_a_missing_policy_lists_files_beside_the_suite(tmp_path: Pa
     (tmp_path / "mine.safetensors").touch()
     ((code, title, help_),) = refused(tmp_path, 'level = "navigation"\npolicy = "mine"')
     assert (code, title) == ("TLT0805", "there is no policy `mine`")
-    assert help_ == "there are: `branching`, `cover_and_hide`, `navigation`, `mine.safetensors`"
+    assert help_ == "there are: `mine.safetensors`, `branching`, `cover_and_hide`, `navigation`"
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("trianing/lake", "training/lake"),
+        ("training/laek/policy.safetensors", "training/lake/policy.safetensors"),
+        ("old/mien.safetensors", "old/mine.safetensors"),
+        ("old/deep/er/still/x.safetensor", "old/deep/er/still/x.safetensors"),
+        ("navigatoin", "navigation"),
+    ],
+)
+def test_the_nearest_policy_is_suggested(tmp_path: Path, name: str, meant: str) -> None:
+    for file in ("training/lake/policy.safetensors", "old/mine.safetensors", "old/deep/er/still/x.safetensors"):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).touch()
+    ((code, _, help_),) = refused(tmp_path, f'level = "navigation"\npolicy = "{name}"')
+    assert (code, help_) == ("TLT0805", f"did you mean `{meant}`?")
+
+
+def test_a_misspelt_key_of_another_table_is_found(tmp_path: Path) -> None:
+    (tmp_path / "suite.toml").write_text(
+        'pass_rat = 0.9\npolicy = "x"\n[[case]]\nlevel = "navigation"\nfail_rate = 0.1\n'
+    )
+    with pytest.raises(TltlError) as caught:
+        read_suite(tmp_path / "suite.toml")
+    assert [diagnostic.help for diagnostic in caught.value.diagnostics] == [
+        "it is a key of `[thresholds]`",
+        "did you mean `pass_rate`, a key of `[thresholds]`?",
+        "it is a key of `[[case]]`",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,11 @@ from typing import Final
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import is_scene
 from tltl_runtime.game.registry import game_of
-from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.file import SUFFIX, read_policy
 from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.spec.task import read_spec
 from tltl_runtime.support.number_text import short_list
+from tltl_runtime.support.suggestion import similar_name, suggestion
 from tltlc.api import Diagnostic, Label, TltlError, fileio, replace
 
 _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
@@ -79,6 +80,30 @@ def similar_level(name: str, folder: Path) -> str | None:
         names = [(Path(name).parent / path.name).as_posix() for path in files]
     matches = get_close_matches(name, (*names, *game_of(name).level_files.names()), n=1)
     return f"did you mean `{matches[0]}`?" if matches else None
+
+
+def similar_policy(name: str, folder: Path, otherwise: str | None = None) -> str:
+    """Return a hint for a policy that a suite in ``folder`` names and that does not exist.
+
+    The hint has a similar name, or else it is ``otherwise``; without ``otherwise``, it has all names. Candidates are the policies of the package, and those up to
+    two folders below ``folder`` or beside ``name``; that of a training has the name of its folder.
+    """
+    files: list[str] = []
+    # The name may not be a valid path on this system.
+    with suppress(OSError, ValueError):
+        for depth in ("*", "*/*", "*/*/*"):
+            files += sorted(path.relative_to(folder).as_posix() for path in folder.glob(f"{depth}{SUFFIX}"))
+        beside = Path(name).parent
+        files += sorted((beside / path.name).as_posix() for path in (folder / beside).glob(f"*{SUFFIX}"))
+    from tltl_runtime.training.files.run_file import POLICY
+
+    trainings = [path.rpartition("/")[0] for path in files if path.endswith(f"/{POLICY}")]
+    names = dict.fromkeys((*trainings, *files))
+    known = [known for known in names if name.endswith(SUFFIX) or not known.endswith(f"/{POLICY}")]
+    known += shipped_policies()
+    if otherwise is not None and similar_name(name, known) is None:
+        return otherwise
+    return suggestion(name, known, short_list([f"`{path}`" for path in known], _MOST_NAMED))
 
 
 def _is_level(path: Path) -> bool:

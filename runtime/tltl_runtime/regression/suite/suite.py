@@ -23,12 +23,12 @@ from tltl_runtime.game.level_name import (
 )
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
-from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import (
     level_with_fitting_policy,
     policy_diagnostics,
     similar_level,
+    similar_policy,
     spec_diagnostics,
 )
 from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
@@ -36,7 +36,7 @@ from tltl_runtime.regression.suite.trace_case import TraceCase, read_trace_case
 from tltl_runtime.support.checked_table import CheckedTable
 from tltl_runtime.support.path_text import path_text
 from tltl_runtime.support.suggestion import suggestion
-from tltl_runtime.support.toml_tree import Entry, read_tree
+from tltl_runtime.support.toml_tree import Entry, read_tree, value_label
 from tltlc.api import Diagnostic, Label, Span, TltlError, fileio, record
 
 SHIPPED: Final = Path(__file__).with_name("shipped") / "suite.toml"
@@ -55,6 +55,8 @@ DEFAULT_ERROR: Final = 0.05
 """The allowed probability of a wrong verdict in a suite that does not set its own ``error``."""
 
 _MAX_EPISODES: Final = 10_000
+_CASE_KEYS: Final = ("level", "game", "scene", "variant", "overlay", "reference", "spec", "policy", "traces", "name")
+_OF_THRESHOLDS: Final = dict.fromkeys(Thresholds.__match_args__, "[thresholds]")
 _HELP: Final = 'write values as in `episodes = 100`, and texts as in `level = "navigation"`'
 
 
@@ -168,7 +170,7 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
             cases.append(read_trace_case(case_table, path.parent, thresholds))
         else:
             cases.append(_case(case_table, path.parent, episodes, thresholds, known_variants))
-    table.report_unknown_keys()
+    table.report_unknown_keys({**dict.fromkeys(_CASE_KEYS, "[[case]]"), **_OF_THRESHOLDS})
     if not cases and not log:
         log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "write one, under `[[case]]`"))
     labels: dict[str, Label] = {}
@@ -216,7 +218,7 @@ def _case(
     episodes, thresholds = _episodes(table, episodes), read_thresholds(table, thresholds)
     name = table.text("name", "")
     policy = _policy(table, folder, level)
-    table.report_unknown_keys()
+    table.report_unknown_keys(_OF_THRESHOLDS)
     if len(table.log) > before or policy is None:
         return None
     variant_names = _variants(table, level, known_variants)
@@ -383,13 +385,11 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return shipped
     path = folder / name
-    if not fileio.exists(path) and is_scene(level):
-        train = f"tltlc train --game {quote(level)} --out {quote(str(path))}"
-        help_ = f"train it: `{train}`; paths are relative to the suite"
-        table.log.append(Diagnostic("TLT0805", f"there is no policy `{name}`", (table.label_of("policy"),), help_))
-    elif not fileio.exists(path):
-        candidates = (*shipped_policies(), *sorted(file.name for file in folder.glob(f"*{SUFFIX}")))
-        table.log.append(_missing_file_error("policy", name, table.label_of("policy"), candidates))
+    if not fileio.exists(path):
+        train = f"train it: `tltlc train --game {quote(level)} --out {quote(str(path))}`; paths are relative to the suite"
+        help_ = similar_policy(name, folder, train if is_scene(level) else None)
+        label = value_label(table.label_of("policy"))
+        table.log.append(Diagnostic("TLT0805", f"there is no policy `{name}`", (label,), help_))
     else:
         table.log += policy_diagnostics(path, table.label_of("policy"))
     return path
@@ -399,6 +399,7 @@ def _episodes(table: CheckedTable, default: int) -> int:
     return table.whole("episodes", default, low=LEAST_EPISODES, high=_MAX_EPISODES)
 
 
-def _missing_file_error(kind: str, name: str, label: Label, candidates: tuple[str, ...] = ()) -> Diagnostic:
-    help_ = suggestion(name, candidates) if candidates else "paths are relative to the suite"
-    return Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), help_)
+def _missing_file_error(kind: str, name: str, label: Label) -> Diagnostic:
+    return Diagnostic(
+        "TLT0805", f"there is no {kind} `{name}`", (value_label(label),), "paths are relative to the suite"
+    )
