@@ -85,8 +85,9 @@ def similar_level(name: str, folder: Path) -> str | None:
 def similar_policy(name: str, folder: Path, otherwise: str | None = None) -> str:
     """Return a hint for a policy that a suite in ``folder`` names and that does not exist.
 
-    The hint has a similar name, or else it is ``otherwise``; without ``otherwise``, it has all names. Candidates are the policies of the package, and those up to
-    two folders below ``folder`` or beside ``name``; that of a training has the name of its folder.
+    The hint has a similar name, or else it is ``otherwise``; without ``otherwise``, it has all names.
+    Candidates are the policies of the package, and those up to two folders below ``folder`` or beside
+    ``name``; that of a training has the name of its folder.
     """
     files: list[str] = []
     # The name may not be a valid path on this system.

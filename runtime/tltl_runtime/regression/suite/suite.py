@@ -386,8 +386,9 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
         return shipped
     path = folder / name
     if not fileio.exists(path):
-        train = f"train it: `tltlc train --game {quote(level)} --out {quote(str(path))}`; paths are relative to the suite"
-        help_ = similar_policy(name, folder, train if is_scene(level) else None)
+        train = f"tltlc train --game {quote(level)} --out {quote(str(path))}"
+        untrained = f"train it: `{train}`; paths are relative to the suite" if is_scene(level) else None
+        help_ = similar_policy(name, folder, untrained)
         label = value_label(table.label_of("policy"))
         table.log.append(Diagnostic("TLT0805", f"there is no policy `{name}`", (label,), help_))
     else:
