@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from tltlc.api import Diagnostic, TltlError
 
 NOT_STARTED = "TLT0790"
@@ -34,7 +36,8 @@ class GameGoneError(Exception):
     """Raised if a game has closed its connection."""
 
 
-def wire_error(code: str, title: str, help_: str, last_lines: str = "") -> WireError:
-    """Return an error; ``last_lines`` are the last lines of the game's standard error, empty if unknown."""
-    shown = f"the game's standard error ends:\n{last_lines}\n{help_}" if last_lines else help_
+def wire_error(code: str, title: str, help_: str, last_lines: Iterable[str] = ()) -> WireError:
+    """Return an error; ``last_lines`` are the last lines of the game's standard error, none if they are unknown."""
+    text = "\n".join(last_lines)
+    shown = f"the game's standard error ends:\n{text}\n{help_}" if text else help_
     return WireError([Diagnostic(code, title, help=shown)])

@@ -13,6 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.wire.error_lines import telling_lines
 from tltl_runtime.wire.errors import NOT_STARTED, wire_error
 from tltl_runtime.wire.stderr_tail import StderrTail
 from tltlc.api import fileio
@@ -83,9 +84,13 @@ class GameProcess:
         """End the game and all its child processes."""
         self._end()
 
-    def last_lines(self) -> str:
-        """Return the last lines that the game wrote to standard error; the game must have ended."""
-        return self._tail.lines()
+    def lines_so_far(self) -> list[str]:
+        """Return the last lines that the game has written to standard error so far."""
+        return self._tail.lines_so_far()
+
+    def last_lines(self) -> list[str]:
+        """Return the lines of the end of the game's standard error that help to mend it; the game must have ended."""
+        return telling_lines(self._tail.lines(), fileio.limits.WIRE_STDERR.values or 0)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -6,7 +6,7 @@ import os
 import secrets
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar
 
@@ -21,6 +21,7 @@ from tltl_runtime.wire.listener import Listener
 from tltl_runtime.wire.ml_agents import MlAgentsChannel
 from tltl_runtime.wire.requests import CloseRequest, Refusal
 from tltl_runtime.wire.server import listen
+from tltl_runtime.wire.start_watch import GRACE_S, StartWatch
 from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame, address
 from tltlc.api import fileio
 
@@ -32,6 +33,7 @@ _PAUSE_S: Final = 0.05
 """Seconds between two tries to connect to a game that is running."""
 _TOKEN_BYTES: Final = 16
 _ENDED: Final = "correct the game; let it write what it does to standard error"
+_UNREADABLE: Final = "correct the script: the engine cannot read it, and goes on without it"
 _HELLO: Final = {
     TLTL: ("said hello", "say hello"),
     GODOT_RL: ("answered `env_info`", "connect and answer `env_info`"),
@@ -53,6 +55,7 @@ class WireSession:
     def __init__(self, game: WireGame) -> None:
         self._game = game
         self._process: GameProcess | None = None
+        self._watch: StartWatch | None = None
         self._channel: Channel | None = None
         try:
             self._channel, message = self._opened()
@@ -60,6 +63,8 @@ class WireSession:
             self._agree_on_encoding()
         except BaseException as error:
             raise self._lost(error, "hello", game.start_s) from None
+        if self._watch:
+            self._watch.end()
 
     @property
     def is_over(self) -> bool:
@@ -88,6 +93,13 @@ class WireSession:
         except BaseException as error:
             raise self._lost(error, kind, self._game.step_s) from None
 
+    def last_lines(self) -> list[str]:
+        """Return the last lines that a closed game wrote to standard error, those that help to mend it.
+
+        There are none of a game that tltlc did not start.
+        """
+        return self._process.last_lines() if self._process else []
+
     def refuse(self, reason: str) -> NoReturn:
         """End a game that breaks the protocol; ``reason`` completes "the game …". Raises WireError, TLT0792."""
         raise self._lost(MalformedMessageError(reason), "hello", self._game.start_s)
@@ -115,10 +127,9 @@ class WireSession:
         with listen(*self._place(), "Godot RL Agents") as server:
             if self._game.process:
                 words = godot_rl.with_arguments(self._game.process, server.getsockname()[1])
-                self._process = GameProcess(words, self._game.folder, {})
-            has_ended = self._process.has_ended if self._process else lambda: False
+                self._start(words, {})
             deadline = time.monotonic() + self._game.start_s
-            channel = self._channel = godot_rl.accept(server, self._game.start_s, has_ended)
+            channel = self._channel = godot_rl.accept(server, self._game.start_s, self._is_over())
         return channel, channel.hello(deadline - time.monotonic())
 
     def _served(self) -> tuple[Channel, Any]:
@@ -127,9 +138,17 @@ class WireSession:
         channel = MlAgentsChannel(*self._place(), dict(game.parameters))
         self._channel = channel
         if game.process:
-            self._process = GameProcess(ml_agents.with_arguments(game.process, channel.port), game.folder, {})
-        has_ended = self._process.has_ended if self._process else lambda: False
-        return channel, channel.hello(game.start_s, has_ended)
+            self._start(ml_agents.with_arguments(game.process, channel.port), {})
+        return channel, channel.hello(game.start_s, self._is_over())
+
+    def _start(self, words: Sequence[str], variables: Mapping[str, str]) -> None:
+        """Start the process of the game."""
+        self._process = GameProcess(words, self._game.folder, variables)
+        self._watch = StartWatch(self._game.name, self._process, self._game.start_s)
+
+    def _is_over(self) -> Callable[[], bool]:
+        """Return a function that says whether the game has ended, or its start is given up."""
+        return self._watch.is_over if self._watch else lambda: False
 
     def _place(self) -> tuple[str, int]:
         """Return the host and the port at which tltlc waits for the game; the port 0 stands for a free one."""
@@ -141,9 +160,9 @@ class WireSession:
         listener = Listener(token)
         try:
             variables = {"TLTL_PORT": str(listener.port), "TLTL_TOKEN": token}
-            self._process = GameProcess(self._game.process, self._game.folder, variables)
+            self._start(self._game.process, variables)
             try:
-                return listener.hello(self._game.start_s, self._process.has_ended)
+                return listener.hello(self._game.start_s, self._is_over())
             except GameSilentError:
                 if listener.refusal:
                     raise MalformedMessageError(listener.refusal) from None
@@ -192,7 +211,7 @@ class WireSession:
         ):
             return error
         name = f"the game `{self._game.name}`"
-        lines = self._process.last_lines() if self._process else ""
+        lines = self.last_lines()
         starting = kind == "hello"
         if isinstance(error, MalformedMessageError):
             help_ = "correct the game; `docs/wire.md` describes the messages"
@@ -204,6 +223,9 @@ class WireSession:
         code = errors.NOT_STARTED if starting else errors.LOST
         said_hello, say_hello = _HELLO[self._game.protocol]
         before = f"before it {said_hello}" if starting else f"instead of answering `{kind}`"
+        if self._watch and self._watch.gave_up:
+            title = f"{name} did not {say_hello} within {GRACE_S:g} s after an error in a script, and was ended"
+            return wire_error(code, title, _UNREADABLE, lines)
         if has_ended and self._process:
             return wire_error(code, f"{name} {self._process.end_text()} {before}", _ENDED, lines)
         if isinstance(error, GameGoneError):
@@ -219,7 +241,7 @@ class WireSession:
 
         A game that has closed its connection may end soon, so wait for it a few seconds.
         """
-        if self._process is None:
+        if self._process is None or (self._watch and self._watch.gave_up):
             return False
         return self._process.wait(_TO_CLOSE_S if isinstance(error, GameGoneError) else 0)
 

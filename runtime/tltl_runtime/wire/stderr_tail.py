@@ -24,12 +24,15 @@ class StderrTail:
         self._thread = threading.Thread(target=self._read, name="standard error of a game", daemon=True)
         self._thread.start()
 
-    def lines(self) -> str:
-        """Return the last lines as text, without control characters. Call this after the process has ended."""
-        self._thread.join(_TO_END_S)
+    def lines_so_far(self) -> list[str]:
+        """Return the last lines that have been read so far, without control characters."""
         lines = _COLOUR.sub("", self._data.decode(errors="replace")).splitlines()
-        shown = [_printable(line) for line in lines if line.strip()]
-        return "\n".join(shown[-(fileio.limits.WIRE_STDERR.values or 0) :])
+        return [_printable(line) for line in lines if line.strip()]
+
+    def lines(self) -> list[str]:
+        """Return the last lines, without control characters. Call this after the process has ended."""
+        self._thread.join(_TO_END_S)
+        return self.lines_so_far()
 
     def _read(self) -> None:
         with self._pipe:

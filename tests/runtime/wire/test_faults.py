@@ -18,6 +18,7 @@ from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S, children, until, until_gone
 from tltl_runtime.wire.env import WireEnv
 from tltl_runtime.wire.errors import WireError
+from tltl_runtime.wire.start_watch import SlowStart, telling_slow_starts
 from tltl_runtime.wire.wire_game import WireGame
 from tltlc.api.fileio import limits
 
@@ -199,6 +200,48 @@ def test_a_game_that_never_says_hello_is_ended(fault: str) -> None:
         WireEnv(faulty(fault, start_s=2))
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.title == "the game `faulty` did not say hello within 2 s, and was ended"
+
+
+def test_a_game_whose_script_cannot_be_read_is_ended_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.GRACE_S", 0.0)
+    with no_new_children(), pytest.raises(WireError) as caught:
+        WireEnv(faulty("script error"))
+    (diagnostic,) = caught.value.diagnostics
+    title = "the game `faulty` did not say hello within 5 s after an error in a script, and was ended"
+    assert (diagnostic.code, diagnostic.title) == ("TLT0790", title)
+    assert diagnostic.help == (
+        "the game's standard error ends:\n"
+        "SCRIPT ERROR: GDScript::reload: Parse Error: Expected an indented block.\n"
+        "   At: res://main.gd:7.\n"
+        "correct the script: the engine cannot read it, and goes on without it"
+    )
+
+
+def test_a_game_that_says_hello_after_an_error_in_a_script_is_played(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.GRACE_S", HANG_S)
+    env = WireEnv(faulty("late hello"))
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.GRACE_S", 0.0)
+    env.reset()
+    env.step(0)
+    env.close()
+
+
+def test_who_waits_is_told_what_a_starting_game_wrote_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    class ToldError(Exception):
+        pass
+
+    def tell(start: SlowStart) -> None:
+        lines.append(start.last_line)
+        if start.last_line:
+            assert (start.name, start.start_s) == ("faulty", HANG_S)
+            raise ToldError
+
+    lines: list[str] = []
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.LONG_S", 0.0)
+    with no_new_children(), telling_slow_starts(tell), pytest.raises(ToldError):
+        WireEnv(faulty("no hello"))
+    # Before it has written anything, the line is empty; nothing is told twice.
+    assert lines in (["loading assets"], ["", "loading assets"])
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,19 @@ def test_the_client_passes_the_conversation(project: Path, words: tuple[str, ...
     assert len(lines) == EXCHANGES
 
 
+def test_a_script_that_godot_cannot_read_is_the_first_line_of_the_error(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = project / "counter.gd"
+    script.write_text(script.read_text(encoding="utf-8").replace("func _ready()", "func _ready("), encoding="utf-8")
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.GRACE_S", 0.0)
+    with pytest.raises(WireError, match="did not say hello within 5 s after an error in a script") as caught:
+        WireEnv(WireGame("counter", project, process=tuple(command(project)), start_s=HANG_S))
+    help_ = caught.value.diagnostics[0].help or ""
+    assert help_.startswith("the game's standard error ends:\nSCRIPT ERROR: GDScript::reload: Parse Error: ")
+    assert "   At: res://counter.gd:" in help_ and ".cpp" not in help_
+
+
 def test_the_game_in_the_comment_can_be_played(project: Path) -> None:
     lines = CLIENT.read_text(encoding="utf-8").splitlines()
     first = lines.index("#     extends Spatial")

@@ -88,6 +88,12 @@ def main(fault: str, file: str = "") -> None:
     if fault == "no hello":
         say("loading assets")
         hang()
+    if fault in ("script error", "late hello"):
+        say("error: XDG_RUNTIME_DIR is invalid or not set in the environment.")
+        say("SCRIPT ERROR: GDScript::reload: Parse Error: Expected an indented block.\n   At: res://main.gd:7.")
+        say("ERROR: reload: Method failed.\n   At: modules/gdscript/gdscript.cpp:599.")
+    if fault == "script error":
+        hang()
     if fault == "exit first":
         say("cannot open display :0")
         sys.exit(1)
@@ -131,7 +137,7 @@ def main(fault: str, file: str = "") -> None:
                 sys.exit(5)
         if "close" in request:
             return
-        if (fault != at_step) == ("step" in request) and fault not in ("changes", "children", "none"):
+        if (fault != at_step) == ("step" in request) and fault not in ("changes", "children", "none", "late hello"):
             act(at_step, connection, file)
         else:
             connection.sendall(json.dumps(STATE).encode() + b"\n")
