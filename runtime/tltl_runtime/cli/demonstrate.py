@@ -12,6 +12,7 @@ from tltl_runtime.cli.support.film import FILMS, Film, films_of, write_film
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.notation import notation_option
 from tltl_runtime.cli.support.options import output_folder, seed_option
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import cli
@@ -45,6 +46,7 @@ Examples:
 @notation_option
 @click.option("--careless", is_flag=True, help="Play as if no guard could see the player.")
 @level_faults()
+@slow_starts_shown()
 def command(
     level: str,
     spec: str | None,

@@ -18,6 +18,7 @@ from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.level_options import level_options
 from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder, seed_option
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.cli.support.writable_paths import check_writable
 from tltl_runtime.game.level_name import level_option
@@ -85,6 +86,7 @@ Examples:
     help="Which episodes to record in the folder of --out (default: failures).",
 )
 @level_faults()
+@slow_starts_shown()
 def command(
     policy: Path | None,
     level: str | None,

@@ -11,6 +11,7 @@ import click
 from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options, play_at_keyboard
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.recording_files import RecordingFiles
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.game.registry import STEALTH, game_named, game_of
@@ -59,6 +60,7 @@ Examples:
 )
 @keyboard_options
 @level_faults()
+@slow_starts_shown()
 def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch) -> None:
     """Play a level, or a scene `FILE.game.toml:SCENE`, with the keyboard, in a window.
 

@@ -14,6 +14,7 @@ from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options
 from tltl_runtime.cli.support.level_faults import level_faults
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.plain_text import plain_text
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.game.level_name import level_option, split_level
 from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
 from tltlc.api import TltlError, cli
@@ -63,6 +64,7 @@ Examples:
 @output_folder("The folder for the recordings (default: demonstrations/LEVEL-VARIANT-SPEC).")
 @keyboard_options
 @level_faults()
+@slow_starts_shown()
 def command(
     level: str | None,
     by: str,

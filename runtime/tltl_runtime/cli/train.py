@@ -14,6 +14,7 @@ from tltl_runtime.cli.support.missing_extra import name_missing_extra
 from tltl_runtime.cli.support.options import output_folder
 from tltl_runtime.cli.support.place_title import place_title
 from tltl_runtime.cli.support.sensor_options import sensor_options
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.cli.support.worker_options import WorkersType
 from tltl_runtime.support.number_text import duration, share
 from tltl_runtime.training.files.choices import Method
@@ -120,6 +121,7 @@ Watching, from another terminal:
 @click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="The device of the network.")
 @sensor_options
 @click.option("--print-config", is_flag=True, help="Print all settings as a file for --config, and exit.")
+@slow_starts_shown()
 def command(
     spec: str | None,
     folder: Path | None,

@@ -11,6 +11,7 @@ from typing import Any, Final
 import click
 
 from tltl_runtime.cli.support.level_check import check_levels
+from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.gymnasium_games.game_argument import parse_game, scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_check import SceneReport, check_scene
 from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
@@ -26,6 +27,7 @@ _MOST_SIGNALS: Final = 30
 
 @click.command()
 @click.option("--allow-outside", is_flag=True, help="Let the game file name files and specs outside its folder.")
+@slow_starts_shown()
 def command(
     games: tuple[str, ...],
     inputs: Sequence[cli.Input],
