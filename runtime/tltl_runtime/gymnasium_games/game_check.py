@@ -14,18 +14,23 @@ from tltl_runtime.gymnasium_games.game_file import GameFile
 from tltl_runtime.gymnasium_games.key_actions import key_count_diagnostic
 from tltl_runtime.gymnasium_games.plays import (
     SEED,
-    STEPS,
     PlayDifference,
     PlayedMoment,
+    ScenePlay,
     drawn_actions,
     first_difference,
     first_other_observation,
     go_on,
     play,
+    unchanged_signals,
 )
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv, make_base_env
+from tltl_runtime.gymnasium_games.silent_faults import silent_faults
 from tltl_runtime.gymnasium_games.spec_fit import Supply
-from tltlc.api import Diagnostic, Label, monitors, record
+from tltl_runtime.gymnasium_games.speed_advice import speed_advice
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.errors import WireError
+from tltlc.api import Diagnostic, Label, TltlError, monitors, record, replace
 
 _BEFORE_SNAPSHOT: Final = 20
 _AFTER_SNAPSHOT: Final = 50
@@ -36,9 +41,12 @@ class SceneReport:
     """What a check found out about a variant of a scene.
 
     ``supply`` is what the scene supplies to specs. ``steps_per_s`` is the speed of steps, with their
-    signals. ``reproducible`` says whether equal seeds and actions give equal signals and observations.
-    ``restores`` says whether a restored snapshot brings back the state that was saved; None if the game
-    has no snapshots. ``diagnostics`` says what is wrong with the scene, whatever the spec.
+    signals. ``advice`` says what makes a slow game faster; empty if it is fast. ``unchanged`` are the signals that
+    no step has changed. ``last_lines`` are the last lines that a game in another process wrote to standard error.
+    ``reproducible`` says whether equal seeds and actions give equal signals and observations; None if the
+    game was lost. ``restores`` says whether a restored snapshot brings back the state that was saved; None if the
+    game has no snapshots, or was lost. ``diagnostics`` says what is wrong with the scene, whatever the spec.
+    ``play`` is the longest play.
     """
 
     scene: str
@@ -48,13 +56,19 @@ class SceneReport:
     supply: Supply
     capabilities: tuple[Capability, ...]
     steps_per_s: float
-    reproducible: bool
+    advice: str
+    unchanged: tuple[str, ...]
+    last_lines: tuple[str, ...]
+    reproducible: bool | None
     restores: bool | None
     diagnostics: tuple[Diagnostic, ...]
+    play: ScenePlay
 
 
 def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
     """Start a variant of a scene, and play it twice with the same seed and actions.
+
+    If a game in another process is lost, the check goes on: the next play starts the game again.
 
     The diagnostics of the report:
 
@@ -62,17 +76,24 @@ def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
     - TLT0784, error: a restored snapshot is not the state that was saved.
     - TLT0784, warning: the game has only one of the methods ``tltl_snapshot`` and ``tltl_restore``.
     - TLT0785, warning: an observation is not in the observation space.
+    - TLT0786, warning: no signal changes. TLT0787, warning: a script of the game fails.
+    - TLT0791 to TLT0793, error: a game in another process was lost.
     - TLT0803, error: the game file names keys, but not one for each action.
 
     Raises:
         TltlError: the environment cannot be made, see :func:`make_base_env`; TLT0781, the game
-            raises an exception, or says where things are in a way that cannot be used.
+            raises an exception, or says where things are in a way that cannot be used; the game is lost in each
+            reset.
     """
     env = make_base_env(game, scene, variant)
     try:
-        return _report(game, env, scene, variant)
+        report = _report(game, env, scene, variant)
     finally:
         env.close()
+    # A game that has been closed has written all that it has to say.
+    lines = env.unwrapped.last_lines() if isinstance(env.unwrapped, WireEnv) else []
+    faults = silent_faults(f"{scene}:{variant}", game.labels["game"], report.play, lines)
+    return replace(report, last_lines=tuple(lines), diagnostics=(*report.diagnostics, *faults))
 
 
 def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneReport:
@@ -81,29 +102,58 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
     wrong_keys = [*filter(None, [key_count_diagnostic(game, scene, env.action_space)])]
     params = env.get_wrapper_attr("tltl_params")() if "params" in offered else None
     first, second = play(env, actions), play(env, actions)
-    _check_places(env)
+    longest = first if first.steps > second.steps else second
+    losses = [*_losses(name, (first, second))]
+    if not longest.moments:
+        raise TltlError(losses)
     differences = [*_differences(name, label, first.moments, second.moments)]
-    if "snapshot" in offered:
-        restored = [*_restored(game, env, name, label, reproducible=not differences)]
-    else:
-        restored = [*_half_snapshot(env, label)]
+    reproducible = False if differences else None if losses else True
+    restored: list[Diagnostic] = []
+    is_restored = None
+    try:
+        _check_places(env)
+        if "snapshot" in offered:
+            restored += _restored(game, env, name, label, reproducible=bool(reproducible))
+            is_restored = not restored
+        else:
+            restored += _half_snapshot(env, label)
+    except WireError as error:
+        losses += error.diagnostics
+    clock_s, steps_per_s = _clock_s(env), longest.steps / max(longest.seconds, 1e-9)
     return SceneReport(
         scene=scene,
         variant=variant,
         observation=env.observation_space,
         action=env.action_space,
-        supply=Supply(scene, first.moments, params, _clock_s(env)),
+        supply=Supply(scene, longest.moments, params, clock_s),
         capabilities=offered,
-        steps_per_s=STEPS / max(second.seconds, 1e-9),
-        reproducible=not differences,
-        restores=not restored if "snapshot" in offered else None,
+        steps_per_s=steps_per_s,
+        advice="" if losses else speed_advice(game.wire, steps_per_s, clock_s),
+        unchanged=tuple(unchanged_signals(longest.moments)),
+        last_lines=(),
+        reproducible=reproducible,
+        restores=is_restored,
         diagnostics=(
             *wrong_keys,
+            *losses,
             *differences,
             *restored,
-            *_outside_space(env.observation_space, name, label, first.moments),
+            *_outside_space(env.observation_space, name, label, longest.moments),
         ),
+        play=longest,
     )
+
+
+def _losses(name: str, plays: Sequence[ScenePlay]) -> Iterator[Diagnostic]:
+    """Yield how the game was lost in the plays; once if it was lost at the same step in the same way."""
+    said = set()
+    for played in plays:
+        if played.loss is not None:
+            when = f"in step {played.steps + 1} of a play" if played.moments else "in the reset of a play"
+            title = f"{played.loss.title}, {when} of `{name}`"
+            if title not in said:
+                yield replace(played.loss, title=title)
+            said.add(title)
 
 
 def _check_places(env: SceneEnv) -> None:
@@ -162,7 +212,8 @@ def _restored(game: GameFile, env: SceneEnv, name: str, label: Label, *, reprodu
     give the same signals and observations from there on.
     """
     actions = drawn_actions(env, _BEFORE_SNAPSHOT + _AFTER_SNAPSHOT, seed=SEED + 1)
-    play(env, actions[:_BEFORE_SNAPSHOT], SEED + 1)
+    env.reset(seed=SEED + 1)
+    go_on(env, actions[:_BEFORE_SNAPSHOT])
     before = PlayedMoment(0, None, dict(env.tltl_signals()), False)
     with guarded(game, RAISES, "the game's `tltl_snapshot`", label):
         snapshot = env.get_wrapper_attr("tltl_snapshot")()

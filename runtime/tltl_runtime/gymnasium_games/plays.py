@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
+from itertools import pairwise
 from typing import Any, Final
 
 from tltl_runtime.gymnasium_games.scene_env import SceneEnv
 from tltl_runtime.support.same_values import copied, is_same, other_name
-from tltlc.api import record
+from tltl_runtime.wire.errors import WireError
+from tltlc.api import Diagnostic, record
 
 STEPS: Final = 200
 """The steps of a play."""
@@ -34,10 +36,19 @@ class PlayedMoment:
 
 @record
 class ScenePlay:
-    """A play: its moments, including those after resets, and how many seconds it took."""
+    """A play: its moments, including those after resets, and how many seconds it took.
+
+    ``loss`` says what happened if the game, in another process, was lost, which ended the play.
+    """
 
     moments: tuple[PlayedMoment, ...]
     seconds: float
+    loss: Diagnostic | None = None
+
+    @property
+    def steps(self) -> int:
+        """The number of steps that were played."""
+        return self.moments[-1].step if self.moments else 0
 
 
 @record
@@ -63,14 +74,20 @@ def drawn_actions(env: SceneEnv, count: int = STEPS, seed: int = SEED) -> list[A
 def play(env: SceneEnv, actions: Sequence[Any], seed: int = SEED) -> ScenePlay:
     """Reset an environment with a seed and take the actions; reset it again when an episode ends.
 
+    The play ends early if the game is lost.
+
     Raises:
         TltlError: TLT0781, the game raises an exception.
     """
-    start = time.perf_counter()
-    observation, _ = env.reset(seed=seed)
-    moments = [_moment(env, 0, observation, ended=False)]
-    moments += go_on(env, actions)
-    return ScenePlay(tuple(moments), time.perf_counter() - start)
+    start, moments, loss = time.perf_counter(), list[PlayedMoment](), None
+    try:
+        observation, _ = env.reset(seed=seed)
+        moments.append(_moment(env, 0, observation, ended=False))
+        for moment in _moments(env, actions):
+            moments.append(moment)
+    except WireError as error:
+        loss = error.diagnostics[0]
+    return ScenePlay(tuple(moments), time.perf_counter() - start, loss)
 
 
 def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[PlayedMoment]:
@@ -79,17 +96,26 @@ def go_on(env: SceneEnv, actions: Sequence[Any]) -> list[PlayedMoment]:
     The environment is reset when an episode ends.
 
     Raises:
-        TltlError: TLT0781, the game raises an exception.
+        TltlError: TLT0781, the game raises an exception; the errors of a game in another process.
     """
-    moments = []
+    return [*_moments(env, actions)]
+
+
+def _moments(env: SceneEnv, actions: Sequence[Any]) -> Iterator[PlayedMoment]:
     for step, action in enumerate(actions, 1):
         observation, _, terminated, truncated, _ = env.step(action)
         ended = bool(terminated or truncated)
-        moments.append(_moment(env, step, observation, ended=ended))
+        yield _moment(env, step, observation, ended=ended)
         if ended:
             observation, _ = env.reset()
-            moments.append(_moment(env, step, observation, ended=False))
-    return moments
+            yield _moment(env, step, observation, ended=False)
+
+
+def unchanged_signals(moments: Sequence[PlayedMoment]) -> list[str]:
+    """Return the names of the signals that no step has changed; a reset may have changed them."""
+    steps = [(one.sample, other.sample) for one, other in pairwise(moments) if not one.ended]
+    names = map(str, moments[0].sample) if steps else ()
+    return [name for name in names if all(is_same(one.get(name), other.get(name)) for one, other in steps)]
 
 
 def first_difference(first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]) -> PlayDifference | None:

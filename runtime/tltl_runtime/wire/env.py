@@ -170,6 +170,10 @@ class WireEnv(gymnasium.Env[Any, Any]):
         self._session.close()
         self._state = None
 
+    def last_lines(self) -> list[str]:
+        """Return the last lines that the game wrote to standard error, those that help to mend it. Close it before."""
+        return self._session.last_lines()
+
     def tltl_signals(self) -> Mapping[str, float]:
         """Return the signals after the last reset or step, by name and in SI units."""
         return self._current().signals

@@ -45,14 +45,16 @@ def telling_lines(lines: Iterable[str], most: int) -> list[str]:
     errors = [*dict.fromkeys(filter(_is_script_error, messages))][:_MOST_SCRIPT_ERRORS]
     others = [message for message in messages if not _is_script_error(message)]
     if errors:
-        others = [message for message in others if not _is_of_engine(message)]
+        # The first message may have lost its beginning.
+        others = [message for message in others if not _is_of_engine(message) and not message[0][:1].isspace()]
     first, rest = [*chain(*errors)][:most], [*chain(*others)]
     return [*first, *rest[max(len(rest) + len(first) - most, 0) :]]
 
 
 def script_error(lines: Iterable[str]) -> str:
     """Return the first message about an error in a script of the game, in one line; empty if there is none."""
-    return " ".join(line.strip() for line in next(filter(_is_script_error, _messages(lines)), ()))
+    found = next(filter(_is_script_error, _messages(lines)), ())
+    return " ".join(line.strip() for line in found if line != _REPEATED)
 
 
 def has_unreadable_script(lines: Iterable[str]) -> bool:

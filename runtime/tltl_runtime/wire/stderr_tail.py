@@ -21,12 +21,16 @@ class StderrTail:
     def __init__(self, pipe: IO[bytes]) -> None:
         self._pipe = pipe
         self._data = b""
+        self._is_cut = False
+        """Whether the first line of the data may be a part of a line."""
         self._thread = threading.Thread(target=self._read, name="standard error of a game", daemon=True)
         self._thread.start()
 
     def lines_so_far(self) -> list[str]:
-        """Return the last lines that have been read so far, without control characters."""
+        """Return the last whole lines that have been read so far, without control characters."""
         lines = _COLOUR.sub("", self._data.decode(errors="replace")).splitlines()
+        if self._is_cut and len(lines) > 1:
+            del lines[0]
         return [_printable(line) for line in lines if line.strip()]
 
     def lines(self) -> list[str]:
@@ -37,6 +41,7 @@ class StderrTail:
     def _read(self) -> None:
         with self._pipe:
             while chunk := os.read(self._pipe.fileno(), _CHUNK):
+                self._is_cut = self._is_cut or len(self._data) + len(chunk) > fileio.limits.WIRE_STDERR.size
                 self._data = (self._data + chunk)[-fileio.limits.WIRE_STDERR.size :]
 
 

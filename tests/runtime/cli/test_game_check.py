@@ -56,6 +56,9 @@ def test_the_report_is_one_document_in_json(tltlc, inside: Path) -> None:  # typ
         "observation": {"type": "dict", "spaces": {"cell": box, "has_key": {"type": "discrete", "n": 2, "start": 0}}},
         "action": {"type": "discrete", "n": 3, "start": 0},
         "capabilities": ["clock", "render"],
+        "advice": "",
+        "unchanged": [],
+        "standard_error": [],
         "reproducible": True,
         "restores": None,
     }

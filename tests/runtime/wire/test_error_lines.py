@@ -44,6 +44,10 @@ def test_what_comes_in_each_step_is_shown_once() -> None:
     assert telling_lines(["no such node"] * 30, 20) == ["no such node", "   (several times in a row)"]
 
 
+def test_the_rest_of_a_message_is_no_line_of_another_one() -> None:
+    assert telling_lines([STEP_ERROR[1], *STEP_ERROR], 20) == STEP_ERROR
+
+
 def test_the_last_lines_are_shown() -> None:
     assert telling_lines([f"line {number}" for number in range(30)], 2) == ["line 28", "line 29"]
 

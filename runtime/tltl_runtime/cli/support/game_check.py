@@ -11,6 +11,7 @@ from typing import Any, Final
 import click
 
 from tltl_runtime.cli.support.level_check import check_levels
+from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.gymnasium_games.game_argument import parse_game, scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_check import SceneReport, check_scene
@@ -23,6 +24,8 @@ from tltlc.api import Diagnostic, Fspa, TltlError, cli
 
 _MOST_SIGNALS: Final = 30
 """A line lists at most this many signals."""
+
+_ANSWERS: Final = {True: "yes", False: "no", None: "unknown, because the game was lost"}
 
 
 @click.command()
@@ -122,15 +125,24 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
     listed = [*map(str, supply.moments[0].sample)]
     signals = ", ".join(listed[:_MOST_SIGNALS]) + (", …" if len(listed) > _MOST_SIGNALS else "")
     yield f"  signals: {signals or 'none'}"
+    if 0 < len(scene_report.unchanged) < len(listed):
+        unchanged = ", ".join(scene_report.unchanged[:_MOST_SIGNALS])
+        more = ", …" if len(scene_report.unchanged) > _MOST_SIGNALS else ""
+        yield f"  not changed by {scene_report.play.steps} random steps: {unchanged}{more}"
     if supply.params:
         yield f"  params: {', '.join(f'{key} = {float(value):g}' for key, value in supply.params.items())}"
     yield f"  observation: {space_text(scene_report.observation)}"
     yield f"  action: {space_text(scene_report.action)}"
     yield f"  capabilities: {', '.join(scene_report.capabilities) or 'none'}"
     yield f"  speed: {scene_report.steps_per_s:,.0f} steps a second"
-    yield f"  equal seeds and actions give equal plays: {'yes' if scene_report.reproducible else 'no'}"
+    if scene_report.advice:
+        yield f"    {scene_report.advice}"
+    yield f"  equal seeds and actions give equal plays: {_ANSWERS[scene_report.reproducible]}"
     if scene_report.restores is not None:
-        yield f"  a restored snapshot is what was saved: {'yes' if scene_report.restores else 'no'}"
+        yield f"  a restored snapshot is what was saved: {_ANSWERS[scene_report.restores]}"
+    if scene_report.last_lines:
+        yield "  the game's standard error ends:"
+        yield from (f"    {plain_text(line)}" for line in scene_report.last_lines)
 
 
 def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
@@ -150,6 +162,9 @@ def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequenc
         "action": space_json(scene_report.action),
         "capabilities": list(scene_report.capabilities),
         "steps_per_s": round(scene_report.steps_per_s, 1),
+        "advice": scene_report.advice,
+        "unchanged": list(scene_report.unchanged),
+        "standard_error": list(scene_report.last_lines),
         "reproducible": scene_report.reproducible,
         "restores": scene_report.restores,
     }
