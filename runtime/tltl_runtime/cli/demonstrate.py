@@ -15,7 +15,7 @@ from tltl_runtime.cli.support.options import output_folder, seed_option
 from tltl_runtime.cli.support.slow_starts import slow_starts_shown
 from tltl_runtime.game.level_name import split_level
 from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
-from tltlc.api import cli
+from tltlc.api import Diagnostic, cli
 
 if TYPE_CHECKING:
     from tltl_runtime.game.episode import RecordedEpisode
@@ -62,12 +62,13 @@ def command(
     A game of your own has an expert if its environment has a method `tltl_expert()`. For each episode, the command
     writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and says why an episode failed.
     Existing files are kept: a different episode with the same name becomes LEVEL-VARIANT-SEED-2, and so on. The exit
-    status is 1 if an episode fails.
+    status is 1 if an episode fails. An episode that is lost with its game is neither a success nor a failure.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.game.capability_error import no_expert_error
     from tltl_runtime.game.recorder import closing_on_error
     from tltl_runtime.game.registry import game_of
+    from tltl_runtime.wire.lost_episodes import LossLimit, going_on, lost_episodes, most_lost
 
     with cli.Report() as report:
         file, variant = split_level(level_of_scene(level))
@@ -78,11 +79,13 @@ def command(
         player = "careless expert" if careless else "expert"
         env = closing_on_error(game.make_env(file, variant or "v0", spec), partial(game.recorder, player=player))
         played = succeeded = 0
+        left, faults = iter(range(seed, seed + episodes)), list[Diagnostic]()
+        begin = partial(game.expert_episodes, env, left, careful=not careless)
         try:
             if not game.has_expert(env):
                 raise no_expert_error(loaded)
             report.add(game.play_warnings(loaded, env.get_wrapper_attr("task").fspa))
-            for episode in game.expert_episodes(env, range(seed, seed + episodes), careful=not careless):
+            for episode in going_on(begin, LossLimit(most_lost(episodes)), faults.append):
                 path = _write(folder, episode, film, notation)
                 played, succeeded = played + 1, succeeded + episode.success
                 click.echo(episode_line(episode, str(path)))
@@ -91,9 +94,12 @@ def command(
             raise
         finally:
             env.close()
+            lost = lost_episodes(faults)
+            if lost and episodes > 1:
+                report.add([lost.warning])
         if episodes > 1:
-            click.echo(f"{succeeded} of {episodes} succeeded")
-        return cli.exits.CLEAN if succeeded == episodes else cli.exits.FINDINGS
+            click.echo(f"{succeeded} of {played} succeeded")
+        return cli.exits.CLEAN if succeeded == played else cli.exits.FINDINGS
     return report.status
 
 

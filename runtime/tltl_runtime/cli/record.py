@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from tltl_runtime.game.level import Level
     from tltl_runtime.game.recorder import EpisodeRecorder
     from tltl_runtime.training.imitation.demonstrations import Attempt, Demonstrations
+    from tltlc.api import Diagnostic
 
 
 @click.command(
@@ -78,9 +79,10 @@ def command(
     """Record demonstrations: episodes of an expert or of a person that meet the spec.
 
     LEVEL may also be a scene, `FILE.game.toml:SCENE`. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz.
-    An episode that fails is not kept; the command says why. Demonstrations that are already in the folder count, so the
-    same command continues where it stopped. Other recordings in the folder, and files that cannot be read, stay as they
-    are. You may omit LEVEL if the spec names it.
+    An episode that fails is not kept; the command says why. If a game in another process is lost, the command goes on
+    with the next episode. Demonstrations that are already in the folder count, so the same command continues where it
+    stopped. Other recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the
+    spec names it.
 
     The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
     """
@@ -108,7 +110,7 @@ def command(
                 _record_person(env, loaded, demonstrations, episodes, seed, view, crouch)
             elif demonstrations.count < episodes:
                 report.add(game.play_warnings(loaded, task.fspa))
-                _record_expert(env, demonstrations, episodes, seed or 0)
+                _record_expert(env, demonstrations, episodes, seed or 0, report)
         except KeyboardInterrupt:
             if demonstrations:
                 click.echo(
@@ -156,11 +158,19 @@ def _existing_lines(demonstrations: Demonstrations, requested: int) -> list[str]
     return lines
 
 
-def _record_expert(env: EpisodeRecorder[Any], demonstrations: Demonstrations, requested: int, seed: int) -> None:
+def _record_expert(
+    env: EpisodeRecorder[Any], demonstrations: Demonstrations, requested: int, seed: int, report: cli.Report
+) -> None:
     from tltl_runtime.training.imitation.demonstrations import expert_attempts
+    from tltl_runtime.wire.lost_episodes import lost_episodes
 
-    for attempt in expert_attempts(env, demonstrations, requested, seed):
-        click.echo(_attempt_line(attempt, requested))
+    faults: list[Diagnostic] = []
+    try:
+        for attempt in expert_attempts(env, demonstrations, requested, seed, on_lost=faults.append):
+            click.echo(_attempt_line(attempt, requested))
+    finally:
+        if lost := lost_episodes(faults):
+            report.add([lost.warning])
 
 
 def _record_person(

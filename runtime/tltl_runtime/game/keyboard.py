@@ -8,6 +8,7 @@ from typing import Generic, Literal, Protocol
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltl_runtime.game.recorder import EpisodeRecorder, EpisodeT
+from tltlc.api import Diagnostic
 
 Crouch = Literal["hold", "toggle"]
 """Whether the key for crouching must be held, or toggles it."""
@@ -45,12 +46,14 @@ class Keyboard(ABC, Generic[EpisodeT]):
         view: str,
         crouch: Crouch,
         enough: Callable[[], bool],
+        on_lost: Callable[[Diagnostic], None],
     ) -> None:
         """Open a window and play episodes of ``env`` until the player stops.
 
         Playing also ends if ``enough`` returns true after an episode. ``recordings`` stores the
         episodes. ``seed`` is the seed of the first episode; None means a new one. ``view`` is the one of
-        ``views`` that the window shows first. ``crouch`` says how the key for crouching works.
+        ``views`` that the window shows first. ``crouch`` says how the key for crouching works. ``on_lost``
+        gets what happened if a game in another process is lost, which costs the episode.
 
         Raises:
             TltlError: TLT0830, no window can be opened; TLT0730, a package is not installed.

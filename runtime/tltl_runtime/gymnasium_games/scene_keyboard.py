@@ -8,6 +8,7 @@ from typing import Final
 from tltl_runtime.game.keyboard import Crouch, Keyboard, Recordings
 from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
+from tltlc.api import Diagnostic
 
 _SIZE: Final = (960, 600)
 
@@ -31,6 +32,7 @@ class SceneKeyboard(Keyboard[SceneEpisode]):
         view: str,
         crouch: Crouch,
         enough: Callable[[], bool],
+        on_lost: Callable[[Diagnostic], None],
     ) -> None:
         """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true.
 
@@ -51,6 +53,6 @@ class SceneKeyboard(Keyboard[SceneEpisode]):
         scene_frame(env, level, NO_FRAMES_ADVICE)
         window = Window(f"{level.name} {level.variant}", _SIZE, side=True)
         try:
-            SceneSession(env, window, actions, recordings, enough).play(seed)
+            SceneSession(env, window, actions, recordings, enough, on_lost).play(seed)
         finally:
             window.close()

@@ -8,6 +8,8 @@ from textwrap import wrap
 from time import monotonic
 from typing import Any, Final
 
+import numpy as np
+
 from tltl_runtime.game.hud import LONG, Bar, Hud, Line, clock_text, end_screen, goal_lines
 from tltl_runtime.game.keyboard import Recordings
 from tltl_runtime.game.play_session import PlaySession
@@ -19,7 +21,8 @@ from tltl_runtime.gymnasium_games.key_names import COMMANDS
 from tltl_runtime.gymnasium_games.scene_cause import scene_cause
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_frame import scene_frame
-from tltlc.api import formula_text, label_text, record, replace
+from tltl_runtime.wire.errors import WireError
+from tltlc.api import Diagnostic, formula_text, label_text, record, replace
 
 NO_FRAMES_ADVICE: Final = "let a trained policy play: `tltlc evaluate POLICY --record all --out DIR`"
 _STOP: Final = ("q", "escape")
@@ -44,7 +47,8 @@ class _Wish:
 class SceneSession(PlaySession[SceneEpisode]):
     """Lets a person play episodes of a scene in ``window``.
 
-    ``actions`` says which keys choose which actions. The other arguments are those of ``PlaySession``.
+    ``actions`` says which keys choose which actions. ``on_lost`` gets what happened if the game, in another process, is
+    lost; the person may then start it again. The other arguments are those of ``PlaySession``.
     """
 
     def __init__(
@@ -54,9 +58,11 @@ class SceneSession(PlaySession[SceneEpisode]):
         actions: KeyActions,
         recordings: Recordings,
         enough: Callable[[], bool] = lambda: False,
+        on_lost: Callable[[Diagnostic], None] = lambda _: None,
     ) -> None:
         super().__init__(env, recordings, enough)
-        self._window, self._actions = window, actions
+        self._window, self._actions, self._on_lost = window, actions, on_lost
+        self._frame = np.zeros((1, 1, 3), np.uint8)
         self._fspa = env.get_wrapper_attr("task").fspa
         self._level = env.get_wrapper_attr("level")
         # A key that chooses an action is not a command, but Escape always stops.
@@ -66,6 +72,22 @@ class SceneSession(PlaySession[SceneEpisode]):
         self._steps = 0
 
     def _episode(self, seed: int | None) -> bool:
+        try:
+            return self._played(seed)
+        except WireError as error:
+            return self._after_loss(error.diagnostics[0])
+
+    def _after_loss(self, fault: Diagnostic) -> bool:
+        """Save what was played until the game was lost, and say so; return whether the person wants another episode."""
+        self._on_lost(fault)
+        file = self._save()
+        below = (*wrap(fault.title, LONG), *([f"recorded: {file}"] if file else ()), "R: start it again   Esc: close")
+        self._window.show(self._frame, Hud((), (), "the game was lost", "bad", below))
+        wish = self._wait_still(ended=True)
+        return wish.restart and not wish.stop
+
+    def _played(self, seed: int | None) -> bool:
+        """Play one episode until it ends or the person restarts or stops; return whether they want another."""
         _, info = self._env.reset(seed=seed)
         self._steps, over = 0, False
         self._show(self._start_screen(info))
@@ -134,8 +156,8 @@ class SceneSession(PlaySession[SceneEpisode]):
         return _Wish(self._actions.actions.get(frozenset([key])), key == _RESTART, key in _STOP)
 
     def _show(self, display: Hud) -> None:
-        frame = scene_frame(self._env, self._level, NO_FRAMES_ADVICE)
-        self._window.show(fitted(frame, self._window.size), display)
+        self._frame = fitted(scene_frame(self._env, self._level, NO_FRAMES_ADVICE), self._window.size)
+        self._window.show(self._frame, display)
 
     def _hud(self, info: Mapping[str, Any]) -> Hud:
         """Return the head-up display; ``info`` is the info of the environment's last step or reset."""

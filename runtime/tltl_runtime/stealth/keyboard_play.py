@@ -10,6 +10,7 @@ from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.stealth.rendering.camera import VIEWS, View
 from tltl_runtime.stealth.rendering.hud import KEYS
+from tltlc.api import Diagnostic
 
 _SIZE: Final = (640, 400)
 
@@ -32,12 +33,14 @@ class StealthKeyboard(Keyboard[Episode]):
         view: str,
         crouch: Crouch,
         enough: Callable[[], bool],
+        on_lost: Callable[[Diagnostic], None],
     ) -> None:
         """Open a window and play episodes of ``env`` until the player stops or ``enough()`` is true.
 
         ``seed`` is the seed of the first episode, ``view`` the first camera view. With ``crouch``
         ``toggle``, one press of the crouch key starts crouching, and the next press ends it.
         """
+        del on_lost
         from tltl_runtime.game.window import Window
         from tltl_runtime.stealth.keyboard import KeyboardPlayer
         from tltl_runtime.stealth.rendering.render import Renderer

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Final
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Final, TypeVar
 
 from tltl_runtime.wire.errors import WireError
 from tltlc.api import Diagnostic, record, replace
@@ -13,6 +13,8 @@ MOST_IN_A_ROW: Final = 3
 
 _SHARE: Final = 10
 """At most a tenth of the episodes may be lost."""
+
+Episode = TypeVar("Episode")
 
 
 @record
@@ -37,6 +39,11 @@ class LostEpisodes:
     def warning(self) -> Diagnostic:
         """The warning with this text; its help has the last standard error of the game that was lost first."""
         return replace(self.first, title=self.text, severity="warning")
+
+
+def lost_episodes(faults: Sequence[Diagnostic]) -> LostEpisodes | None:
+    """Return the lost episodes that ``faults`` are about; None if there are none."""
+    return LostEpisodes(len(faults), faults[0]) if faults else None
 
 
 def together(parts: Iterable[LostEpisodes | None]) -> LostEpisodes | None:
@@ -69,6 +76,27 @@ class LossLimit:
         most = max(self._most, (self._played + self._lost) // _SHARE)
         if self._lost > most or self._in_a_row > MOST_IN_A_ROW:
             raise WireError([fault])
+
+
+def going_on(
+    begin: Callable[[], Iterator[Episode]], limit: LossLimit, on_lost: Callable[[Diagnostic], None]
+) -> Iterator[Episode]:
+    """Yield the episodes that ``begin()`` plays; if a game is lost, begin again, without the lost episode.
+
+    ``begin`` returns an iterator over the episodes that are left, and ``on_lost`` gets what happened to the game.
+
+    Raises:
+        WireError: too many episodes were lost, or too many in a row.
+    """
+    while True:
+        try:
+            for episode in begin():
+                limit.add_played()
+                yield episode
+            return
+        except WireError as error:
+            on_lost(error.diagnostics[0])
+            limit.add_lost(error.diagnostics[0])
 
 
 def most_lost(episodes: int) -> int:

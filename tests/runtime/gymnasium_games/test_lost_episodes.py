@@ -223,3 +223,69 @@ def test_a_suite_reports_lost_episodes(tltlc: Run, trained: Path, folder: Path) 
     mortal(folder, "exit", "all")
     result = tltlc("regress", "suite.toml", "--workers", 1, "--fresh")
     assert "it cannot be played\n    TLT0791, the game `counter.game.toml` ended with exit status 3" in result.out
+
+
+EXPERT = """\
+import sys
+from pathlib import Path
+
+import gymnasium
+
+from tltl_runtime.wire.env import WireEnv
+from tltl_runtime.wire.wire_game import WireGame
+
+
+class Expert:
+    def choose(self, observation):
+        return 2
+
+
+class Guided(gymnasium.Wrapper):
+    def tltl_expert(self):
+        return Expert()
+
+    def tltl_signals(self):
+        return self.env.tltl_signals()
+
+
+def make(scene):
+    return Guided(WireEnv(WireGame("counter", Path.cwd(), {words!r}), scene=scene))
+"""
+
+
+def with_expert(folder: Path, fault: str, *episodes: int | str) -> None:
+    """Write a game file whose environment is a game in another process, which may die, with an expert."""
+    path = mortal(folder, fault, *episodes)
+    words = (sys.executable, str(GAMES / "mortal.py"), fault, str(folder.with_name("episodes")), *map(str, episodes))
+    (folder / "guided.py").write_text(EXPERT.format(words=words))
+    scene = path.read_text().partition("[[scene]]")[2]
+    path.write_text(f'[game]\npython = "guided:make"\n\n[[scene]]{scene}')
+
+
+def test_an_expert_goes_on_demonstrating_after_a_lost_episode(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    with_expert(folder, "exit", 2)
+    result = tltlc("demonstrate", "counter.game.toml:short", "--episodes", 4, "-o", "runs")
+    assert result.status == 0, result.err
+    assert "1 episode was lost: the game `counter` ended with exit status 3 instead of answering `step`" in result.err
+    assert "now: exit" in result.err
+    assert "3 of 3 succeeded" in result.out
+    # The second episode has the seed 1.
+    assert sorted(path.name for path in Path("runs").glob("*.npz")) == [
+        f"short-v0-{seed}.episode.npz" for seed in (0, 2, 3)
+    ]
+
+
+def test_an_expert_stops_if_each_episode_is_lost(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    with_expert(folder, "exit", "all")
+    result = tltlc("demonstrate", "counter.game.toml:short", "--episodes", 40, "-o", "runs")
+    assert result.status == 1
+    assert "error[TLT0791]: the game `counter` ended with exit status 3" in result.err
+    assert "4 episodes were lost" in result.err
+
+
+def test_demonstrations_are_recorded_in_spite_of_a_lost_episode(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    with_expert(folder, "exit", 1)
+    result = tltlc("record", "counter.game.toml:short", "--episodes", 2, "-o", "kept")
+    assert result.status == 0, result.err
+    assert "1 episode was lost: the game `counter` ended with exit status 3 instead of answering `step`" in result.err
+    assert "2 of 2 demonstrations are in kept" in result.out

@@ -13,6 +13,7 @@ import pytest
 from tests.docs.blocks import ROOT
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games import games
+from tests.runtime.gymnasium_games.test_lost_episodes import mortal
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tests.waiting import HANG_S, until
 from tltl_runtime.game.recording_check import check
@@ -316,6 +317,22 @@ def test_a_person_records_demonstrations_of_a_scene(start: Callable[..., Player]
     assert "1 of 1 demonstrations are in mine" in out
     (path,) = (tmp_path / "mine").glob("*.npz")
     assert played(path, game).success
+
+
+@needs_screen
+def test_a_person_goes_on_after_a_lost_game(start: Callable[..., Player], tmp_path: Path) -> None:
+    # The first reset only tries the game: the first episode is the second one of the game.
+    folder, runs = tmp_path / "game", tmp_path / "runs"
+    folder.mkdir()
+    mortal(folder, "exit", 2)
+    player = start("play", "game/counter.game.toml:short", "--seed", "0", "-o", "runs")
+    player.until_pressed((tmp_path / "episodes.fault").exists, "3")
+    player.until_pressed(lambda: bool([*runs.glob("*.npz")]), "r", "3", "3", "3", "3", "3")
+    player.press("Escape")
+    out, err = player.process.communicate(timeout=HANG_S)
+    assert player.process.returncode == 0, err
+    assert "warning[TLT0791]: 1 episode was lost: the game `counter.game.toml` ended with exit status 3" in err
+    assert "now: exit" in err and "success after" in out
 
 
 @pytest.mark.parametrize(

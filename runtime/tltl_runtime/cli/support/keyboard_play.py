@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tltl_runtime.game.keyboard import Crouch, Keyboard, Recordings
     from tltl_runtime.game.level import Level
     from tltl_runtime.game.recorder import EpisodeRecorder
+    from tltlc.api import Diagnostic
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -78,4 +79,11 @@ def play_at_keyboard(
     env.reset()
     cli.show(level.game.play_warnings(level, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
     shown = view if view in keyboard.views else keyboard.views[0]
-    keyboard.play(env, receiver, seed=seed, view=shown, crouch=crouch, enough=enough)
+    keyboard.play(env, receiver, seed=seed, view=shown, crouch=crouch, enough=enough, on_lost=_show_loss)
+
+
+def _show_loss(fault: Diagnostic) -> None:
+    """Print a warning about an episode that was lost with its game."""
+    from tltl_runtime.wire.lost_episodes import LostEpisodes
+
+    cli.show([LostEpisodes(1, fault).warning], "text", sys.stderr)

@@ -5,7 +5,8 @@ This module needs none of the packages for training, so ``tltlc record`` works w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +17,7 @@ from tltl_runtime.game.recorder import EpisodeRecorder
 from tltl_runtime.game.recording_path import SUFFIX, file_stem, new_path
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.spec.task import Task
+from tltl_runtime.wire.lost_episodes import LossLimit, going_on, most_lost
 from tltlc.api import Diagnostic, TltlError, fileio, record
 
 PLAYER: Final = "expert"
@@ -135,22 +137,35 @@ def error_text(error: TltlError) -> str:
     return f"{diagnostic.code}, {diagnostic.title}"
 
 
-def expert_attempts(env: EpisodeRecorder[Any], store: Demonstrations, number: int, seed: int = 0) -> Iterator[Attempt]:
+def expert_attempts(
+    env: EpisodeRecorder[Any],
+    store: Demonstrations,
+    number: int,
+    seed: int = 0,
+    *,
+    on_lost: Callable[[Diagnostic], None] | None = None,
+) -> Iterator[Attempt]:
     """Let the scripted expert play until ``store`` has ``number`` demonstrations; yield each attempt.
 
     An episode that meets the spec is written to the folder of ``store``. The first episode has the
     seed ``seed``, and each later one the next seed. If the expert has demonstrations with ``seed``
     or later seeds, the first episode has the seed after the last of them. So an interrupted
-    recording continues where it stopped.
+    recording continues where it stopped. An episode that is lost with its game is no attempt:
+    ``on_lost`` gets what happened. Without it, the first loss ends the attempts.
 
     Raises:
+        WireError: too many episodes were lost with their games, or too many in a row.
         TltlError: TLT0920, the expert fails too often; TLT0005, a recording cannot be written.
     """
     played = [played_seed for played_seed in store.seeds(PLAYER) if played_seed >= seed]
     failures = 0
     if store.count >= number:
         return
-    for episode in env.get_wrapper_attr("level").game.expert_episodes(env, count(max(played, default=seed - 1) + 1)):
+    left = count(max(played, default=seed - 1) + 1)
+    begin = partial(env.get_wrapper_attr("level").game.expert_episodes, env, left)
+    # There is always another episode to play.
+    limit = LossLimit(most_lost(number + 1))
+    for episode in going_on(begin, limit, on_lost) if on_lost else begin():
         yield (attempt := store.add(episode))
         failures = 0 if attempt.path else failures + 1
         if store.count >= number:
