@@ -163,6 +163,21 @@ def test_an_error_in_a_page_is_shown(folder: Path) -> None:
 
 
 @needs_browser
+def test_a_script_that_a_page_cannot_read_is_the_first_line_of_the_error(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("websockets")
+    game = (folder / "counter.js").read_text(encoding="utf-8")
+    (folder / "counter.js").write_text(f"// The game.\nfunction (\n{game}", encoding="utf-8")
+    monkeypatch.setattr("tltl_runtime.wire.start_watch.GRACE_S", 0.0)
+    with pytest.raises(WireError, match="did not say hello within 5 s after an error in a script") as caught:
+        WireEnv(wire_game(folder, NODE, "tltl_client.js", "index.html", BROWSER))
+    help_ = caught.value.diagnostics[0].help or ""
+    assert help_.startswith("the game's standard error ends:\nUncaught SyntaxError: ")
+    assert "\n   At: counter.js:2\n" in help_
+
+
+@needs_browser
 def test_all_lines_of_a_message_on_the_console_are_shown(folder: Path) -> None:
     pytest.importorskip("websockets")
     game = (folder / "counter.js").read_text(encoding="utf-8")

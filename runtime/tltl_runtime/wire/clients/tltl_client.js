@@ -785,9 +785,11 @@ async function startBrowser(browser, address, end) {
         continue;
       }
       entry = begin ? line.slice(begin[0].length) : `${entry}\n${line}`;
-      const [, message] = /^([^]*)", source: .*\(\d+\)$/.exec(entry) ?? [];
+      const [, message, source, number] = /^([^]*)", source: (.*) ?\((\d+)\)$/.exec(entry) ?? [];
       if (message === undefined) continue;
-      console.error(message);
+      // The address of the page has the token after its question mark.
+      const file = source.trim().replace(/^\w+:\/\/[^/]*\//, "").replace(/[?#].*/, "");
+      console.error(file && message.startsWith("Uncaught ") ? `${message}\n   At: ${file}:${number}` : message);
       entry = null;
     }
     last.splice(0, last.length - 10);
