@@ -20,6 +20,8 @@ def test_a_message_equals_its_golden_text(
     with pytest.raises(SystemExit) as exit_:
         main(list(case.arguments))
     printed = re.sub(r"[\d,]+ steps a second", "N steps a second", capfd.readouterr().err)
+    # The advice on a slow game depends on how busy the machine is.
+    printed = re.sub(r"    1,000,000 steps of a training take .*\n", "", printed)
     case.check(printed)
     assert case.name[:7] in printed
     assert "Traceback" not in printed
