@@ -105,10 +105,12 @@ def _shapes(value: Mapping[str, Any], key: str, read: Callable[[str, object], It
 
 
 def _named_boxes(name: str, value: object) -> Iterator[NamedBox]:
-    """Yield the box with this name; if ``value`` is a list of boxes, yield each of them."""
-    array = _numbers(value)
-    several = array is not None and array.ndim == 3
-    for item in array if array is not None and several else [value]:
+    """Yield the box with this name; if ``value`` is a list of boxes, yield each of them. The list may be empty."""
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    items = list(value) if isinstance(value, (list, tuple)) else [value]
+    first = _numbers(items[0]) if items else None
+    are_boxes = not items or (first is not None and first.ndim == 2)
+    for item in items if are_boxes else [value]:
         yield NamedBox(name, _box(item, f"the box `{name}`"))
 
 

@@ -157,7 +157,8 @@ class SceneEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         try:
             return read_outline(value, self._game.folder)
         except OutlineError as error:
-            title = f"the outline that `tltl_outline` returns {error}"
+            whose = "the game sends" if self._game.wire else "`tltl_outline` returns"
+            title = f"the outline that {whose} {error}"
             raise TltlError([Diagnostic(RAISES, title, (self._label,), error.help)]) from None
 
     def _kept(self, observation: Any) -> Any:

@@ -21,11 +21,12 @@ from tltlc.api import record
 STATE: Final = "state"
 SNAPSHOT: Final = "snapshot"
 SCREENSHOT: Final = "screenshot"
+OUTLINE: Final = "outline"
 ERROR: Final = "error"
 _INFINITE: Final = (inf, -inf)
 _NUMBERS: Final = (float, int)
 _LARGEST: Final = sys.float_info.max
-_KINDS: Final = ("hello", STATE, SNAPSHOT, SCREENSHOT, ERROR)
+_KINDS: Final = ("hello", STATE, SNAPSHOT, SCREENSHOT, OUTLINE, ERROR)
 
 Position = tuple[float, ...]
 
@@ -147,11 +148,19 @@ def screenshot(message: Any) -> NDArray[np.uint8]:
 
     Raises the errors of :func:`body_of`, and MalformedMessageError if the content is no picture.
     """
-    picture = array_from(body_of(message, SCREENSHOT), SCREENSHOT)
+    return picture_from(body_of(message, SCREENSHOT), SCREENSHOT, "a screenshot")
+
+
+def picture_from(value: Any, path: str, what: str) -> NDArray[np.uint8]:
+    """Return the picture at ``path`` in a message, (height, width, 3), without transparency; errors call it ``what``.
+
+    Raises MalformedMessageError if ``value`` is no picture.
+    """
+    picture = array_from(value, path)
     if picture.ndim != 3 or picture.shape[2] not in (3, 4) or not picture.size:
-        raise MalformedMessageError(f"sent a screenshot of the shape {list(picture.shape)}, not [height, width, 3]")
+        raise MalformedMessageError(f"sent {what} of the shape {list(picture.shape)}, not [height, width, 3]")
     if picture.dtype.kind not in "iu" or picture.min() < 0 or picture.max() > 255:
-        raise MalformedMessageError("sent a screenshot with numbers that are not whole numbers from 0 to 255")
+        raise MalformedMessageError(f"sent {what} with numbers that are not whole numbers from 0 to 255")
     return np.ascontiguousarray(picture[:, :, :3], dtype=np.uint8)
 
 

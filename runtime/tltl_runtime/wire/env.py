@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from tltl_runtime.wire import answers, hello
 from tltl_runtime.wire.answers import GameState, Position, StateReader
 from tltl_runtime.wire.hello import Hello
-from tltl_runtime.wire.requests import ResetRequest, RestoreRequest, ScreenshotRequest, SnapshotRequest, StepRequest
+from tltl_runtime.wire.outline import outline_from
+from tltl_runtime.wire.requests import (
+    OutlineRequest,
+    ResetRequest,
+    RestoreRequest,
+    ScreenshotRequest,
+    SnapshotRequest,
+    StepRequest,
+)
 from tltl_runtime.wire.session import Answer, WireSession
 from tltl_runtime.wire.values import value_writer
 from tltl_runtime.wire.wire_game import WireGame
@@ -26,6 +34,7 @@ _LARGEST_SEED: Final = 2**53
 
 _METHODS: Final = {
     "tltl_positions": (hello.POSITIONS, "_positions"),
+    "tltl_outline": (hello.OUTLINE, "_outline"),
     "tltl_snapshot": (hello.SNAPSHOT, "_snapshot"),
     "tltl_restore": (hello.SNAPSHOT, "_restore"),
 }
@@ -58,6 +67,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
     - ``tltl_clock_s``: the seconds of a step;
     - ``tltl_params``: returns the values that the game gives to the params of specs;
     - ``tltl_positions``: returns the positions of the entities, in metres, by name;
+    - ``tltl_outline``: asks the game what maps of the current scene and variant are drawn on, and returns it;
     - ``tltl_snapshot`` and ``tltl_restore``: keep the state of the game, and return to it. A snapshot is
       the id of a state that the game keeps, as bytes; it is valid until the game ends.
 
@@ -79,6 +89,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
     tltl_clock_s: float
     tltl_params: Callable[[], dict[str, float]]
     tltl_positions: Callable[[], Mapping[str, Position]]
+    tltl_outline: Callable[[], dict[str, Any]]
     tltl_snapshot: Callable[[], bytes]
     tltl_restore: Callable[[bytes], None]
 
@@ -211,6 +222,9 @@ class WireEnv(gymnasium.Env[Any, Any]):
 
     def _positions(self) -> Mapping[str, Position]:
         return self._current().positions
+
+    def _outline(self) -> dict[str, Any]:
+        return self._ask_beside("outline", OutlineRequest().message(), outline_from)
 
     def _snapshot(self) -> bytes:
         kept = self._ask_beside("snapshot", SnapshotRequest().message(), answers.snapshot_id)

@@ -20,6 +20,7 @@ SEED: Final = "seed"
 SNAPSHOT: Final = "snapshot"
 POSITIONS: Final = "positions"
 SCREENSHOT: Final = "screenshot"
+OUTLINE: Final = "outline"
 
 JSON: Final = "json"
 MSGPACK: Final = "msgpack"

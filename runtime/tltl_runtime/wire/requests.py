@@ -68,6 +68,15 @@ class ScreenshotRequest:
 
 
 @record
+class OutlineRequest:
+    """Say what maps of this scene and variant are drawn on; the answer is an ``outline``."""
+
+    def message(self) -> dict[str, Any]:
+        """Return the request as a value of JSON."""
+        return {"outline": {}}
+
+
+@record
 class Refusal:
     """Refuse the ``hello`` of a game; ``reason`` completes "because it …". The game ends without an answer."""
 

@@ -49,8 +49,32 @@ def test_a_game_is_checked(tltlc: Run) -> None:  # noqa: F811
     result = tltlc("check", "--game", "counter.game.toml:short:trap")
     assert result.status == 0, result.err
     assert "short:trap has everything that `count` needs" in result.err
+    assert "capabilities: params, clock, positions, outline, cause, snapshot, render" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     assert "a restored snapshot is what was saved: yes" in result.err
+
+
+@pytest.mark.parametrize(
+    ("outline", "message"),
+    [
+        (
+            '{"boxes": {"wall": [[[0, 0], [8, 1]], [[8, 0], 9]]}}',
+            "error[TLT0792]: the game `counter.game.toml` sent `outline.boxes.wall[1][1]` as 9, but it must be a"
+            " list of two or three numbers",
+        ),
+        (
+            '{"image": {"path": "map.png", "extent": [0, 0, 9, 6]}}',
+            "error[TLT0781]: the outline that the game sends has an image `map.png` that cannot be read",
+        ),
+    ],
+)
+def test_a_wrong_outline_is_named(tltlc: Run, game: Path, outline: str, message: str) -> None:  # noqa: F811
+    counter = Path(__file__).parents[1] / "wire" / "games" / "counter.py"
+    changed = f"import sys; sys.path.insert(0, {str(counter.parent)!r}); import counter\n"
+    changed += f"counter.Counter.outline = lambda self: {outline}\ncounter.tltl_client.play(counter.Counter())\n"
+    write(game.parent, sys.executable, "-c", changed)
+    result = tltlc("check", "--game", "counter.game.toml:short:v0")
+    assert result.status == 1 and message in result.err, result.err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the program is a script for a shell")

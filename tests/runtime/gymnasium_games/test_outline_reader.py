@@ -48,6 +48,12 @@ def test_everything_that_a_map_can_show_is_read() -> None:
     assert (outline.bounds.low[:2], outline.bounds.high[:2]) == ((-1, 0), (12, 10)), "the hull of all"
 
 
+def test_boxes_of_a_name_may_differ_in_having_heights_and_be_none() -> None:
+    boxes = {"wall": [((0, 0), (1, 8)), ((8, 1, 0), (9, 2, 3))], "fence": []}
+    outline = read_outline({"boxes": boxes}, FOLDER)
+    assert [(item.name, item.box.high) for item in outline.boxes] == [("wall", (1, 8, 1e4)), ("wall", (9, 2, 3))]
+
+
 def test_bounds_alone_are_an_outline() -> None:
     outline = read_outline({"bounds": np.array([[0, 0], [8, 0]])}, FOLDER)
     assert outline.bounds.high[:2] == (8, pytest.approx(0.01)), "no side is shorter than a centimetre"

@@ -12,8 +12,8 @@ the row. A tick is a tenth of a second.
 
 - ``hello``: ``name`` is ``counter``, ``clock_hz`` 10, ``actions`` ``{"type": "discrete", "n": 3}``,
   ``observation`` ``{"type": "box", "low": 0, "high": 10, "shape": [1], "dtype": "float32"}``, ``params``
-  ``{"goal": 10}``, ``scenes`` ``["short", "long"]``, ``capabilities`` ``seed``, ``positions``, ``snapshot`` and
-  ``screenshot`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves`` with the
+  ``{"goal": 10}``, ``scenes`` ``["short", "long"]``, ``capabilities`` ``seed``, ``positions``, ``snapshot``,
+  ``screenshot`` and ``outline`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves`` with the
   range [0, null], ``at_goal`` of the type ``bool``.
 - ``reset``: the player begins at 1 + seed mod 4, or at 1 without a seed, and ``moves`` is 0. The goal is
   5 in the scene ``short``, which is the default, and 10 in ``long``. The variant ``trap``
@@ -26,6 +26,10 @@ the row. A tick is a tenth of a second.
 - ``snapshot``: the ids are 1, 2, 3 and so on. ``restore`` returns to the scene, variant, position and
   moves of a snapshot, and answers with the state; it can be repeated. Another id is answered by an ``error``.
 - ``screenshot``: one row of 11 pixels, black, that of the player white, as ``uint8`` in base64.
+- ``outline``: the bounds are from [-1, -2] to [11, 3]. Two boxes ``edge`` lie from [-1, -1] to [-0.5, 2] and from
+  [10.5, -1] to [11, 2]. The region ``goal`` lies from [the goal - 0.5, -1] to [10.5, 2]. In the variant ``trap``,
+  there is the polygon ``trap`` with the corners [-0.5, -1], [0.5, -1] and [0, 2]. The image, from [-0.5, -1] to
+  [10.5, 2], has one white pixel, as ``uint8`` in base64.
 - ``close``, or the end of the connection: the game ends with exit status 0.
 - An ``error`` from tltlc: the game ends with another status, and writes the message to standard error.
 - Unknown keys are ignored; an unknown request is answered by an ``error``.
@@ -59,7 +63,7 @@ HELLO: dict[str, Any] = {
     "actions": {"type": "discrete", "n": 3},
     "observation": {"type": "box", "low": 0, "high": 10, "shape": [1], "dtype": "float32"},
     "scenes": ["short", "long"],
-    "capabilities": ["positions", "screenshot", "seed", "snapshot"],
+    "capabilities": ["outline", "positions", "screenshot", "seed", "snapshot"],
 }
 
 
@@ -83,8 +87,23 @@ def picture(position: int) -> dict[str, Any]:
     return {"screenshot": {"base64": base64.b64encode(pixels).decode(), "dtype": "uint8", "shape": [1, 11, 3]}}
 
 
+def outline(goal: int, *, has_trap: bool = False) -> dict[str, Any]:
+    """Return the message that the game must send for its scene and variant."""
+    pixel = {"base64": "////", "dtype": "uint8", "shape": [1, 1, 3]}
+    return {
+        "outline": {
+            "bounds": [[-1, -2], [11, 3]],
+            "boxes": {"edge": [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]]},
+            "polygons": {"trap": [[-0.5, -1], [0.5, -1], [0, 2]]} if has_trap else {},
+            "regions": {"goal": [[goal - 0.5, -1], [10.5, 2]]},
+            "image": {"pixels": pixel, "extent": [-0.5, -1, 10.5, 2]},
+        }
+    }
+
+
 EXCHANGES: tuple[tuple[str, dict[str, Any], dict[str, Any]], ...] = (
     ("a reset begins where the seed says", {"reset": {"scene": "short", "variant": "v0", "seed": 6}}, state(3, 0)),
+    ("an outline is that of the scene", {"outline": {}}, outline(5)),
     ("an action moves right", {"step": {"action": 2}}, state(4, 1)),
     ("an action stays", {"step": {"action": 1}}, state(4, 2)),
     ("an action moves left", {"step": {"action": 0}}, state(3, 3)),
@@ -100,6 +119,7 @@ EXCHANGES: tuple[tuple[str, dict[str, Any], dict[str, Any]], ...] = (
     ("a snapshot of another scene is restored", {"restore": {"id": 2}}, state(1, 5)),
     ("with the goal of that scene", {"step": {"action": 2, "repeat": 9}}, state(5, 9, True, "goal")),
     ("a trap ends the episode", {"reset": {"scene": "long", "variant": "trap", "seed": 0}}, state(1, 0)),
+    ("an outline is that of the variant", {"outline": {}}, outline(10, has_trap=True)),
     ("with a cause", {"step": {"action": 0, "repeat": 4}}, state(0, 1, False, "trap")),
     ("a reset needs no scene and no variant", {"reset": {"seed": 5}}, state(2, 0)),
     ("unknown keys are ignored", {"reset": {"seed": 3, "later": [1]}, "also": {"x": None}}, state(4, 0)),

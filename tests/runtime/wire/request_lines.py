@@ -20,7 +20,9 @@ PIECES: tuple[bytes, ...] = (
 
 def request(chance: random.Random) -> dict[str, Any]:
     """Return a request, or something like one."""
-    kind = chance.choice(("reset", "step", "step", "restore", "snapshot", "screenshot", "close", "telepathy"))
+    kind = chance.choice(
+        ("reset", "step", "step", "restore", "snapshot", "screenshot", "outline", "close", "telepathy")
+    )
     body: dict[str, Any] = {}
     if kind == "reset":
         body = {"scene": chance.choice(TEXTS), "variant": chance.choice(TEXTS), "seed": chance.randrange(1 << 53)}

@@ -24,6 +24,7 @@ from tests.waiting import HANG_S
 from tltl_runtime.wire import clients
 from tltl_runtime.wire.answers import screenshot, snapshot_id
 from tltl_runtime.wire.hello import DeclaredSignal, hello_from
+from tltl_runtime.wire.outline import outline_from
 from tltl_runtime.wire.values import array_from
 
 CLIENTS = Path(clients.__file__).parent
@@ -138,7 +139,7 @@ def _wanted(line: bytes) -> dict[str, Any] | None:
 
 def _compare(row: str, message: dict[str, Any], line: bytes) -> None:
     _, name, scene, variant, has_seed, seed, repeat, id_, numbers, is_right = row.split("\t")
-    kinds = ("reset", "step", "snapshot", "restore", "screenshot", "close")
+    kinds = ("reset", "step", "snapshot", "restore", "screenshot", "outline", "close")
     kind = next((word for word in kinds if word in message), None)
     body = message.get(kind) if kind else None
     body = body if isinstance(body, dict) else {}
@@ -226,7 +227,7 @@ def test_answers_of_all_kinds_arrive(language: str, build: Build) -> None:
     result = run(build(language, "answers.c", *CHECKED))
     assert result.returncode == 0, result.stderr
     *messages, odd, large, huge = result.stdout.splitlines()
-    hello, state, plain, snapshot, picture, refusal = map(json.loads, messages)
+    hello, state, plain, snapshot, picture, outline, bounds, refusal = map(json.loads, messages)
     assert hello["hello"]["token"] == 'a"b\\c\x01ä'
     declared = hello_from(hello)
     assert declared.signals['near(a, "b")'] == DeclaredSignal("number", -inf, 1)
@@ -244,6 +245,18 @@ def test_answers_of_all_kinds_arrive(language: str, build: Build) -> None:
     }
     assert snapshot_id(snapshot) == 2**53 + 1
     assert screenshot(picture).tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
+    read = outline_from(outline)
+    assert read["image"].pop("pixels").tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
+    assert read == {
+        "bounds": [[0, 0], [9, 6]],
+        "boxes": {'wall "1"': [[[0, 0, -1], [8, 1, 2.5]], [[8, 0, -1], [9, 6, 2.5]]], "fence": []},
+        "polygons": {"lake": [[1, 1], [3, 1], [2, 2]]},
+        "regions": {"hall": [[0, 0], [9, 6]], "roof": [[0, 0, -1], [8, 1, 2.5]]},
+        "image": {"extent": [0, 0, 9, 6]},
+    }
+    assert bounds == {"outline": {"boxes": {}, "polygons": {}, "regions": {}, "bounds": [[0, 0, -1], [8, 1, 2.5]]}}, (
+        "what the outline before contained is forgotten"
+    )
     assert refusal["error"]["message"] == "ä" * 255
     assert odd == "the signal seen is nan, and numbers must be finite"
     assert large == "the picture is too large to be sent, or has no channels" == huge
@@ -252,7 +265,7 @@ def test_answers_of_all_kinds_arrive(language: str, build: Build) -> None:
 @with_compilers
 def test_memory_that_ends_is_an_error(language: str, build: Build) -> None:
     program = build(language, "answers.c", *CHECKED)
-    for allocations in range(12):
+    for allocations in range(18):
         result = run(program, str(allocations))
         assert (result.returncode, result.stderr) == (0, ""), allocations
 

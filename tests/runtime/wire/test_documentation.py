@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from tests.docs.blocks import ROOT
+from tltl_runtime.gymnasium_games.outline_reader import read_outline
 from tltl_runtime.wire import answers, requests
 from tltl_runtime.wire.answers import StateReader
 from tltl_runtime.wire.clients import tltl_client
 from tltl_runtime.wire.hello import hello_from
+from tltl_runtime.wire.outline import outline_from
 from tltl_runtime.wire.spaces import space_from
 from tltl_runtime.wire.wire_game import START_S, STEP_S
 from tltlc.api.fileio import limits
@@ -33,7 +35,8 @@ def messages() -> list[dict[str, Any]]:
 
 
 def test_each_message_has_an_example_that_is_read() -> None:
-    (hello, reset, step, state, snapshot, restore, answer, screenshot, picture, close, error, agreement) = messages()
+    (hello, reset, step, state, snapshot, restore, answer, screenshot, picture, *others) = messages()
+    (outline, walls, close, error, agreement) = others
     declared = hello_from(hello)
     read = StateReader(declared).read(state)
     assert read.positions["guard_1"] == (0, 2) and declared.params == {"key_count": 3}
@@ -43,6 +46,9 @@ def test_each_message_has_an_example_that_is_read() -> None:
     assert answers.snapshot_id(answer) == 3
     assert screenshot == requests.ScreenshotRequest().message()
     assert answers.screenshot(picture).tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
+    assert outline == requests.OutlineRequest().message()
+    drawn = read_outline(outline_from(walls), ROOT)
+    assert [box.name for box in drawn.boxes] == ["wall", "wall", "chest"] and drawn.image is not None
     assert close == requests.CloseRequest().message()
     assert list(error) == ["error"] and agreement["hello"]["encoding"] == "msgpack"
 

@@ -134,6 +134,22 @@ def test_a_game_that_is_lost_at_a_snapshot_needs_a_reset() -> None:
     env.close()
 
 
+def test_an_outline_is_that_of_the_scene_and_variant(env: WireEnv) -> None:
+    env.reset(seed=2, options={"scene": "long", "variant": "trap"})
+    outline = env.tltl_outline()
+    assert outline["image"].pop("pixels").tolist() == [[[255, 255, 255]]]
+    assert outline == {
+        "bounds": [[-1, -2], [11, 3]],
+        "boxes": {"edge": [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]]},
+        "polygons": {"trap": [[-0.5, -1], [0.5, -1], [0, 2]]},
+        "regions": {"goal": [[9.5, -1], [10.5, 2]]},
+        "image": {"extent": [-0.5, -1, 10.5, 2]},
+    }
+    assert env.step(RIGHT)[0].tolist() == [4], "the episode goes on"
+    env.reset()
+    assert env.tltl_outline()["regions"] == {"goal": [[4.5, -1], [10.5, 2]]} and not env.tltl_outline()["polygons"]
+
+
 def test_a_picture_is_rendered(env: WireEnv) -> None:
     env.reset(seed=1)
     picture = env.render()

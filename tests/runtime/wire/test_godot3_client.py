@@ -200,6 +200,14 @@ def test_arrays_of_floats_and_vectors_are_sent(project: Path) -> None:
     env.close()
 
 
+def test_an_outline_has_the_axes_of_tltlc(project: Path) -> None:
+    box = '"bounds": AABB(Vector3(1, 2, 3), Vector3(10, 20, 30))'
+    env = WireEnv(change_game(project, '"bounds": Rect2(-1, -3, 12, 5)', box))
+    env.reset(seed=1)
+    assert env.tltl_outline()["bounds"] == [[1, -33, 2], [11, -3, 22]]
+    env.close()
+
+
 def test_a_text_may_have_any_characters(project: Path) -> None:
     env = WireEnv(change_game(project, '"goal" if at_goal', '"\\"\\\\ é €" if at_goal'))
     env.reset(seed=3)

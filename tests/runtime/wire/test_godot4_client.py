@@ -245,6 +245,15 @@ def test_arrays_of_floats_vectors_and_any_texts_are_sent(project: Path) -> None:
 
 
 @runs
+def test_an_outline_has_the_axes_of_tltlc(project: Path) -> None:
+    box = '"bounds": AABB(Vector3(1, 2, 3), Vector3(10, 20, 30))'
+    env = changed(project, '"bounds": Rect2(-1, -3, 12, 5)', box)
+    env.reset(seed=1)
+    assert env.tltl_outline()["bounds"] == [[1, -33, 2], [11, -3, 22]]
+    env.close()
+
+
+@runs
 def test_very_small_and_very_large_numbers_keep_their_values(project: Path) -> None:
     """Numbers between are written by Godot 4 itself; see the next test."""
     random = Random(1)

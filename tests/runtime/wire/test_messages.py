@@ -190,10 +190,16 @@ def test_requests_are_lines_of_json() -> None:
     assert json_text.line(requests.StepRequest(2).message()) == b'{"step":{"action":2}}\n'
     assert json_text.line(requests.StepRequest([0.5], 4).message()) == b'{"step":{"action":[0.5],"repeat":4}}\n'
     assert json_text.line(requests.RestoreRequest(3).message()) == b'{"restore":{"id":3}}\n'
-    empty = requests.SnapshotRequest(), requests.ScreenshotRequest(), requests.CloseRequest()
+    empty = (
+        requests.SnapshotRequest(),
+        requests.ScreenshotRequest(),
+        requests.OutlineRequest(),
+        requests.CloseRequest(),
+    )
     assert [json_text.line(one.message()) for one in empty] == [
         b'{"snapshot":{}}\n',
         b'{"screenshot":{}}\n',
+        b'{"outline":{}}\n',
         b'{"close":{}}\n',
     ]
 

@@ -1,7 +1,7 @@
 // Connect a game in C# to tltlc, and record the play of a person: copy this file into your game.
 //
 // It needs C# 6 and nothing else: Unity, Mono and .NET compile it as it is. A game is a class that implements IGame,
-// and ISnapshots and IScreenshots if it can do what they ask:
+// and ISnapshots, IScreenshots and IOutlines if it can do what they ask:
 //
 //     using Tltl;
 //
@@ -115,7 +115,8 @@
 // A class `Message` is an object of JSON: names and their values, which are null, bools, numbers, texts, arrays, lists
 // and dictionaries. Received whole numbers are of the type long, others of the type double; use TltlClient.Int and
 // TltlClient.Numbers to convert actions. A float is sent with exactly its value. In positions, x points east, y north
-// and z up: those of Unity are `new[] {p.x, p.z, p.y}`.
+// and z up: those of Unity are `new[] {p.x, p.z, p.y}`. Outlines have the same axes. In Unity, the box of a collider,
+// with `b = collider.bounds`, is `new[] {new[] {b.min.x, b.min.z, b.min.y}, new[] {b.max.x, b.max.z, b.max.y}}`.
 //
 // `docs/wire.md` of tltlc describes the protocol.
 
@@ -197,7 +198,8 @@ namespace Tltl
         }
 
         /// <summary>
-        /// The kind of the request: `reset`, `step`, `snapshot`, `restore`, `screenshot`, `close`, or another word.
+        /// The kind of the request: `reset`, `step`, `snapshot`, `restore`, `screenshot`, `outline`, `close`, or
+        /// another word.
         /// </summary>
         public string Kind { get; private set; }
 
@@ -269,6 +271,19 @@ namespace Tltl
         object Screenshot();
     }
 
+    /// <summary>A game that can say what maps of it show.</summary>
+    public interface IOutlines
+    {
+        /// <summary>Returns the outline of the current scene and variant, in metres.</summary>
+        /// <example>
+        /// <code>
+        /// var wall = new[] {new[] {new[] {0, 0}, new[] {8, 1}}, new[] {new[] {8, 0}, new[] {9, 6}}}; // two boxes
+        /// return new Message {{"boxes", new Message {{"wall", wall}}}};
+        /// </code>
+        /// </example>
+        object Outline();
+    }
+
     /// <summary>Plays games, and makes and reads parts of messages.</summary>
     public static class TltlClient
     {
@@ -329,7 +344,8 @@ namespace Tltl
         }
 
         /// <summary>
-        /// Returns the `hello` of a game, with the capabilities `snapshot` and `screenshot` if it has the methods.
+        /// Returns the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the
+        /// methods.
         /// </summary>
         public static Message GameHello(IGame game)
         {
@@ -343,6 +359,7 @@ namespace Tltl
             }
             if (game is ISnapshots) words.Add("snapshot");
             if (game is IScreenshots) words.Add("screenshot");
+            if (game is IOutlines) words.Add("outline");
             hello["capabilities"] = words;
             return hello;
         }
@@ -422,6 +439,7 @@ namespace Tltl
         {
             var snapshots = game as ISnapshots;
             var screenshots = game as IScreenshots;
+            var outlines = game as IOutlines;
             if (request.Kind == "reset")
             {
                 return StateMessage(game.Reset(request.Scene, request.Variant, request.Seed));
@@ -442,6 +460,7 @@ namespace Tltl
             {
                 return new Message {{"screenshot", screenshots.Screenshot()}};
             }
+            if (request.Kind == "outline" && outlines != null) return new Message {{"outline", outlines.Outline()}};
             throw new Refusal("this game does not know the request `" + request.Kind + "`");
         }
 
@@ -504,7 +523,10 @@ namespace Tltl
     /// <summary>A connection to tltlc, which sends `hello` at once.</summary>
     public sealed class Client : IDisposable
     {
-        private static readonly string[] Kinds = {"reset", "step", "snapshot", "restore", "screenshot", "close"};
+        private static readonly string[] Kinds =
+        {
+            "reset", "step", "snapshot", "restore", "screenshot", "outline", "close"
+        };
         private readonly LineConnection _line;
 
         /// <summary>Connects to tltlc.</summary>

@@ -142,7 +142,7 @@ typedef struct {
 } tltl_param;
 
 // Capabilities, to be added with |.
-enum { TLTL_SEED = 1, TLTL_SNAPSHOTS = 2, TLTL_POSITIONS = 4, TLTL_SCREENSHOTS = 8 };
+enum { TLTL_SEED = 1, TLTL_SNAPSHOTS = 2, TLTL_POSITIONS = 4, TLTL_SCREENSHOTS = 8, TLTL_OUTLINES = 16 };
 
 // The declaration of a game.  All but `signals` and `actions` may be empty.
 typedef struct {
@@ -171,7 +171,7 @@ typedef struct {
 } tltl_node;
 
 typedef enum {
-    TLTL_RESET, TLTL_STEP, TLTL_SNAPSHOT, TLTL_RESTORE, TLTL_SCREENSHOT, TLTL_CLOSE, TLTL_UNKNOWN
+    TLTL_RESET, TLTL_STEP, TLTL_SNAPSHOT, TLTL_RESTORE, TLTL_SCREENSHOT, TLTL_OUTLINE, TLTL_CLOSE, TLTL_UNKNOWN
 } tltl_kind;
 
 // A request, valid until the next one is read.
@@ -209,7 +209,7 @@ typedef struct {
     char error[512];
     int has_failed, has_answered;
     intptr_t connection;
-    tltl_text_buffer received, message, signals, observation, positions, cause;
+    tltl_text_buffer received, message, signals, observation, positions, cause, boxes, polygons, regions, frame;
     size_t used;
     tltl_node *nodes;
     size_t node_count, node_capacity;
@@ -252,12 +252,27 @@ int tltl_send_picture(tltl_client *client, const void *pixels, size_t height, si
 typedef enum { TLTL_REFUSED, TLTL_GOES_ON, TLTL_ENDED } tltl_outcome;
 tltl_outcome tltl_refuse(tltl_client *client, const char *format, ...) TLTL_PRINTF_;
 
+// Answer an `outline`: begin, then give what maps of the current scene and variant show, in metres; then send.  x points
+// east and y north.  A box has two opposite corners, each with `dimensions` coordinates, 2 or 3: four or six numbers.
+// tltl_boxes gives all boxes with one name, of things that stop players; a polygon is an area, with two numbers for each
+// corner; reasons name regions.  The image, of 3 or 4 bytes for each pixel, has its north at the top.
+void tltl_begin_outline(tltl_client *client);
+int tltl_bounds(tltl_client *client, const double *box, size_t dimensions);
+int tltl_boxes(tltl_client *client, const char *name, const double *boxes, size_t count, size_t dimensions);
+int tltl_polygon(tltl_client *client, const char *name, const double *corners, size_t count);
+int tltl_region(tltl_client *client, const char *name, const double *box, size_t dimensions);
+int tltl_image(
+    tltl_client *client, const void *pixels, size_t height, size_t width, size_t channels,
+    const double west_south_east_north[4]);
+int tltl_send_outline(tltl_client *client);
+
 // A game, and a loop that plays it --------------------------------------------------------------------------------
 
 // `reset`, `step` (one tick) and `restore` return whether the episode has ended now, or the result of tltl_refuse.
 // `describe` gives the state: what is between tltl_begin_state and tltl_send_state.  Optional: `snapshot` keeps the
-// state of the game and returns an id of at least 0, or -1 if it cannot; `screenshot` calls tltl_send_picture; `close`
-// is called at the end.  `self` is passed to each function.
+// state of the game and returns an id of at least 0, or -1 if it cannot; `screenshot` calls tltl_send_picture;
+// `outline` gives what is between tltl_begin_outline and tltl_send_outline; `close` is called at the end.  `self` is
+// passed to each function.
 typedef struct {
     tltl_hello hello;
     void *self;
@@ -267,10 +282,11 @@ typedef struct {
     long long (*snapshot)(void *self);
     tltl_outcome (*restore)(void *self, tltl_client *client, const tltl_request *request);
     int (*screenshot)(void *self, tltl_client *client);
+    void (*outline)(void *self, tltl_client *client);
     void (*close)(void *self);
 } tltl_game;
 
-// Return the declaration of a game, with the capabilities for snapshots and screenshots if it has the functions.
+// Return the declaration of a game, with the capabilities for snapshots, screenshots and outlines if it has the functions.
 tltl_hello tltl_game_hello(const tltl_game *game);
 // Answer requests until tltlc closes the connection, and close the client.  Return the exit status of the process; if
 // it is 1, the reason is on standard error.
@@ -1031,12 +1047,13 @@ static int tltl_add_words_(tltl_client *client, const char *const *words, size_t
 }
 
 static int tltl_add_capabilities_(tltl_client *client, int capabilities) {
-    const char *words[4];
+    const char *words[5];
     size_t count = 0;
     if (capabilities & TLTL_SEED) words[count++] = "seed";
     if (capabilities & TLTL_SNAPSHOTS) words[count++] = "snapshot";
     if (capabilities & TLTL_POSITIONS) words[count++] = "positions";
     if (capabilities & TLTL_SCREENSHOTS) words[count++] = "screenshot";
+    if (capabilities & TLTL_OUTLINES) words[count++] = "outline";
     return tltl_add_words_(client, words, count);
 }
 
@@ -1149,7 +1166,7 @@ int tltl_listen(tltl_client *client, const tltl_hello *hello, int port, const ch
 }
 
 void tltl_close(tltl_client *client) {
-    tltl_text_buffer *buffers[6];
+    tltl_text_buffer *buffers[10];
     size_t index;
     buffers[0] = &client->received;
     buffers[1] = &client->message;
@@ -1157,7 +1174,11 @@ void tltl_close(tltl_client *client) {
     buffers[3] = &client->observation;
     buffers[4] = &client->positions;
     buffers[5] = &client->cause;
-    for (index = 0; index < 6; ++index) {
+    buffers[6] = &client->boxes;
+    buffers[7] = &client->polygons;
+    buffers[8] = &client->regions;
+    buffers[9] = &client->frame;
+    for (index = 0; index < 10; ++index) {
         free(buffers[index]->data);
         memset(buffers[index], 0, sizeof *buffers[index]);
     }
@@ -1190,7 +1211,7 @@ static void tltl_fill_(tltl_request *request) {
 }
 
 int tltl_next_request(tltl_client *client, tltl_request *request) {
-    static const char *const names[] = {"reset", "step", "snapshot", "restore", "screenshot", "close"};
+    static const char *const names[] = {"reset", "step", "snapshot", "restore", "screenshot", "outline", "close"};
     const tltl_node *error;
     size_t length;
     int kind;
@@ -1305,7 +1326,8 @@ int tltl_send_snapshot(tltl_client *client, long long id) {
            && tltl_add_(client, &client->message, "}}") && tltl_send_message_(client);
 }
 
-int tltl_send_picture(tltl_client *client, const void *pixels, size_t height, size_t width, size_t channels) {
+static int tltl_add_picture_(
+    tltl_client *client, tltl_text_buffer *buffer, const void *pixels, size_t height, size_t width, size_t channels) {
     size_t shape[3];
     shape[0] = height;
     shape[1] = width;
@@ -1313,9 +1335,73 @@ int tltl_send_picture(tltl_client *client, const void *pixels, size_t height, si
     if (channels == 0 || (width && (height > TLTL_LONGEST_MESSAGE / width
                                     || height * width > TLTL_LONGEST_MESSAGE / channels)))
         return tltl_fail_(client, "the picture is too large to be sent, or has no channels");
+    return tltl_add_array_(client, buffer, pixels, height * width * channels, "uint8", shape, 3);
+}
+
+int tltl_send_picture(tltl_client *client, const void *pixels, size_t height, size_t width, size_t channels) {
     return tltl_begin_message_(client, "{\"screenshot\":")
-           && tltl_add_array_(client, &client->message, pixels, height * width * channels, "uint8", shape, 3)
+           && tltl_add_picture_(client, &client->message, pixels, height, width, channels)
            && tltl_add_(client, &client->message, "}") && tltl_send_message_(client);
+}
+
+void tltl_begin_outline(tltl_client *client) {
+    client->boxes.length = client->polygons.length = client->regions.length = client->frame.length = 0;
+}
+
+// Add a list of lists, each of `count` numbers.
+static int tltl_add_lists_(
+    tltl_client *client, tltl_text_buffer *buffer, const double *numbers, size_t lists, size_t count) {
+    size_t index;
+    if (!tltl_add_(client, buffer, "[")) return 0;
+    for (index = 0; index < lists; ++index)
+        if ((index && !tltl_add_(client, buffer, ","))
+            || !tltl_add_list_(client, buffer, numbers + index * count, count))
+            return 0;
+    return tltl_add_(client, buffer, "]");
+}
+
+int tltl_bounds(tltl_client *client, const double *box, size_t dimensions) {
+    return tltl_add_(client, &client->frame, ",\"bounds\":")
+           && tltl_add_lists_(client, &client->frame, box, 2, dimensions);
+}
+
+int tltl_boxes(tltl_client *client, const char *name, const double *boxes, size_t count, size_t dimensions) {
+    size_t index;
+    if (!tltl_add_key_(client, &client->boxes, name) || !tltl_add_(client, &client->boxes, "[")) return 0;
+    for (index = 0; index < count; ++index)
+        if ((index && !tltl_add_(client, &client->boxes, ","))
+            || !tltl_add_lists_(client, &client->boxes, boxes + index * 2 * dimensions, 2, dimensions))
+            return 0;
+    return tltl_add_(client, &client->boxes, "]");
+}
+
+int tltl_polygon(tltl_client *client, const char *name, const double *corners, size_t count) {
+    return tltl_add_key_(client, &client->polygons, name)
+           && tltl_add_lists_(client, &client->polygons, corners, count, 2);
+}
+
+int tltl_region(tltl_client *client, const char *name, const double *box, size_t dimensions) {
+    return tltl_add_key_(client, &client->regions, name)
+           && tltl_add_lists_(client, &client->regions, box, 2, dimensions);
+}
+
+int tltl_image(
+    tltl_client *client, const void *pixels, size_t height, size_t width, size_t channels,
+    const double west_south_east_north[4]) {
+    return tltl_add_(client, &client->frame, ",\"image\":{\"extent\":")
+           && tltl_add_list_(client, &client->frame, west_south_east_north, 4)
+           && tltl_add_(client, &client->frame, ",\"pixels\":")
+           && tltl_add_picture_(client, &client->frame, pixels, height, width, channels)
+           && tltl_add_(client, &client->frame, "}");
+}
+
+int tltl_send_outline(tltl_client *client) {
+    tltl_text_buffer *text = &client->message;
+    return tltl_begin_message_(client, "{\"outline\":{\"boxes\":{") && tltl_add_buffer_(client, text, &client->boxes)
+           && tltl_add_(client, text, "},\"polygons\":{") && tltl_add_buffer_(client, text, &client->polygons)
+           && tltl_add_(client, text, "},\"regions\":{") && tltl_add_buffer_(client, text, &client->regions)
+           && tltl_add_(client, text, "}") && tltl_add_buffer_(client, text, &client->frame)
+           && tltl_add_(client, text, "}}") && tltl_send_message_(client);
 }
 
 tltl_outcome tltl_refuse(tltl_client *client, const char *format, ...) {
@@ -1337,6 +1423,7 @@ tltl_hello tltl_game_hello(const tltl_game *game) {
     tltl_hello hello = game->hello;
     if (game->snapshot && game->restore) hello.capabilities |= TLTL_SNAPSHOTS;
     if (game->screenshot) hello.capabilities |= TLTL_SCREENSHOTS;
+    if (game->outline) hello.capabilities |= TLTL_OUTLINES;
     return hello;
 }
 
@@ -1368,6 +1455,10 @@ static void tltl_answer_(const tltl_game *game, tltl_client *client, const tltl_
     } else if (request->kind == TLTL_SCREENSHOT && game->screenshot) {
         if (!game->screenshot(game->self, client) && !client->has_answered)
             tltl_refuse(client, "there is no picture now");
+    } else if (request->kind == TLTL_OUTLINE && game->outline) {
+        tltl_begin_outline(client);
+        game->outline(game->self, client);
+        tltl_send_outline(client);
     } else {
         tltl_refuse(client, "this game does not know the request `%s`", request->name);
     }

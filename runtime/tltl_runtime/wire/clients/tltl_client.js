@@ -42,6 +42,8 @@
 //
 //       // Optional: `snapshot()` keeps the state of the game and returns an id, `restore(id)` returns to it and returns
 //       // the state, `screenshot()` returns a picture (see `array`), and `close()` is called at the end.
+//       // `outline()` returns what maps of the current scene and variant show, in metres, for example
+//       // { boxes: { wall: [[[0, 0], [8, 1]], [[8, 0], [9, 6]]] }, regions: { hall: [[0, 1], [8, 6]] } }
 //     }
 //
 //     play(new Game());
@@ -67,7 +69,7 @@
 
 const PROTOCOL = 1;
 const LONGEST_LINE = 1 << 25;
-const KINDS = ["reset", "step", "snapshot", "restore", "screenshot", "close"];
+const KINDS = ["reset", "step", "snapshot", "restore", "screenshot", "outline", "close"];
 const IS_NODE = typeof process === "object" && Boolean(process.versions?.node) && typeof window === "undefined";
 
 /** Throw this in a method of the game if a request cannot be met. tltlc shows the message, which says why. */
@@ -145,11 +147,12 @@ export async function play(game, client = null) {
   }
 }
 
-/** Return the `hello` of a game, with the capabilities `snapshot` and `screenshot` if it has the methods. */
+/** Return the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the methods. */
 export function gameHello(game) {
   const words = new Set(game.hello.capabilities ?? []);
   if (game.snapshot && game.restore) words.add("snapshot");
   if (game.screenshot) words.add("screenshot");
+  if (game.outline) words.add("outline");
   return { ...game.hello, capabilities: [...words].sort() };
 }
 
@@ -166,6 +169,8 @@ async function answer(game, client, kind, body) {
     client.answerState(await game.restore(body.id));
   } else if (kind === "screenshot" && game.screenshot) {
     client.answer({ screenshot: await game.screenshot() });
+  } else if (kind === "outline" && game.outline) {
+    client.answer({ outline: await game.outline() });
   } else {
     throw new Refusal(`this game does not know the request \`${kind}\``);
   }

@@ -42,6 +42,8 @@
 --
 --     -- Optional: game:snapshot() keeps the state of the game and returns an id, game:restore(id) returns to it and
 --     -- returns the state, game:screenshot() returns a picture (see `array`), game:close() is called at the end.
+--     -- game:outline() returns what maps of the current scene and variant show, in metres, for example
+--     -- {boxes = {wall = {{{0, 0}, {8, 1}}, {{8, 0}, {9, 6}}}}, regions = {hall = {{0, 1}, {8, 6}}}}
 --
 --     tltl_client.play(game)
 --
@@ -69,7 +71,7 @@
 local PROTOCOL = 1
 local LONGEST_FIRST_LINE = 65536
 local DEEPEST = 100
-local KINDS = {"reset", "step", "snapshot", "restore", "screenshot", "close"}
+local KINDS = {"reset", "step", "snapshot", "restore", "screenshot", "outline", "close"}
 
 local byte, char, find, format, gsub, match, sub =
   string.byte, string.char, string.find, string.format, string.gsub, string.match, string.sub
@@ -415,12 +417,13 @@ function tltl_client.array(data, dtype, shape)
   return {base64 = base64(data), dtype = dtype, shape = list(shape)}
 end
 
---- Return the `hello` of a game, with the capabilities `snapshot` and `screenshot` if it has the methods.
+--- Return the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the methods.
 function tltl_client.game_hello(game)
   local hello, has = copy(game.hello), {}
   for _, word in ipairs(hello.capabilities or {}) do has[word] = true end
   if game.snapshot and game.restore then has.snapshot = true end
   if game.screenshot then has.screenshot = true end
+  if game.outline then has.outline = true end
   hello.capabilities = {}
   for word in pairs(has) do hello.capabilities[#hello.capabilities + 1] = word end
   table.sort(hello.capabilities)
@@ -592,6 +595,8 @@ local function answer(game, client, kind, body)
     client:answer_state(game:restore(body.id))
   elseif kind == "screenshot" and game.screenshot then
     client:answer({screenshot = game:screenshot()})
+  elseif kind == "outline" and game.outline then
+    client:answer({outline = game:outline()})
   else
     error(tltl_client.Refusal("this game does not know the request `" .. kind .. "`"), 0)
   end

@@ -22,13 +22,17 @@ some methods::
         def snapshot(self): ...                        # optional: keep the state of the game, return an id
         def restore(self, id): ...                     # optional: return to it, return the state
         def screenshot(self): ...                      # optional: return a picture, see `array`
+        def outline(self): ...                         # optional: return what maps of the scene show, see below
         def close(self): ...                           # optional: called at the end
 
     if __name__ == "__main__":
         tltl_client.play(Game())
 
 A state is a dict with ``signals``, ``observation``, ``ended``, ``cause`` and ``positions``; ``state``
-makes one. Raise ``Refusal("there is no scene `crypt`")`` where a request cannot be met.
+makes one. Raise ``Refusal("there is no scene `crypt`")`` where a request cannot be met. An outline is
+that of the current scene and variant, in metres, for example::
+
+    {"boxes": {"wall": [[[0, 0], [8, 1]], [[8, 0], [9, 6]]]}, "regions": {"hall": [[0, 1], [8, 6]]}}
 
 ``play`` waits for requests. A game with a main loop of its own uses ``Client`` directly::
 
@@ -57,7 +61,7 @@ from zlib import adler32
 
 PROTOCOL = 1
 LONGEST_LINE = 1 << 25
-KINDS = ("reset", "step", "snapshot", "restore", "screenshot", "close")
+KINDS = ("reset", "step", "snapshot", "restore", "screenshot", "outline", "close")
 
 
 class Refusal(Exception):
@@ -129,12 +133,17 @@ def play(game: Any, client: Client | None = None) -> None:
 
 
 def game_hello(game: Any) -> dict[str, Any]:
-    """Return the ``hello`` of a game, with the capabilities ``snapshot`` and ``screenshot`` if it has the methods."""
+    """Return the ``hello`` of a game.
+
+    It has the capabilities ``snapshot``, ``screenshot`` and ``outline`` if the game has the methods.
+    """
     words = set(game.hello.get("capabilities", []))
     if hasattr(game, "snapshot") and hasattr(game, "restore"):
         words.add("snapshot")
     if hasattr(game, "screenshot"):
         words.add("screenshot")
+    if hasattr(game, "outline"):
+        words.add("outline")
     return {**game.hello, "capabilities": sorted(words)}
 
 
@@ -154,6 +163,8 @@ def _answer(game: Any, client: Client, kind: str, body: Any) -> None:
         client.answer_state(game.restore(body["id"]))
     elif kind == "screenshot" and hasattr(game, "screenshot"):
         client.answer({"screenshot": game.screenshot()})
+    elif kind == "outline" and hasattr(game, "outline"):
+        client.answer({"outline": game.outline()})
     else:
         raise Refusal(f"this game does not know the request `{kind}`")
 

@@ -42,6 +42,8 @@
 #     # func snapshot():      keep the state of the game, return an id
 #     # func restore(id):     return to it, return the state
 #     # func screenshot():    return a picture, see `array`
+#     # func outline():       return what maps of the current scene and variant show, such as
+#     #     {"boxes": {"wall": [AABB(…), AABB(…)]}, "regions": {"hall": AABB(…)}}
 #     # func close():         called at the end
 #
 # A method returns `Tltl.refusal("there is no scene `crypt`")` where a request cannot be met.
@@ -58,14 +60,15 @@
 # to which tltlc connects, calls `tltl.listen(self, 5000)` in place of `begin`.
 #
 # Positions can be a Vector2 or a Vector3: they are sent with the axes of tltlc, whose x points east,
-# y north and z up: (x, -y), and (x, -z, y). A PoolRealArray as an observation is sent fastest.
+# y north and z up: (x, -y), and (x, -z, y). So are the corners in an outline, and its boxes if they are
+# a Rect2 or an AABB. A PoolRealArray as an observation is sent fastest.
 # `docs/wire.md` of tltlc describes the protocol.
 
 extends Reference
 
 const PROTOCOL = 1
 const LONGEST_LINE = 33554432
-const KINDS = ["step", "reset", "snapshot", "restore", "screenshot", "close"]
+const KINDS = ["step", "reset", "snapshot", "restore", "screenshot", "outline", "close"]
 
 # Why the connection has ended or could not be made; empty if tltlc has closed it.
 var problem = ""
@@ -206,6 +209,8 @@ func _say_hello(game, token: String) -> bool:
 		words.append("snapshot")
 	if game.has_method("screenshot") and not words.has("screenshot"):
 		words.append("screenshot")
+	if game.has_method("outline") and not words.has("outline"):
+		words.append("outline")
 	hello["capabilities"] = words
 	_whole_actions = not ("box" in _types(hello["actions"]))
 	_send(_text({"hello": hello}))
@@ -268,6 +273,8 @@ func _serve(kind: String) -> void:
 		_answer_result(_game.restore(_whole(_body["id"])))
 	elif kind == "screenshot" and _game.has_method("screenshot"):
 		_send(_text({"screenshot": _game.screenshot()}))
+	elif kind == "outline" and _game.has_method("outline"):
+		_send(_text({"outline": _game.outline()}))
 	else:
 		_send(_text(refusal("this game does not know the request `%s`" % kind)))
 
@@ -454,6 +461,12 @@ func _text(value) -> String:
 			return Digits.text(value)
 		TYPE_STRING:
 			return _quoted(value)
+		TYPE_VECTOR2:
+			return _text([value.x, -value.y])
+		TYPE_VECTOR3:
+			return _text([value.x, -value.z, value.y])
+		TYPE_RECT2, TYPE_AABB:
+			return _text(_corners(value.position, value.end))
 		TYPE_DICTIONARY:
 			var members = PoolStringArray()
 			for key in value:
@@ -463,6 +476,13 @@ func _text(value) -> String:
 	for item in value:
 		items.append(_text(item))
 	return "[" + items.join(",") + "]"
+
+
+# Returns the two corners of a box with the axes of tltlc: first the western, southern and lower one.
+static func _corners(low, high) -> Array:
+	if low is Vector2:
+		return [[low.x, -high.y], [high.x, -low.y]]
+	return [[low.x, -high.z, low.y], [high.x, -low.z, high.y]]
 
 
 static func _quoted(text: String) -> String:

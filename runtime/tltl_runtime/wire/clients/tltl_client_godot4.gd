@@ -47,6 +47,8 @@
 #     # func snapshot() -> Variant:              keep the state of the game, return an id
 #     # func restore(id: Variant) -> Dictionary: return to it, return the state
 #     # func screenshot() -> Dictionary:         return a picture, see `array`
+#     # func outline() -> Dictionary:            return what maps of the current scene and variant show, such as
+#     #     {"boxes": {"wall": [AABB(…), AABB(…)]}, "regions": {"hall": AABB(…)}}
 #     # func close() -> void:                    called at the end
 #
 # `seed_` is null if the game does not declare the capability `seed`. Run the game as fast as the machine
@@ -62,14 +64,15 @@
 # to which tltlc connects, calls `tltl.listen(self, 5000)` in place of `begin`.
 #
 # Positions can be a Vector2 or a Vector3: they are sent with the axes of tltlc, whose x points east,
-# y north and z up: (x, -y), and (x, -z, y). A PackedFloat32Array as an observation is sent fastest.
+# y north and z up: (x, -y), and (x, -z, y). So are the corners in an outline, and its boxes if they are
+# a Rect2 or an AABB. A PackedFloat32Array as an observation is sent fastest.
 # `docs/wire.md` of tltlc describes the protocol.
 
 extends RefCounted
 
 const PROTOCOL := 1
 const LONGEST_LINE := 33554432
-const KINDS: Array[String] = ["reset", "step", "snapshot", "restore", "screenshot", "close"]
+const KINDS: Array[String] = ["reset", "step", "snapshot", "restore", "screenshot", "outline", "close"]
 
 ## Why the connection has ended or could not be made; empty if tltlc has closed it.
 var problem: String = ""
@@ -214,6 +217,8 @@ func _say_hello(game: Object, token: String) -> bool:
 		words.append("snapshot")
 	if game.has_method("screenshot") and not words.has("screenshot"):
 		words.append("screenshot")
+	if game.has_method("outline") and not words.has("outline"):
+		words.append("outline")
 	hello["capabilities"] = words
 	_whole_actions = not ("box" in _types(hello["actions"]))
 	_send(_text({"hello": hello}))
@@ -281,6 +286,8 @@ func _serve(kind: String) -> void:
 		_answer_result(_game.call("restore", _whole(_body["id"])))
 	elif kind == "screenshot" and _game.has_method("screenshot"):
 		_send(_text({"screenshot": _game.call("screenshot")}))
+	elif kind == "outline" and _game.has_method("outline"):
+		_send(_text({"outline": _game.call("outline")}))
 	else:
 		_send(_text(refusal("this game does not know the request `%s`" % kind)))
 
@@ -410,6 +417,13 @@ func _text(value: Variant) -> String:
 			return _text([value.x, -value.y])
 		TYPE_VECTOR3:
 			return _text([value.x, -value.z, value.y])
+		TYPE_RECT2:
+			var area: Rect2 = value
+			return _text([[area.position.x, -area.end.y], [area.end.x, -area.position.y]])
+		TYPE_AABB:
+			var low: Vector3 = value.position
+			var high: Vector3 = value.end
+			return _text([[low.x, -high.z, low.y], [high.x, -low.z, high.y]])
 		TYPE_PACKED_FLOAT32_ARRAY:
 			return _text(array(value.to_byte_array(), "float32", [value.size()]))
 		TYPE_PACKED_FLOAT64_ARRAY:

@@ -7,7 +7,7 @@ using System.Collections.Generic;
 using Tltl;
 
 /// <summary>Counts up to the goal, and in the variant `trap` never down to 0.</summary>
-internal sealed class Counter : IGame, ISnapshots, IScreenshots
+internal sealed class Counter : IGame, ISnapshots, IScreenshots, IOutlines
 {
     private struct Place
     {
@@ -88,6 +88,31 @@ internal sealed class Counter : IGame, ISnapshots, IScreenshots
         var pixels = new byte[33];
         for (int i = 0; i < 3; i++) pixels[3 * _now.Position + i] = 255;
         return TltlClient.Array(pixels, "uint8", 1, 11, 3);
+    }
+
+    /// <summary>Says what maps show: the edges of the row, the goal, and the trap if there is one.</summary>
+    public object Outline()
+    {
+        var edges = new[] {Corners(-1, -1, -0.5, 2), Corners(10.5, -1, 11, 2)};
+        var polygons = new Message();
+        if (_now.HasTrap) polygons["trap"] = new[] {new[] {-0.5, -1}, new[] {0.5, -1}, new[] {0.0, 2}};
+        return new Message
+        {
+            {"bounds", Corners(-1, -2, 11, 3)},
+            {"boxes", new Message {{"edge", edges}}},
+            {"polygons", polygons},
+            {"regions", new Message {{"goal", Corners(_now.Goal - 0.5, -1, 10.5, 2)}}},
+            {"image", new Message
+            {
+                {"pixels", TltlClient.Array(new byte[] {255, 255, 255}, "uint8", 1, 1, 3)},
+                {"extent", new[] {-0.5, -1, 10.5, 2}},
+            }},
+        };
+    }
+
+    private static double[][] Corners(double west, double south, double east, double north)
+    {
+        return new[] {new[] {west, south}, new[] {east, north}};
     }
 
     private State Now()

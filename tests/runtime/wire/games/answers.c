@@ -37,6 +37,8 @@ static int send_all(tltl_client *client, const tltl_game *game) {
     static const unsigned char floats[] = {0, 0, 128, 63, 0, 0, 0, 192, 0, 0, 0, 0};  // 1, -2 and 0 as float32
     static const size_t shape[] = {3, 1};
     static const unsigned char pixels[] = {255, 0, 0, 0, 255, 0, 0, 0, 255};
+    static const double walls[] = {0, 0, -1, 8, 1, 2.5, 8, 0, -1, 9, 6, 2.5}, lake[] = {1, 1, 3, 1, 2, 2};
+    static const double extent[] = {0, 0, 9, 6};
     const tltl_hello hello = tltl_game_hello(game);
     char long_text[1001];
     size_t index;
@@ -56,6 +58,18 @@ static int send_all(tltl_client *client, const tltl_game *game) {
     went_well &= tltl_send_state(client, 0);
     went_well &= tltl_send_snapshot(client, 9007199254740993LL);
     went_well &= tltl_send_picture(client, pixels, 1, 3, 3);
+    tltl_begin_outline(client);
+    tltl_boxes(client, "wall \"1\"", walls, 2, 3);
+    tltl_boxes(client, "fence", walls, 0, 3);
+    tltl_polygon(client, "lake", lake, 3);
+    tltl_region(client, "hall", extent, 2);
+    tltl_region(client, "roof", walls, 3);
+    tltl_bounds(client, extent, 2);
+    tltl_image(client, pixels, 1, 3, 3, extent);
+    went_well &= tltl_send_outline(client);
+    tltl_begin_outline(client);
+    tltl_bounds(client, walls, 3);
+    went_well &= tltl_send_outline(client);
     for (index = 0; index < 1000; index += 2) memcpy(long_text + index, "\xc3\xa4", 2);
     long_text[1000] = '\0';
     tltl_refuse(client, "%s", long_text);  // Byte 511, the last one, is half a letter.

@@ -90,6 +90,21 @@ static int screenshot(void *self, tltl_client *client) {
     return tltl_send_picture(client, pixels, 1, 11, 3);
 }
 
+// What maps show: the edges of the row, the goal, and the trap if there is one.
+static void outline(void *self, tltl_client *client) {
+    static const double bounds[] = {-1, -2, 11, 3}, edges[] = {-1, -1, -0.5, 2, 10.5, -1, 11, 2};
+    static const double trap[] = {-0.5, -1, 0.5, -1, 0, 2}, extent[] = {-0.5, -1, 10.5, 2};
+    static const unsigned char white[] = {255, 255, 255};
+    const counter_state *now = &((counter *)self)->now;
+    double goal[] = {0, -1, 10.5, 2};
+    goal[0] = now->goal - 0.5;
+    tltl_bounds(client, bounds, 2);
+    tltl_boxes(client, "edge", edges, 2, 2);
+    if (now->has_trap) tltl_polygon(client, "trap", trap, 3);
+    tltl_region(client, "goal", goal, 2);
+    tltl_image(client, white, 1, 1, 3, extent);
+}
+
 int main(int argc, char **argv) {
     static const tltl_signal_declaration signals[] = {
         {"position", NULL, 0, 10}, {"moves", NULL, 0, INFINITY}, {"at_goal", "bool", 0, 1}};
@@ -115,6 +130,7 @@ int main(int argc, char **argv) {
     game.snapshot = snapshot;
     game.restore = restore;
     game.screenshot = screenshot;
+    game.outline = outline;
     self.now.goal = 5;
     self.now.position = 1;
     if (argc == 3 && strcmp(argv[1], "--listen") == 0) {

@@ -66,6 +66,17 @@ function game:screenshot()
   return tltl_client.array(pixels, "uint8", {1, 11, 3})
 end
 
+-- What maps show: the edges of the row, the goal, and the trap if there is one.
+function game:outline()
+  return {
+    bounds = {{-1, -2}, {11, 3}},
+    boxes = {edge = {{{-1, -1}, {-0.5, 2}}, {{10.5, -1}, {11, 2}}}},
+    polygons = self.has_trap and {trap = {{-0.5, -1}, {0.5, -1}, {0, 2}}} or {},
+    regions = {goal = {{self.goal - 0.5, -1}, {10.5, 2}}},
+    image = {pixels = tltl_client.array("\255\255\255", "uint8", {1, 1, 3}), extent = {-0.5, -1, 10.5, 2}},
+  }
+end
+
 -- Return the message about the state.
 function game:state()
   local at_goal, is_trapped = self.position >= self.goal, self.has_trap and self.position == 0

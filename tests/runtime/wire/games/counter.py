@@ -69,6 +69,16 @@ class Counter:
         picture: dict[str, Any] = tltl_client.array(bytes(pixels), "uint8", [1, 11, 3])
         return picture
 
+    def outline(self) -> dict[str, Any]:
+        """Say what maps show: the edges of the row, the goal, and the trap if there is one."""
+        return {
+            "bounds": [[-1, -2], [11, 3]],
+            "boxes": {"edge": [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]]},
+            "polygons": {"trap": [[-0.5, -1], [0.5, -1], [0, 2]]} if self.has_trap else {},
+            "regions": {"goal": [[self.goal - 0.5, -1], [10.5, 2]]},
+            "image": {"pixels": tltl_client.array(b"\xff\xff\xff", "uint8", [1, 1, 3]), "extent": [-0.5, -1, 10.5, 2]},
+        }
+
     def state(self) -> dict[str, Any]:
         """Return the message about the state."""
         at_goal, trapped = self.position >= self.goal, self.has_trap and self.position == 0

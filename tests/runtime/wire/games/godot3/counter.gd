@@ -91,6 +91,18 @@ func screenshot() -> Dictionary:
 	return Tltl.array(pixels, "uint8", [1, 11, 3])
 
 
+# What maps show: the edges of the row, the goal, and the trap if there is one.
+func outline() -> Dictionary:
+	var trap = {"trap": PoolVector2Array([Vector2(-0.5, 1), Vector2(0.5, 1), Vector2(0, -2)])}
+	return {
+		"bounds": Rect2(-1, -3, 12, 5),
+		"boxes": {"edge": [Rect2(-1, -2, 0.5, 3), [Vector2(10.5, 1), Vector2(11, -2)]]},
+		"polygons": trap if has_trap else {},
+		"regions": {"goal": Rect2(goal - 0.5, -2, 11 - goal, 3)},
+		"image": {"pixels": Tltl.array(PoolByteArray([255, 255, 255]), "uint8", [1, 1, 3]), "extent": [-0.5, -1, 10.5, 2]},
+	}
+
+
 func state() -> Dictionary:
 	var at_goal = position >= goal
 	var trapped = has_trap and position == 0

@@ -57,6 +57,18 @@ class Counter {
     return array(pixels, "uint8", [1, 11, 3]);
   }
 
+  /** Say what maps show: the edges of the row, the goal, and the trap if there is one. */
+  outline() {
+    const { goal, hasTrap } = this.#now;
+    return {
+      bounds: [[-1, -2], [11, 3]],
+      boxes: { edge: [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]] },
+      polygons: hasTrap ? { trap: [[-0.5, -1], [0.5, -1], [0, 2]] } : {},
+      regions: { goal: [[goal - 0.5, -1], [10.5, 2]] },
+      image: { pixels: array(new Uint8Array([255, 255, 255]), "uint8", [1, 1, 3]), extent: [-0.5, -1, 10.5, 2] },
+    };
+  }
+
   #state() {
     const { goal, hasTrap, position, moves } = this.#now;
     const [at_goal, isTrapped] = [position >= goal, hasTrap && position === 0];
