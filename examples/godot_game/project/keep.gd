@@ -108,6 +108,10 @@ func state() -> Dictionary:
 	}
 
 
+func outline() -> Dictionary:
+	return level.outline()
+
+
 func snapshot() -> int:
 	snapshots.append([level, level.kept(), judge.kept()])
 	return snapshots.size()

@@ -16,6 +16,7 @@ const CHASE_SPEED = 2.0
 const SIGHT = 3.0
 const SIGHT_COSINE = 0.5
 const FARTHEST = 25.0
+const FALL = 2.5  # how far a player flies while falling
 const HIDDEN = Vector3(5, 0, 5)
 
 # The middle of the ferry's deck moves between these places, and the guard walks between the others.
@@ -223,6 +224,36 @@ func positions() -> Dictionary:
 	if guard != null:
 		places["guard_1"] = guard.translation
 	return places
+
+
+# What maps show: walls and the crate, which stop the player; the door, which opens; the chasm around the far bank.
+func outline() -> Dictionary:
+	var boxes = {"wall": [], "crate": []}
+	for body in get_children():
+		if body is StaticBody and not (body.name in ["GroundWest", "GroundEast", "Door"]):
+			boxes["crate" if body.name == "Crate" else "wall"].append(from_above(body))
+	var near = from_above($GroundWest)
+	var far = from_above($GroundEast)
+	var north = near.position.y - FALL
+	var south = near.end.y + FALL
+	var areas = {"chasm": [
+		Vector2(near.end.x, north), Vector2(far.end.x, north), Vector2(far.end.x, far.position.y), far.position,
+		Vector2(far.position.x, far.end.y), far.end, Vector2(far.end.x, south), Vector2(near.end.x, south),
+	]}
+	if door != null:
+		var gap = from_above(door)
+		areas["door"] = [gap.position, Vector2(gap.end.x, gap.position.y), gap.end, Vector2(gap.position.x, gap.end.y)]
+	# The last region surrounds the one before: the first that contains a place counts.
+	var around = Rect2(near.end.x, north, far.end.x - near.end.x, south - north)
+	return {"boxes": boxes, "polygons": areas, "regions": {"yard": near, "far_yard": far, "chasm": around}}
+
+
+# The place of a body, seen from above: its x and z.
+func from_above(body: PhysicsBody) -> Rect2:
+	var shape = body.get_node("Shape")
+	var place = shape.global_transform.origin
+	var extents = shape.shape.extents
+	return Rect2(place.x - extents.x, place.z - extents.z, 2 * extents.x, 2 * extents.z)
 
 
 # --- snapshots ------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from matplotlib.path import Path as MapPath
 
 from tests.interfaces.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
 from tests.waiting import HANG_S
@@ -71,6 +72,32 @@ def test_a_scene_can_be_played_and_says_where_things_are(scene: str, variant: st
     positions = env.get_wrapper_attr("tltl_positions")()
     assert {"player", "ferry", "beacon"} <= positions.keys()
     assert ("guard_1" in positions) == (scene == "courtyard")
+    env.close()
+
+
+@needs_engine
+@pytest.mark.parametrize(("scene", "variant"), SCENES)
+def test_players_stay_out_of_the_walls_of_the_outline_and_fall_into_its_chasm(scene: str, variant: str) -> None:
+    env = make_scene_env(GAME_FILE, scene, variant)
+    moves, fallen = actions(2), 0
+    for seed in range(30):
+        env.reset(seed=seed)
+        outline = env.get_wrapper_attr("scene_outline")()
+        assert len(outline.boxes) == (6 if scene == "courtyard" else 3)
+        areas = {area.name: MapPath(area.corners) for area in outline.polygons}
+        ended, step = False, 0
+        while not ended and step < 80:
+            _, _, ended, _, _ = env.step(next(moves))
+            step += 1
+            x, y, z = env.get_wrapper_attr("tltl_positions")()["player"]
+            for name, box in ((item.name, item.box) for item in outline.boxes):
+                inside = box.low[0] < x < box.high[0] and box.low[1] < y < box.high[1]
+                assert not inside, (name, x, y)
+            if z < -0.1:
+                fallen += 1
+                assert areas["chasm"].contains_point((x, y)), (x, y)
+                break
+    assert fallen or scene == "courtyard", "nobody comes to the chasm without a key"
     env.close()
 
 
