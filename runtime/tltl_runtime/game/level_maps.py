@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic
 
 from tltl_runtime.game.level_files import LevelT
@@ -56,6 +56,16 @@ class LevelMaps(ABC, Generic[LevelT, EpisodeT]):
         ``index`` is the number of the episode within its case. The functions of
         :mod:`~tltl_runtime.game.packing` encode the values, and ``packing.js`` decodes them.
         """
+
+    def empty_plan(
+        self, level: LevelT, ways: Sequence[tuple[float, float]], episodes: Iterable[EpisodeT]
+    ) -> LevelT | None:
+        """Return a level without bounds, with an empty plan as its map; None if this is not possible, by default.
+
+        The plan encloses ``ways``, points (x, y) in metres, and what moves in the recorded ``episodes``.
+        """
+        del level, ways, episodes
+        return None
 
     def is_map_of(self, level: LevelT, episode: EpisodeT) -> bool:
         """Return whether the map of a level also fits a recorded episode of it; by default always."""

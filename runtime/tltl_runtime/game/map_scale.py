@@ -18,17 +18,18 @@ class MapScale:
     """Converts the metres of a level to the centimetres of its map.
 
     ``bounds`` are those of the level. ``metre`` says how many metres of the level a metre on the map
-    stands for. ``size`` is the width and the height of the map, in centimetres.
+    stands for. ``size`` is the width and the height of the map, in centimetres. ``per_metre`` says how
+    many centimetres of the map a metre of the level has.
     """
 
     def __init__(self, bounds: Box, metre: float = 1.0) -> None:
         (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
-        self._per_metre = 100 / metre
-        self.size = (round(self._per_metre * (east - self.west)), round(self._per_metre * (self.north - south)))
+        self.per_metre = 100 / metre
+        self.size = (round(self.per_metre * (east - self.west)), round(self.per_metre * (self.north - south)))
 
     def at(self, point: Sequence[float]) -> tuple[int, int]:
         """Return the map coordinates of a point (x, y) or (x, y, z)."""
-        return round(self._per_metre * (point[0] - self.west)), round(self._per_metre * (self.north - point[1]))
+        return round(self.per_metre * (point[0] - self.west)), round(self.per_metre * (self.north - point[1]))
 
     def middle(self, box: Box) -> tuple[int, int]:
         """Return the map coordinates of a box's centre."""

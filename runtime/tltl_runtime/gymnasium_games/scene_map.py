@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections import Counter
 from collections.abc import Iterator
+from math import floor, log10
 from typing import Final
 
 from markupsafe import Markup
@@ -19,6 +20,7 @@ from tltl_runtime.gymnasium_games.scene_map_scale import scene_metre
 from tltl_runtime.support.markup import element
 
 _LANDMARK_RADIUS: Final = 22
+_BAR_INSET: Final = 30
 
 _SIGNS: Final = {
     "landmark": "stays in its place",
@@ -35,7 +37,8 @@ def scene_map(level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
     obstacles = [scale.rect(item.box) for item in outline.boxes]
     labels = placed_labels(_thing_labels(level, scale, mentions), obstacles, outline.regions, scale, mentions)
     title = f"Map of {level.name} {level.variant}"
-    return map_picture(title, scale, _ground(outline, scale, mentions), _landmarks(level, scale), labels)
+    bar = [*_scale_bar(scale)] if _is_empty(outline) else []
+    return map_picture(title, scale, [*_ground(outline, scale, mentions), *bar], _landmarks(level, scale), labels)
 
 
 def scene_map_key(level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup:
@@ -53,6 +56,10 @@ def scene_map_key(level: SceneLevel, mentions: Mentions = NO_MENTIONS) -> Markup
 def _outline(level: SceneLevel) -> LevelOutline:
     assert level.outline is not None, "only scenes with outlines have maps"
     return level.outline
+
+
+def _is_empty(outline: LevelOutline) -> bool:
+    return not (outline.boxes or outline.polygons or outline.regions or outline.image)
 
 
 def _sign(kind: str) -> Markup:
@@ -73,6 +80,16 @@ def _ground(outline: LevelOutline, scale: MapScale, mentions: Mentions) -> Itera
         yield element("rect", element("title", item.name), class_=kind, **scale.sides(item.box))
     for region in outline.regions:
         yield element("rect", class_="region", **scale.sides(region.box))
+
+
+def _scale_bar(scale: MapScale) -> Iterator[Markup]:
+    """Yield a bar in the south-western corner, and its length: 1, 2 or 5 times a power of ten, in metres."""
+    longest = scale.size[0] / scale.per_metre / 4
+    power = 10.0 ** floor(log10(longest))
+    metres = max(power * factor for factor in (1, 2, 5) if power * factor <= longest)
+    left, bottom, length = _BAR_INSET, scale.size[1] - _BAR_INSET, round(metres * scale.per_metre)
+    yield element("path", class_="scale", d=f"M{left},{bottom - 15}v15h{length}v-15")
+    yield element("text", f"{metres:g} m", class_="scale-name", x=left + length // 2, y=bottom - 20)
 
 
 def _image(image: MapImage, scale: MapScale) -> Markup:

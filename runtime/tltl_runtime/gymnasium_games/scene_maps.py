@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from tltl_runtime.game.level_maps import LevelMaps
 from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, mentions_in
+from tltl_runtime.game.outline import LevelOutline
 from tltl_runtime.game.palette import ENDS, INK
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
-from tltl_runtime.gymnasium_games.scene_map_scale import scene_metre
+from tltl_runtime.gymnasium_games.scene_map_scale import bounds_around, scene_metre
+from tltlc.api import replace
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -61,12 +63,23 @@ class SceneMaps(LevelMaps[SceneLevel, SceneEpisode]):
 
         return scene_playback(level, index, episode)
 
+    def empty_plan(
+        self, level: SceneLevel, ways: Sequence[tuple[float, float]], episodes: Iterable[SceneEpisode]
+    ) -> SceneLevel:
+        """Return a scene whose game shows no outline, with an empty outline around ways and entities."""
+        import numpy as np
+
+        points = [np.array(ways, dtype=np.float64).reshape(-1, 2)]
+        points += [episode.entities.places[..., :2].reshape(-1, 2) for episode in episodes if episode.entities]
+        places = np.concatenate(points)
+        return replace(level, outline=LevelOutline(bounds_around(places[~np.isnan(places[:, 0])])))
+
     def is_map_of(self, level: SceneLevel, episode: SceneEpisode) -> bool:
-        """Return whether an episode has the outline of ``level``; False if the level's outline varies.
+        """Return whether an episode has the outline of ``level``, or none; False if the level's outline varies.
 
         A game may return another outline after each reset.
         """
-        return level.outline == episode.level.outline and not level.is_one_of_many
+        return episode.level.outline in (None, level.outline) and not level.is_one_of_many
 
     def mentions(self, level: SceneLevel, text: str) -> Mentions:
         """Return the landmarks, boxes, areas and regions that a text mentions."""

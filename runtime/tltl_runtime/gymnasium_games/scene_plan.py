@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from io import BytesIO
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,18 +12,15 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from tltl_runtime.game.episode import Trajectory
-from tltl_runtime.game.geometry import Box, Point
+from tltl_runtime.game.geometry import Point
 from tltl_runtime.game.mentions import region_text
 from tltl_runtime.game.outline import LevelOutline, MapImage
 from tltl_runtime.game.plan import Plan, area, draw_path, draw_paths, plan_axes, text_scale, write_name
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_level import SceneLevel
-from tltl_runtime.gymnasium_games.scene_map_scale import scale_of
+from tltl_runtime.gymnasium_games.scene_map_scale import bounds_around, scale_of
 from tltl_runtime.gymnasium_games.scene_maps import AREA, BOX, FLOOR, LANDMARK
 from tltlc.api import Fspa, Notation
-
-_MARGIN: Final = 0.05
-"""The margin around paths without an outline, as a share of the longer side."""
 
 
 def draw_scene_episode(episode: SceneEpisode, size: tuple[int, int] | None, notation: Notation) -> bytes:
@@ -47,7 +44,7 @@ def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.flo
     ``points``, (n, 2), are the points of the paths to draw. Without an outline, the plan's bounds
     enclose these points.
     """
-    bounds = _hull(points) if level.bounds is None else level.bounds
+    bounds = bounds_around(points) if level.bounds is None else level.bounds
     metre = scale_of(bounds)
 
     def axes(figure: Figure) -> Any:
@@ -62,13 +59,6 @@ def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.flo
         return drawn
 
     return Plan(bounds, axes, metre)
-
-
-def _hull(points: NDArray[np.float64]) -> Box:
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = _MARGIN * max(1.0, float((high - low).max()))
-    (west, south), (east, north) = (low - margin).tolist(), (high + margin).tolist()
-    return Box((west, south, 0.0), (east, north, 1.0))
 
 
 def _add_outline(axes: Any, outline: LevelOutline, letters: float) -> None:

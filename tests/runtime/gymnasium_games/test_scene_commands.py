@@ -160,6 +160,7 @@ def test_a_suite_tests_scenes(tltlc: Run, trained: Path, tmp_path: Path) -> None
     page = (tmp_path / "report.html").read_text()
     assert "<h3>Episodes</h3>" in page
     assert "<h3>Map</h3>" not in page
+    assert "There is no map: the game does not say where the player is. Add <code>tltl_positions()</code>" in page
     assert "<figcaption>episode 0:" in page
     # A film of each recorded episode, above its curves, as the policy of the page allows.
     assert "img-src data:;" in page

@@ -190,6 +190,20 @@ def test_a_game_without_a_clock_is_evaluated_recorded_and_tested(tltlc: Run, fol
     assert report["pass_rate"] is not None
 
 
+def test_positions_without_an_outline_get_a_map(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    (folder / "placed.game.toml").write_text(games.GAME.replace("corridor:", "placed:"))
+    positions = 'def tltl_positions(self):\n        return {"player": (self.cell, 0.5)}\n\n    def render'
+    (folder / "placed.py").write_text(games.GRID.replace("def render", positions))
+    (folder / "placed.toml").write_text(case("placed.game.toml", "placed"))
+    for command in (("baseline",), ("regress", "--fresh", "--html", "placed.html")):
+        result = tltlc(*command, "placed.toml", "--workers", 1)
+        assert result.status in (0, 1), result.err
+    page = (folder / "placed.html").read_text(encoding="utf-8")
+    assert "<h3>Map</h3>" in page and "The game gives positions, but no outline" in page
+    assert "<h3>Episodes</h3>" in page and 'class="film"' in page, "the map takes nothing away"
+    assert "There is no map" not in page
+
+
 @pytest.mark.slow
 def test_a_baseline_with_which_no_case_can_pass_says_so(tltlc: Run, folder: Path) -> None:  # noqa: F811
     strict = "thresholds = { pass_rate = 0.999 }\n"

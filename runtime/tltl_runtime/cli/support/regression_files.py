@@ -18,6 +18,7 @@ from tltl_runtime.regression.report.episode_films import CaseFilms, episode_film
 from tltl_runtime.regression.report.film_cache import films_hash, kept_films
 from tltl_runtime.regression.report.junit import junit
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, SuiteReport, maps_of
+from tltl_runtime.regression.report.page.missing_map import with_plan
 from tltl_runtime.regression.report.page.page import html_report
 from tltl_runtime.regression.report.report_json import document
 from tltl_runtime.regression.report.trace_curves import episode_curves, example_curves
@@ -184,7 +185,8 @@ def _reported_case(case: FinishedCase, outcome: SuiteRun) -> ReportedCase:
         baseline_level=_baseline_level(level, case.prepared, case.reference),
         curve=_curve(case, outcome.folder),
     )
-    if maps_of(reported) is not None:
+    reported = with_plan(reported)
+    if maps_of(reported) is not None and not reported.is_on_empty_plan:
         return reported
     films = _films(case.report, case.prepared, episodes, folder, outcome)
     return replace(

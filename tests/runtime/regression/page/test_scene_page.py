@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -13,6 +14,7 @@ from tests.runtime.gymnasium_games.vault_episodes import played
 from tests.runtime.regression.page import chromium, samples
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.regression.report.page.contents import ReportedCase, SuiteReport, maps_of
+from tltl_runtime.regression.report.page.missing_map import missing_map_text, with_plan
 from tltl_runtime.regression.report.page.page import html_report
 from tltlc.core.record import replace
 
@@ -105,6 +107,52 @@ def test_a_game_that_changes_its_map_says_so(browser: Browser, tmp_path: Path) -
     path = page(tmp_path / "report.html", case_of(tmp_path, "plain", fixed=False))
     with chromium.opened(browser, path, **WIDE) as tab:
         expect(tab.locator("#vault-plain .drawn .hint")).to_contain_text("changes its map from episode to episode")
+
+
+def without_outline(case: ReportedCase) -> ReportedCase:
+    """Return the case as it is if the game has no outline."""
+
+    def blank(level: Any) -> Any:
+        return replace(level, outline=None)
+
+    episodes = {
+        index: replace(episode, level=blank(episode.level))  # type: ignore[type-var]
+        for index, episode in case.episodes.items()
+    }
+    level = blank(case.level)
+    return replace(case, level=level, baseline_level=level, episodes=episodes)
+
+
+@needs_browser
+def test_positions_without_an_outline_are_drawn_on_an_empty_plan_with_a_scale(browser: Browser, tmp_path: Path) -> None:
+    case = without_outline(case_of(tmp_path, "plain"))
+    assert maps_of(case) is None
+    path = page(tmp_path / "report.html", with_plan(case))
+    with chromium.opened(browser, path, "#vault-plain/0/0", **WIDE) as tab:
+        section = tab.locator("#vault-plain")
+        assert section.locator(".map .wall").count() == section.locator(".map .region").count() == 0
+        assert section.locator(".map .scale-name").all_text_contents() == ["2 m"]
+        expect(section.locator(".drawn .hint")).to_have_text(re.compile("positions, but no outline.*tltl_outline"))
+        bodies = section.locator(".map .live .body")
+        assert bodies.locator("title").all_text_contents() == ["key", "guard_1", "exit", "the player"]
+        expect(section.locator("svg.map")).to_be_visible()
+        frame = section.locator("svg.map").bounding_box()
+        assert frame is not None
+        for body in bodies.all():
+            box = body.bounding_box()
+            assert box is not None and frame["x"] < box["x"] and box["x"] + box["width"] < frame["x"] + frame["width"]
+        tab.goto(f"{path.as_uri()}#vault-plain")
+        expect(section.locator(".map .ends .end")).to_have_count(6)
+
+
+def test_a_page_without_a_map_says_why(tmp_path: Path) -> None:
+    case = without_outline(case_of(tmp_path, "plain"))
+    assert missing_map_text(with_plan(case)) == ""
+    unknown = tuple(replace(episode, way=(), place=None) for episode in case.report.episodes)
+    blind = replace(case, report=replace(case.report, episodes=unknown))
+    assert with_plan(blind) == blind
+    text = html_report(SuiteReport("vault", 7, 0.05, {}, (blind,)))
+    assert "There is no map: the game does not say where the player is. Add <code>tltl_positions()</code>, or" in text
 
 
 def test_the_page_has_no_map_unless_the_game_says_where_the_player_is(tmp_path: Path) -> None:

@@ -39,7 +39,8 @@ def case_maps(case: ReportedCase, level: Level, level_maps: LevelMaps[Any, Any])
     ``level_maps`` draws the maps. The page's script fills in the legend. If the level of the baseline
     looks different, the HTML contains its map, too, and the page shows one of the two.
     """
-    return render("case_maps.html", maps=tuple(_maps(case, level, level_maps)))
+    maps = tuple(_maps(case, level, level_maps))
+    return render("case_maps.html", maps=maps, is_on_empty_plan=case.is_on_empty_plan)
 
 
 def _maps(case: ReportedCase, level: Level, maps: LevelMaps[Any, Any]) -> Iterator[_DrawnMap]:

@@ -13,6 +13,7 @@ from tltl_runtime.regression.report.page.case_maps import case_maps
 from tltl_runtime.regression.report.page.contents import NotRun, ReportedCase, maps_of
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
 from tltl_runtime.regression.report.page.episode_links import episode_links, trace_links
+from tltl_runtime.regression.report.page.missing_map import missing_map_text
 from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.trace_charts import trace_charts
@@ -73,6 +74,7 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         has_baseline=bool(case.before),
         drawings=_drawings(case, slug, automaton),
         film_notes=case.film_notes,
+        no_map=missing_map_text(case),
         noun="traces" if case.report.traces else "episodes",
     )
 

@@ -26,6 +26,7 @@ class ReportedCase:
     - ``curve`` is the plot of the policy's retraining as a PNG; empty if there is none.
     - ``curves`` are curves of example traces by index, for a case of recorded traces. If the game does
       not say where the player is, they are those of the recorded ``episodes``. Otherwise they are empty.
+    - ``is_on_empty_plan`` says that the level has an empty plan as its map, because its game shows no outline.
     - ``films`` are films of some recorded episodes by index, as animated WebP pictures. ``film_notes``
       are sentences about films that could not be made.
     """
@@ -38,6 +39,7 @@ class ReportedCase:
     baseline_level: Level | None = None
     curve: bytes = b""
     curves: Mapping[int, TraceCurves] = EMPTY
+    is_on_empty_plan: bool = False
     films: Mapping[int, bytes] = EMPTY
     film_notes: tuple[str, ...] = ()
 
