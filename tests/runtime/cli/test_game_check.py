@@ -59,6 +59,11 @@ def test_the_report_is_one_document_in_json(tltlc, inside: Path) -> None:  # typ
         "capabilities": ["clock", "render"],
         "unchanged": [],
         "standard_error": [],
+        "missing": {
+            "positions": "reports have no maps, and sentences name no places",
+            "cause": "sentences do not say who or what ended an episode",
+            "snapshot": "a training replays actions to return to a place",
+        },
         "reproducible": True,
         "restores": None,
     }

@@ -49,9 +49,20 @@ def test_a_game_is_checked(tltlc: Run) -> None:  # noqa: F811
     result = tltlc("check", "--game", "counter.game.toml:short:trap")
     assert result.status == 0, result.err
     assert "short:trap has everything that `count` needs" in result.err
-    assert "capabilities: params, clock, positions, outline, cause, snapshot, render" in result.err
+    assert "capabilities: params, clock, positions, outline, cause, snapshot, render\n  speed" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     assert "a restored snapshot is what was saved: yes" in result.err
+
+
+def test_a_check_says_what_a_missing_outline_costs(tltlc: Run, game: Path) -> None:  # noqa: F811
+    counter = Path(__file__).parents[1] / "wire" / "games" / "counter.py"
+    changed = f"import sys; sys.path.insert(0, {str(counter.parent)!r}); import counter\n"
+    changed += "del counter.Counter.outline\ncounter.tltl_client.play(counter.Counter())\n"
+    write(game.parent, sys.executable, "-c", changed)
+    result = tltlc("check", "--game", "counter.game.toml:short:v0", "--format", "json")
+    hint = "maps show positions alone, and sentences name no regions"
+    assert json.loads(result.out)["scenes"][0]["missing"] == {"outline": hint}
+    assert f"snapshot, render\n    no outline: {hint}\n" in tltlc("check", "--game", "counter.game.toml:short:v0").err
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ import click
 from tltl_runtime.cli.support.level_check import check_levels
 from tltl_runtime.cli.support.plain_text import plain_text
 from tltl_runtime.cli.support.slow_starts import slow_starts_shown
+from tltl_runtime.gymnasium_games.capabilities import missing
 from tltl_runtime.gymnasium_games.game_argument import parse_game, scene_of, variant_of
 from tltl_runtime.gymnasium_games.game_check import SceneReport, check_scene
 from tltl_runtime.gymnasium_games.game_file import GameFile, read_game_file
@@ -134,6 +135,8 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
     yield f"  observation: {space_text(scene_report.observation)}"
     yield f"  action: {space_text(scene_report.action)}"
     yield f"  capabilities: {', '.join(scene_report.capabilities) or 'none'}"
+    for capability, consequence in missing(scene_report.capabilities).items():
+        yield f"    no {capability}: {consequence}"
     yield f"  speed: {scene_report.steps_per_s:,.0f} steps a second"
     if scene_report.advice:
         yield f"    {scene_report.advice}"
@@ -161,6 +164,7 @@ def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequenc
         "observation": space_json(scene_report.observation),
         "action": space_json(scene_report.action),
         "capabilities": list(scene_report.capabilities),
+        "missing": missing(scene_report.capabilities),
         "steps_per_s": round(scene_report.steps_per_s, 1),
         "advice": scene_report.advice,
         "unchanged": list(scene_report.unchanged),
