@@ -21,6 +21,7 @@ FICKLE = Path(__file__).parents[1] / "wire" / "games" / "fickle.py"
 SETTINGS = """\
 stop = { windows = 2, episodes = 4, confirmation = 3, steps = 64 }
 rollout = { steps = 8, workers = 1, envs = %d }
+ppo.minibatches = 1
 network.hidden = [8]
 exploration.ways = 1
 """

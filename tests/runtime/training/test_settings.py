@@ -144,6 +144,22 @@ def test_a_file_overrides_settings(tmp_path: Path) -> None:
     assert isinstance(_read(tmp_path, "checkpoint_s = 5\n").checkpoint_s, float)
 
 
+def test_scenes_of_game_files_have_other_defaults(tmp_path: Path) -> None:
+    level, scene = read_settings(level="navigation"), read_settings(level="lake.game.toml:small")
+    assert level == read_settings()
+    assert scene == replace(
+        level,
+        ppo=replace(level.ppo, epochs=10, minibatches=32),
+        rollout=replace(level.rollout, envs=16),
+        network=replace(level.network, hidden=(128, 128)),
+    )
+    file = tmp_path / "settings.toml"
+    file.write_text("[ppo]\nepochs = 5\n")
+    assert read_settings(file, "lake.game.toml:small") == replace(scene, ppo=replace(scene.ppo, epochs=5))
+    file.write_text(settings_text(scene))
+    assert read_settings(file) == read_settings(file, "lake.game.toml:small") == scene
+
+
 def test_printing_and_reading_the_defaults_changes_nothing(tmp_path: Path) -> None:
     assert _read(tmp_path, default_text()) == _read(tmp_path, "") == read_settings()
 

@@ -89,7 +89,7 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
         check_spelling(fileio.split_spec_name(options.spec)[0])
     initial = initial_policy_options(options)
     path, variant = _level_and_variant(options, initial)
-    settings = new_settings(options, initial)
+    settings = new_settings(options, initial, path)
     _check_demonstrations(options.demonstrations, settings)
     game = game_of(path)
     level = game.load_level(path, variant)
@@ -132,12 +132,14 @@ def initial_policy_options(options: TrainOptions) -> InitialPolicyOptions | None
     return None if options.policy is None else read_policy_option(options.policy)
 
 
-def new_settings(options: TrainOptions, initial: InitialPolicyOptions | None) -> TrainingSettings:
-    """Return the settings of a new training.
+def new_settings(
+    options: TrainOptions, initial: InitialPolicyOptions | None, level: str | None = None
+) -> TrainingSettings:
+    """Return the settings of a new training; ``level`` is what it plays, by default the level of the options.
 
     Raises the errors of :func:`read_settings` and :func:`with_policy_network`.
     """
-    settings = _with_limits(read_settings(options.config), options)
+    settings = _with_limits(read_settings(options.config, level or options.level or ""), options)
     settings = replace(settings, method=_value_or(options.method, settings.method))
     return settings if initial is None else with_policy_network(settings, initial, options.config)
 

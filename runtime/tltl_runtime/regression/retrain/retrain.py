@@ -67,7 +67,8 @@ def configure_retraining(suite: Suite, prepared: PreparedCase, folder: Path, min
         TltlError: TLT0942, the policy of a case lies in the folder of the training.
     """
     place, path = _training_folder(suite, prepared.case, folder), policy_file(prepared.case.policy)
-    setup, card, settings = prepared.setup, prepared.setup.policy.card, read_settings()
+    setup, card = prepared.setup, prepared.setup.policy.card
+    settings = read_settings(level=setup.level)
     rollout = replace(
         settings.rollout, pool="ray" if pool == "ray" else "processes", workers=0 if pool == "ray" else pool
     )

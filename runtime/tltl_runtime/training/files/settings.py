@@ -1,4 +1,8 @@
-"""The settings of a training. The defaults are in ``settings.toml`` beside this module."""
+"""The settings of a training.
+
+The defaults are in ``settings.toml`` beside this module; ``game_settings.toml`` has those that differ
+for the scenes of game files.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,7 @@ from math import inf
 from pathlib import Path
 from typing import Any, Final, Literal
 
+from tltl_runtime.game.level_name import is_scene
 from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.model_config import space_model_config
@@ -18,6 +23,7 @@ from tltl_runtime.training.files.settings_file import read_values
 from tltlc.api import Diagnostic, RewardOptions, TltlError, fileio, monitors, record, replace
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")
+_GAME_DEFAULTS: Final = Path(__file__).with_name("game_settings.toml")
 
 _PPO: Final = "PPO"
 _GAIL: Final = "tltl_runtime.training.imitation.gail:Gail"
@@ -192,16 +198,18 @@ class TrainingSettings:
         return self.exploration.ways > 0 and not self.imitates
 
 
-def read_settings(path: Path | None = None) -> TrainingSettings:
+def read_settings(path: Path | None = None, level: str = "") -> TrainingSettings:
     """Return the default settings; if ``path`` is given, settings in this TOML file replace them.
+
+    ``level`` is what the agent plays: a scene of a game file has some other defaults than a level.
 
     Raises:
         TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has an
             unknown key (TLT0861) or an invalid value (TLT0862).
     """
     values = read_values(fileio.read_source(DEFAULTS))
-    if path is not None:
-        overrides = read_values(fileio.read_source(path))
+    for file in (_GAME_DEFAULTS if is_scene(level) else None, path):
+        overrides = {} if file is None else read_values(fileio.read_source(file))
         values = {name: {**defaults, **overrides.get(name, {})} for name, defaults in values.items()}
     ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
     if ppo.minibatches > rollout.envs * rollout.steps:
