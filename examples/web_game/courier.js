@@ -61,7 +61,7 @@ export class Courier {
       delivered: { type: "bool" },
     },
     actions: { type: "discrete", n: ACTIONS.length },
-    observation: { type: "box", low: -1, high: 1, shape: [15], dtype: "float32" },
+    observation: { type: "box", low: -1, high: 1, shape: [18], dtype: "float32" },
     scenes: Object.keys(SCENES),
     capabilities: ["seed", "positions"],
   };
@@ -96,11 +96,9 @@ export class Courier {
   /** Play one tick: the courier moves, then the dog. */
   step(action) {
     const { now } = this;
-    const [east, north] = MOVES[action];
-    const next = [now.courier[0] + east, now.courier[1] + north];
-    if (!isWall(now.scene, next)) now.courier = next;
+    now.courier = this.#cellAfter(MOVES[action]);
     if (same(now.courier, now.parcel)) now.carrying = true;
-    this.#moveDog();
+    [now.dog, now.dogEnd] = this.#dogAfterTick();
     return this.state();
   }
 
@@ -115,6 +113,14 @@ export class Courier {
     this.now = structuredClone(this.#snapshots[id - 1]);
     this.#measure();
     return this.state();
+  }
+
+  /** What maps are drawn on: the walls. */
+  outline() {
+    const rows = SCENES[this.now.scene];
+    const cells = rows.flatMap((row, index) => [...row].map((letter, x) => [letter, x, rows.length - 1 - index]));
+    const wall = cells.filter(([letter]) => letter === "#").map(([, x, y]) => [[x, y], [x + 1, y + 1]]);
+    return { bounds: [[0, 0], SIZE], boxes: { wall } };
   }
 
   /** The values of the signals, in metres, and of the bools. */
@@ -145,7 +151,8 @@ export class Courier {
 
   /**
    * Numbers in [-1, 1]: where the courier, its target and the dog are, where the dog runs, what the courier's map says of
-   * the four neighbouring cells (1: nearer to the target, -1: farther, 0: a wall), and where the dog is from the courier.
+   * the four neighbouring cells (1: nearer to the target, -1: farther, 0: a wall), and how far each action leads from
+   * the dog: -1 at the dog, 0 at the edge of its reach, 1 from 2 m on.
    */
   #observation() {
     const { scene, courier, parcel, door, dog, dogEnd, carrying } = this.now;
@@ -155,19 +162,25 @@ export class Courier {
       const next = [courier[0] + east, courier[1] + north];
       return isWall(scene, next) ? 0 : metres(courier) - metres(next);
     });
-    const toDog = dog.map((value, axis) => Math.min(Math.max((value - courier[axis]) / 4, -1), 1));
+    const [nextDog] = this.#dogAfterTick();
+    const fromDog = MOVES.map((move) => Math.min(distance(this.#cellAfter(move), nextDog) - CATCH_M, 1));
     const shares = places.map((value, index) => value / (SIZE[index % 2] / 2) - 1);
-    return new Float32Array([...shares, dogEnd, carrying ? 1 : 0, scene === "yard" ? 0 : 1, ...map, ...toDog]);
+    return new Float32Array([...shares, dogEnd, carrying ? 1 : 0, scene === "yard" ? 0 : 1, ...map, ...fromDog]);
   }
 
-  /** The dog runs to one end of its route and back. */
-  #moveDog() {
-    const { now } = this;
-    const end = now.route[now.dogEnd];
-    now.dog = now.dog.map((value, axis) => {
-      return value + Math.min(Math.max(end[axis] - value, -now.dogSpeed), now.dogSpeed);
-    });
-    if (same(now.dog, end)) now.dogEnd = 1 - now.dogEnd;
+  /** Where a move leads the courier: walls stop it. */
+  #cellAfter([east, north]) {
+    const { scene, courier } = this.now;
+    const next = [courier[0] + east, courier[1] + north];
+    return isWall(scene, next) ? courier : next;
+  }
+
+  /** Where the dog is after the next tick, and to which end of its route it then runs; it runs to one end and back. */
+  #dogAfterTick() {
+    const { dog, dogEnd, dogSpeed, route } = this.now;
+    const end = route[dogEnd];
+    const next = dog.map((value, axis) => value + Math.min(Math.max(end[axis] - value, -dogSpeed), dogSpeed));
+    return [next, same(next, end) ? 1 - dogEnd : dogEnd];
   }
 
   /** Compute how far the ride from each cell is to the parcel and to the door. */
