@@ -94,7 +94,9 @@ def test_the_commands_under_start_here_succeed(tltlc, inside: Path) -> None:  # 
     commands = [line.strip().split("  ")[0].split() for line in lines]
     assert len(commands) == 3
     for program, *arguments in commands:
-        assert (program, tltlc(*arguments).status) == ("tltlc", 0)
+        assert program == "tltlc"
+        # `serve` runs until Ctrl-C; the tests of the playground start it.
+        assert arguments[0] == "serve" or tltlc(*arguments).status == 0
 
 
 def test_levels_are_listed(tltlc) -> None:  # type: ignore[no-untyped-def]
