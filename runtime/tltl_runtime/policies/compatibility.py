@@ -81,13 +81,13 @@ def check_spaces(card: Card, observation: spaces.Space[Any], action: spaces.Spac
         if own == (dict(card.shapes), list(card.branches)):
             return
     if layouts is None or card.spaces is None:
-        title = f"the policy was trained for another game, with the level `{card.level}`"
+        title = f"the policy was trained for `{card.level}` of another game"
         raise _unfit_error(f"{title}, whose observations or actions are of other kinds", _OWN_GAME)
     before, after = _parts_by_key(card.spaces), _parts_by_key(layouts)
     wrong = [f"another observation `{key}`" for key in {**before, **after} if before.get(key) != after.get(key)]
     wrong += ["another action"] if card.spaces.action != layouts.action else []
     if wrong:
-        title = f"the policy was trained for another game, with the level `{card.level}`: {short_list(wrong, _MOST)}"
+        title = f"the policy was trained for `{card.level}` of another game: {short_list(wrong, _MOST)}"
         raise _unfit_error(title, _OWN_GAME)
 
 

@@ -63,7 +63,7 @@ def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     lines = result.out.splitlines()
     assert verdicts(result.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
     assert re.fullmatch(
-        r"room:v0   pass     (\d\d) of \1   progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
+        r"room:v0   pass     (\d\d) of \1   100%  progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
     )
     assert lines[2].startswith("hopeless  fail      0 of 25     0%  progress")
     assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"

@@ -231,7 +231,7 @@ def test_the_game_of_a_project_may_have_levels(tltlc: Run, folder: Path) -> None
     (folder / "tltl.toml").write_text(f'game = "{FILE}"\n')
     (folder / "small.toml").write_text(SETTINGS)
     result = tltlc("train", "soon.tltl", "--config", "small.toml", "--steps", "64", "--out", "run")
-    assert "training soon on cover_and_hide v0" in result.err
+    assert "training soon on cover_and_hide:v0" in result.err
 
 
 # --- suites ------------------------------------------------------------------------------------------

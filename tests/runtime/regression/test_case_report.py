@@ -39,4 +39,4 @@ def test_the_headline_is_no_failure_that_is_as_frequent_as_before(game: Path) ->
         ).headline
 
     assert headline(47).startswith("met in 47 of 50 episodes (94%), before in 47 of 50 (94%): ")
-    assert headline(50) == "runs out of time in the middle in 3 of 50 episodes"
+    assert headline(50) == "runs out of time in the middle in 3 of 50 episodes (6%)"

@@ -85,4 +85,4 @@ def test_a_level_whose_guard_looks_into_covers_does_not_pass(judged: Mapping[str
     report = judged[f"{level}:v2"]
     assert report.verdict != "pass"
     (death, *_) = [finding.text for finding in report.explanation if finding.text.startswith("dies ")]
-    assert " by `guard" in death and ", breaking `alive`," in death
+    assert " by `guard" in death and ", breaking `keep alive`," in death

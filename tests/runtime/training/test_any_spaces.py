@@ -183,7 +183,7 @@ def test_a_policy_of_another_game_is_refused(tmp_path: Path) -> None:
     other = policy_of_spaces(spaces.Box(-1, 1, (3,), np.float32), LineEnv().action_space)
     write_policy(path, other)
     run = line_run(tmp_path / "run")
-    title = f"the policy was trained for another game, with the level `{other.card.level}`"
+    title = f"the policy was trained for `{other.card.level}` of another game"
     assert f"error[TLT0843]: {title}: another observation `observation`, " in refusal(
         replace(run, initial=initial_policy_of(path, other))
     )

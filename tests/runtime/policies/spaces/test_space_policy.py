@@ -139,7 +139,8 @@ def test_a_policy_plays_in_the_spaces_of_its_training() -> None:
     other = spaces.Dict({**GRID.spaces, "direction": spaces.Discrete(5)})
     with pytest.raises(TltlError) as caught:
         check_spaces(card, other, spaces.Discrete(2))
-    assert "another game: another observation `direction`, another action\n" in render(caught.value.diagnostics)
+    text = "`small` of another game: another observation `direction`, another action\n"
+    assert text in render(caught.value.diagnostics)
     env = make_env("cover_and_hide")
     check_spaces(card_of(), env.observation_space, env.action_space)
     for wrong in (card, with_layouts(card, observation=card.spaces.observation[:1] if card.spaces else ())):
