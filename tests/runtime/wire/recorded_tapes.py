@@ -25,6 +25,7 @@ GDSCRIPT: Final = """\
 var recorder = Tltl.Recorder.new("FOLDER", ["near(a, b)", "size", "seen"], 60, "walk")
 var sizes = [pow(2, -1074), -0.0, 1e-300, 1e22, -123456.789, 0.1]
 recorder.begin("crypt", "v1", 7)
+recorder.sample({"near(a, b)": NAN, "size": 2, "seen": false}, 0)
 for step in range(1, 131):
 	var signals = {"near(a, b)": step / 3.0, "size": sizes[step % 6], "seen": step == 130}
 	recorder.sample(signals, [step % 3, 1.0 if step % 2 else 1])
@@ -32,7 +33,10 @@ recorder.begin()
 recorder.sample({"near(a, b)": 1, "size": 2, "seen": false})
 print(recorder.sample({"near(a, b)": 1, "size": 2, "seen": false}, 1), recorder.problem)
 recorder.end()"""
-"""The body of a function that records the play in Godot, and then an episode without actions."""
+"""The body of a function that records the play in Godot, and then an episode without actions.
+
+The recorder refuses the first sample, and yet the tape says what `begin` was given.
+"""
 
 
 def signals(step: int) -> dict[str, float | bool]:

@@ -284,6 +284,7 @@ def test_a_recorded_trace_is_judged(language: str, build: Build, tmp_path: Path)
         result = run(program, str(folder), value)
         assert result.returncode == 1
         assert result.stderr == f"the signal near(a, b) is {value}, and numbers must be finite\n"
+        assert not (folder / "trace-0006.csv").exists()
     result = run(program, str(tmp_path / program / "none"))
     assert result.returncode == 1 and result.stderr.startswith("cannot write ")
 
@@ -293,7 +294,11 @@ def test_a_recorder_writes_the_tape_of_a_play(language: str, build: Build, tmp_p
     (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
     result = run(build(language, "record.c", *CHECKED), str(tmp_path), "tape")
     assert result.returncode == 0, result.stderr
-    assert result.stdout == "give the action of each sample of an episode, or of none\n"
+    assert result.stdout.splitlines() == [
+        "give the action of each sample of an episode, or of none",
+        str(tmp_path / "trace-0004.csv"),
+    ]
     recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
+    assert not (tmp_path / "trace-0004.csv").exists()

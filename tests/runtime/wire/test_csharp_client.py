@@ -134,6 +134,8 @@ internal sealed class Driver
         using (var recorder = new Tltl.Recorder(folder, new[] {"near(a, b)", "size", "seen"}, 60, "walk"))
         {
             recorder.Begin("crypt", "v1", 7);
+            try { recorder.Sample(new Tltl.Message {{"near(a, b)", double.NaN}, {"size", 2}, {"seen", false}}, 0); }
+            catch (System.ArgumentException) {}
             for (int step = 1; step <= 130; step++)
             {
                 recorder.Sample(
@@ -167,6 +169,7 @@ internal sealed class Driver
         }
         using (var other = new Tltl.Recorder(folder, new[] {"x"}))
         {
+            other.Begin();
             foreach (object value in new object[] {double.NaN, float.PositiveInfinity, "1", null})
             {
                 try { other.Sample(new Tltl.Message {{"x", value}}); return 4; }

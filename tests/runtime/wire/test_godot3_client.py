@@ -251,12 +251,15 @@ def test_a_recorder_overwrites_nothing_and_refuses_what_is_no_sample(project: Pa
         project,
         f"""\
 var recorder = Tltl.Recorder.new("{folder}", ["x"])
+recorder.begin()
 print(recorder.sample({{"x": NAN}}), recorder.problem)
 print(recorder.sample({{"y": 1}}), recorder.problem)
+print(File.new().file_exists(recorder.begin()), " before the first sample")
 print(recorder.sample({{"x": 1}}))""",
     )
     assert "False" + "the signal x is nan, and numbers must be finite" in result.stdout
     assert "False" + "the signal x is missing" in result.stdout
+    assert "False before the first sample" in result.stdout
     assert (folder / "trace-0001.csv").read_text(encoding="utf-8") == "kept"
     assert (folder / "trace-0002.csv").read_text(encoding="utf-8") == "x\n1\n"
 

@@ -311,6 +311,8 @@ for last in [true, false]:
 		recorder.sample({{"near(a, b)": step / 4.0, "seen": last and step == 3, "unused": 1.0}})
 print(recorder.sample({{"near(a, b)": NAN, "seen": true}}), recorder.problem)
 print(recorder.sample({{"seen": true}}), recorder.problem)
+recorder.begin()
+recorder.sample({{"seen": true}})
 recorder.end()""",
     )
     for text in (
@@ -322,6 +324,7 @@ recorder.end()""",
         assert text in output
     assert (folder / "trace-0001.csv").read_text(encoding="utf-8") == "kept"
     (folder / "trace-0001.csv").unlink()
+    assert len([*folder.iterdir()]) == 2
     header, *rows = (folder / "trace-0003.csv").read_text(encoding="utf-8").splitlines()
     assert header == 'time,"near(a, b)",seen'
     assert [[float(cell) for cell in row.split(",")[:2]] for row in rows] == [

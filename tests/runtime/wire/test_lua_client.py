@@ -193,6 +193,7 @@ def test_a_recorder_refuses_numbers_that_are_not_finite(lua: str, tmp_path: Path
     result = run(lua, RECORD, str(tmp_path), value)
     assert result.returncode == 1
     assert f"the signal near(a, b) is {value}, and numbers must be finite" in result.stderr
+    assert not [*tmp_path.iterdir()]
 
 
 @with_lua

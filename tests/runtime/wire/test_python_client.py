@@ -133,8 +133,28 @@ def test_a_recorder_overwrites_no_trace(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("value", [nan, inf, -inf])
 def test_a_recorder_refuses_numbers_that_are_not_finite(tmp_path: Path, value: float) -> None:
+    recorder = tltl_client.Recorder(tmp_path, ["x"], clock_hz=10)
+    path = recorder.begin("crypt", "v1", seed=7)
     with pytest.raises(ValueError, match="the signal x is"):
-        tltl_client.Recorder(tmp_path, ["x"]).sample({"x": value})
+        recorder.sample({"x": value}, 0)
+    with pytest.raises(KeyError):
+        recorder.sample({"y": 1}, 0)
+    assert not [*tmp_path.iterdir()]
+    recorder.sample({"x": 1}, 0)
+    recorder.end()
+    assert path.read_text(encoding="utf-8") == "time,x\n0.0,1.0\n"
+    header = read_tape(tmp_path / "trace-0001.tape.jsonl").header
+    assert (header.scene, header.variant, header.seed) == ("crypt", "v1", 7)
+
+
+def test_an_episode_that_has_ended_says_nothing_about_the_next_one(tmp_path: Path) -> None:
+    recorder = tltl_client.Recorder(tmp_path, ["x"])
+    recorder.begin("crypt", "v1", seed=7)
+    recorder.end()
+    recorder.sample({"x": 1}, 0)
+    recorder.end()
+    header = read_tape(tmp_path / "trace-0001.tape.jsonl").header
+    assert (header.scene, header.variant, header.seed) == (None, "v0", None)
 
 
 def test_a_recorder_writes_the_tape_of_a_play(tmp_path: Path) -> None:

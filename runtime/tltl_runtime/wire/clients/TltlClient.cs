@@ -723,42 +723,17 @@ namespace Tltl
         }
 
         /// <summary>
-        /// Begins a new trace, and ends the one before; returns the path of the new file. A tape says which scene,
-        /// variant and seed were played.
+        /// Begins a new trace, and ends the one before; returns the path of its file, which the first sample makes. A
+        /// tape says which scene, variant and seed were played.
         /// </summary>
         public string Begin(string scene = null, string variant = "v0", long? seed = null)
         {
             End();
-            Directory.CreateDirectory(_folder);
-            string path;
-            FileStream stream = null;
-            for (int number = 1; ; number++)
-            {
-                path = Path.Combine(
-                    _folder, "trace-" + number.ToString("0000", CultureInfo.InvariantCulture) + ".csv");
-                if (File.Exists(path) || File.Exists(TapePath(path))) continue;
-                try
-                {
-                    stream = new FileStream(path, FileMode.CreateNew, FileAccess.Write, FileShare.Read);
-                    break;
-                }
-                catch (IOException)
-                {
-                    if (!File.Exists(path)) throw;
-                    // Another recorder has just made this file.
-                }
-            }
-            _file = new StreamWriter(stream, new UTF8Encoding(false));
-            _path = path;
             _played = new Message {{"scene", scene}, {"variant", variant}, {"seed", seed}};
             _samples = 0;
             _low = 1;
             _high = 0;
-            var names = new List<string>();
-            if (_clockHz != null) names.Add("time");
-            foreach (string name in _signals) names.Add(Cell(name));
-            Write(names);
-            return path;
+            return FreePath();
         }
 
         /// <summary>
@@ -778,7 +753,8 @@ namespace Tltl
             var values = new List<string>();
             foreach (string name in _signals) values.Add(Value(name, signals));
             string actionText = action == null ? null : Json.Text(action);
-            if (_file == null) Begin();
+            if (_played == null) Begin();
+            if (_file == null) MakeTrace();
             if (_samples > 0 && (action == null) != (_tape == null))
             {
                 throw new InvalidOperationException("give the action of each sample of an episode, or of none");
@@ -795,12 +771,48 @@ namespace Tltl
             if (_file != null) _file.Dispose();
             if (_tape != null) _tape.Dispose();
             _file = _tape = null;
+            _played = null;
         }
 
         /// <summary>Ends the trace and its tape, if there is one.</summary>
         public void Dispose()
         {
             End();
+        }
+
+        /// <summary>Returns the path of the first trace that is not there, nor its tape.</summary>
+        private string FreePath()
+        {
+            for (int number = 1; ; number++)
+            {
+                string path = Path.Combine(
+                    _folder, "trace-" + number.ToString("0000", CultureInfo.InvariantCulture) + ".csv");
+                if (!File.Exists(path) && !File.Exists(TapePath(path))) return path;
+            }
+        }
+
+        private void MakeTrace()
+        {
+            Directory.CreateDirectory(_folder);
+            FileStream stream = null;
+            while (stream == null)
+            {
+                _path = FreePath();
+                try
+                {
+                    stream = new FileStream(_path, FileMode.CreateNew, FileAccess.Write, FileShare.Read);
+                }
+                catch (IOException)
+                {
+                    if (!File.Exists(_path)) throw;
+                    // Another recorder has just made this file.
+                }
+            }
+            _file = new StreamWriter(stream, new UTF8Encoding(false));
+            var names = new List<string>();
+            if (_clockHz != null) names.Add("time");
+            foreach (string name in _signals) names.Add(Cell(name));
+            Write(names);
         }
 
         private void Write(List<string> cells)

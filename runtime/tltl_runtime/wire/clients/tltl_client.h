@@ -320,6 +320,7 @@ typedef struct {
     double clock_hz;
     unsigned long samples;
     FILE *file, *tape;
+    int has_begun;
     const char *game, *scene, *variant;
     long long seed;
     uint32_t digest[2];
@@ -328,7 +329,7 @@ typedef struct {
 int tltl_recorder_init(
     tltl_recorder *recorder, const char *folder, const tltl_signal_declaration *signals, size_t signal_count,
     double clock_hz);
-// Begin a new trace, and end the one before.
+// Begin a new trace, and end the one before; the first sample makes its file, which will be `recorder->path`.
 int tltl_recorder_begin(tltl_recorder *recorder);
 // The same, and a tape says which scene, variant and seed are played: NULL and -1 if there are none.  The texts must
 // stay where they are until the episode ends.
@@ -1573,6 +1574,23 @@ static void tltl_tape_path_(const tltl_recorder *recorder, char *path, size_t si
     snprintf(path, size, "%.*s.tape.jsonl", (int)strlen(recorder->path) - 4, recorder->path);
 }
 
+static int tltl_is_there_(const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (file) fclose(file);
+    return file != NULL;
+}
+
+// Choose the path of the next trace, with the first number, from a given one, of which there is neither a trace nor a
+// tape.  Return this number.
+static unsigned tltl_choose_path_(tltl_recorder *recorder, unsigned number) {
+    char tape[1080];
+    for (;; ++number) {
+        snprintf(recorder->path, sizeof recorder->path, "%s/trace-%04u.csv", recorder->folder, number);
+        tltl_tape_path_(recorder, tape, sizeof tape);
+        if (!tltl_is_there_(recorder->path) && !tltl_is_there_(tape)) return number;
+    }
+}
+
 // End the row, and see whether all of it was written.
 static int tltl_end_row_(tltl_recorder *recorder, FILE *file) {
     fputc('\n', file);
@@ -1585,30 +1603,29 @@ int tltl_recorder_begin(tltl_recorder *recorder) {
 }
 
 int tltl_recorder_begin_scene(tltl_recorder *recorder, const char *scene, const char *variant, long long seed) {
-    char tape[1080];
-    FILE *there;
-    unsigned number;
-    size_t index;
     if (!tltl_recorder_end(recorder)) return 0;
+    recorder->has_begun = 1;
+    recorder->samples = 0;
     recorder->scene = scene;
     recorder->variant = variant ? variant : "v0";
     recorder->seed = seed;
     recorder->digest[0] = 1;
     recorder->digest[1] = 0;
+    tltl_choose_path_(recorder, 1);
+    return 1;
+}
+
+// Make the file of a trace, with the names of the signals.
+static int tltl_make_trace_(tltl_recorder *recorder) {
+    unsigned number;
+    size_t index;
     tltl_make_folders_(recorder->folder);
     for (number = 1; !recorder->file; ++number) {
-        snprintf(recorder->path, sizeof recorder->path, "%s/trace-%04u.csv", recorder->folder, number);
-        tltl_tape_path_(recorder, tape, sizeof tape);
-        there = fopen(tape, "rb");
-        if (there) {
-            fclose(there);
-            continue;
-        }
+        number = tltl_choose_path_(recorder, number);
         recorder->file = tltl_new_file_(recorder->path);
         if (!recorder->file && errno != EEXIST)
             return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", recorder->path, strerror(errno));
     }
-    recorder->samples = 0;
     if (recorder->clock_hz > 0) fputs("time", recorder->file);
     for (index = 0; index < recorder->signal_count; ++index) {
         if (index || recorder->clock_hz > 0) fputc(',', recorder->file);
@@ -1700,7 +1717,8 @@ int tltl_recorder_step(tltl_recorder *recorder, const char *action, const double
             return tltl_recorder_fail_(
                 recorder, "the signal %.300s is %s, and numbers must be finite", recorder->signals[index].name,
                 tltl_odd_number_(values[index]));
-    if (!recorder->file && !tltl_recorder_begin(recorder)) return 0;
+    if (!recorder->has_begun && !tltl_recorder_begin(recorder)) return 0;
+    if (!recorder->file && !tltl_make_trace_(recorder)) return 0;
     if (recorder->samples && !action != !recorder->tape)
         return tltl_recorder_fail_(recorder, "give the action of each sample of an episode, or of none");
     if (action && !tltl_write_step_(recorder, action, values)) return 0;
@@ -1720,6 +1738,7 @@ int tltl_recorder_end(tltl_recorder *recorder) {
     FILE *file = recorder->file, *tape = recorder->tape;
     const int is_tape_whole = !tape || fclose(tape) == 0;
     recorder->file = recorder->tape = NULL;
+    recorder->has_begun = 0;
     if ((!file || fclose(file) == 0) && is_tape_whole) return 1;
     return tltl_recorder_fail_(recorder, "cannot write %.300s: %s", recorder->path, strerror(errno));
 }

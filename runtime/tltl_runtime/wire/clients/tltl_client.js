@@ -300,7 +300,7 @@ export class Recorder {
   #number = 0;
   #samples = 0;
   #game;
-  #played;
+  #played = null;
   #tape = null; // a file in Node, and a text in a page
   #lastTape = "";
   #sums; // of the digest, Adler-32
@@ -311,19 +311,16 @@ export class Recorder {
   }
 
   /**
-   * Begin a new trace, and end the one before; return the path of the new file, or in a page its name.
+   * Begin a new trace, and end the one before; return the path of its file, which the first sample makes, or in a page
+   * its name.
    *
    * A tape says which scene, variant and seed were played.
    */
   begin(scene = null, variant = "v0", seed = null) {
     this.end();
-    [this.#played, this.#sums, this.#lastTape] = [{ scene, variant, seed }, [1, 0], ""];
-    if (this.#fs) this.#openFile();
-    else this.#name = `trace-${String(++this.#number).padStart(4, "0")}.csv`;
-    this.#text = "";
-    this.#samples = 0;
-    this.#write((this.#clockHz ? ["time", ...this.#signals] : this.#signals).map(cell));
-    return this.#name;
+    [this.#played, this.#samples, this.#sums] = [{ scene, variant, seed }, 0, [1, 0]];
+    [this.#last, this.#lastTape] = ["", ""];
+    return this.#fs ? this.#path(this.#freeNumber(1)) : traceName(this.#number + 1);
   }
 
   /**
@@ -336,11 +333,13 @@ export class Recorder {
   sample(signals, action = null) {
     const values = this.#signals.map((name) => cellOf(name, signals[name]));
     checkFinite(action, "the action");
-    if (this.#text === null) this.begin();
+    const actionText = JSON.stringify(plain(action));
+    if (this.#played === null) this.begin();
+    if (this.#text === null) this.#makeTrace();
     if (this.#samples && (action === null) !== (this.#tape === null)) {
       throw new TypeError("give the action of each sample of an episode, or of none");
     }
-    if (action !== null) this.#writeStep(action, values, signals);
+    if (action !== null) this.#writeStep(actionText, values, signals);
     if (this.#clockHz) values.unshift(String(this.#samples / this.#clockHz));
     this.#write(values);
     this.#samples++;
@@ -349,7 +348,7 @@ export class Recorder {
   /** End the trace and its tape, if there is one. In a page, return the text of the trace. */
   end() {
     for (const file of [this.#file, this.#fs && this.#tape]) if (file !== null) this.#fs.closeSync(file);
-    [this.#file, this.#tape] = [null, null];
+    [this.#file, this.#tape, this.#played] = [null, null, null];
     this.#last = this.#text ?? this.#last;
     this.#text = null;
     return this.#last;
@@ -361,9 +360,13 @@ export class Recorder {
     return this.#lastTape;
   }
 
-  /** In a page: end the trace, and let the browser save the last one, and its tape, in the folder for downloads. */
+  /**
+   * In a page: end the trace, and let the browser save the last one, and its tape, in the folder for downloads. Without
+   * a sample, there is nothing to save.
+   */
   download() {
-    this.#save(this.end(), this.#name, "text/csv");
+    const text = this.end();
+    if (text) this.#save(text, this.#name, "text/csv");
     if (this.#lastTape) this.#save(this.#lastTape, tapeName(this.#name), "application/jsonl");
   }
 
@@ -399,7 +402,7 @@ export class Recorder {
     const digest = (high * 65536 + low).toString(16).padStart(8, "0");
     const end = (this.#samples + 1) % 60 === 0 ? `,"digest":"${digest}"` : "";
     const members = quoted.map((name, i) => `${name}:${texts[i]}`);
-    this.#writeTape(`{"action":${JSON.stringify(plain(action))},"signals":{${members}}${end}}\n`);
+    this.#writeTape(`{"action":${action},"signals":{${members}}${end}}\n`);
   }
 
   #writeTape(line) {
@@ -407,11 +410,29 @@ export class Recorder {
     else this.#lastTape = this.#tape += line;
   }
 
+  #path(number) {
+    return `${this.#folder}/${traceName(number)}`;
+  }
+
+  /** Return the first number, from a given one, of which there is neither a trace nor a tape. */
+  #freeNumber(number) {
+    const exists = (path) => this.#fs.existsSync(path);
+    while (exists(this.#path(number)) || exists(tapeName(this.#path(number)))) number++;
+    return number;
+  }
+
+  #makeTrace() {
+    if (this.#fs) this.#openFile();
+    else this.#name = traceName(++this.#number);
+    this.#text = "";
+    this.#write((this.#clockHz ? ["time", ...this.#signals] : this.#signals).map(cell));
+  }
+
   #openFile() {
     this.#fs.mkdirSync(this.#folder, { recursive: true });
     for (let number = 1; this.#file === null; number++) {
-      this.#name = `${this.#folder}/trace-${String(number).padStart(4, "0")}.csv`;
-      if (this.#fs.existsSync(tapeName(this.#name))) continue;
+      number = this.#freeNumber(number);
+      this.#name = this.#path(number);
       try {
         this.#file = this.#fs.openSync(this.#name, "wx");
       } catch (error) {
@@ -425,6 +446,10 @@ export class Recorder {
     if (this.#fs) this.#fs.writeSync(this.#file, line);
     else this.#text += line;
   }
+}
+
+function traceName(number) {
+  return `trace-${String(number).padStart(4, "0")}.csv`;
 }
 
 function tapeName(trace) {

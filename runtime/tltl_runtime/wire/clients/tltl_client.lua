@@ -643,32 +643,26 @@ end
 
 -- The recorder -------------------------------------------------------------------------------------------------------
 
--- How files are made: in LÖVE in the folder for what players save, elsewhere with the library of Lua.
-local function open_new(path)
-  local love = rawget(_G, "love")
-  if love and love.filesystem then
-    if love.filesystem.getInfo(path) then return nil end
-    local made, reason = love.filesystem.newFile(path, "w")
-    if not made then error("cannot write " .. path .. ": " .. tostring(reason), 0) end
-    return made, love.filesystem.getSaveDirectory() .. "/" .. path
-  end
-  local there = io.open(path, "rb")
-  if there then
-    there:close()
-    return nil
-  end
-  -- Appending empties no file, even if one could not be read or was made in this moment.
-  local made, reason = io.open(path, "ab")
-  if not made then error("cannot write a trace: " .. reason .. "; is the folder there?", 0) end
-  return made, path
-end
-
+-- Files are in LÖVE in the folder for what players save; elsewhere, the library of Lua reads and makes them.
 local function exists(path)
   local love = rawget(_G, "love")
   if love and love.filesystem then return love.filesystem.getInfo(path) ~= nil end
   local there = io.open(path, "rb")
   if there then there:close() end
   return there ~= nil
+end
+
+local function open_new(path)
+  local love = rawget(_G, "love")
+  if love and love.filesystem then
+    local made, reason = love.filesystem.newFile(path, "w")
+    if not made then error("cannot write " .. path .. ": " .. tostring(reason), 0) end
+    return made
+  end
+  -- Appending empties no file, even if one could not be read or was made in this moment.
+  local made, reason = io.open(path, "ab")
+  if not made then error("cannot write a trace: " .. reason .. "; is the folder there?", 0) end
+  return made
 end
 
 -- Return the bytes of a number as a double, the lowest first; those of -0 are those of 0.
@@ -727,29 +721,19 @@ Recorder.__index = Recorder
 --- `sample` raises an error if a number is not finite, or a signal is missing, or if some samples of an episode have an
 --- action and others have none.
 function tltl_client.Recorder(folder, signals, clock_hz, game)
-  local recorder = {_folder = folder, _signals = signals, _clock_hz = clock_hz, _game = game or "game", _samples = 0}
+  local recorder = {_folder = folder, _signals = signals, _clock_hz = clock_hz, _game = game or "game"}
   return setmetatable(recorder, Recorder)
 end
 
---- Begin a new trace, and end the one before; return the path of the new file. A tape says which scene, variant and
---- seed were played.
+--- Begin a new trace, and end the one before; return the path of its file, which the first sample makes. A tape says
+--- which scene, variant and seed were played.
 function Recorder:begin(scene, variant, seed)
   self:finish()
-  local love = rawget(_G, "love")
-  if love and love.filesystem then love.filesystem.createDirectory(self._folder) end
-  local number, path, place = 1, nil, nil
-  repeat
-    place = self._folder .. "/" .. format("trace-%04d", number)
-    self._tape_path = place .. ".tape.jsonl"
-    if not exists(self._tape_path) then self._file, path = open_new(place .. ".csv") end
-    number = number + 1
-  until self._file
   self._samples, self._low, self._high = 0, 1, 0
   self._played = {scene = scene or null, variant = variant or "v0", seed = seed or null}
-  local names = self._clock_hz and {"time"} or {}
-  for _, name in ipairs(self._signals) do names[#names + 1] = cell(name) end
-  self:_write(names)
-  return path
+  local love = rawget(_G, "love")
+  local root = love and love.filesystem and love.filesystem.getSaveDirectory() .. "/" or ""
+  return root .. self:_free_path() .. ".csv"
 end
 
 --- Write the values of all signals at one moment to the file at once; begin a trace if there is none. With `action`,
@@ -758,7 +742,8 @@ function Recorder:sample(signals, action)
   local texts = {}
   for index, name in ipairs(self._signals) do texts[index] = value_text(name, signals[name]) end
   local action_text = action ~= nil and encode(action) or nil
-  if not self._file then self:begin() end
+  if not self._played then self:begin() end
+  if not self._file then self:_make_trace() end
   if self._samples > 0 and (action == nil) ~= (self._tape == nil) then
     error("give the action of each sample of an episode, or of none", 0)
   end
@@ -772,7 +757,17 @@ end
 function Recorder:finish()
   if self._file then self._file:close() end
   if self._tape then self._tape:close() end
-  self._file, self._tape = nil, nil
+  self._file, self._tape, self._played = nil, nil, nil
+end
+
+-- Return the path of the next trace and its tape, without an ending.
+function Recorder:_free_path()
+  local number, path = 0, nil
+  repeat
+    number = number + 1
+    path = self._folder .. "/" .. format("trace-%04d", number)
+  until not exists(path .. ".csv") and not exists(path .. ".tape.jsonl")
+  return path
 end
 
 local function write_line(file, line)
@@ -783,6 +778,16 @@ end
 
 function Recorder:_write(cells)
   write_line(self._file, concat(cells, ","))
+end
+
+function Recorder:_make_trace()
+  local love = rawget(_G, "love")
+  if love and love.filesystem then love.filesystem.createDirectory(self._folder) end
+  local path = self:_free_path()
+  self._file, self._tape_path = open_new(path .. ".csv"), path .. ".tape.jsonl"
+  local names = self._clock_hz and {"time"} or {}
+  for _, name in ipairs(self._signals) do names[#names + 1] = cell(name) end
+  self:_write(names)
 end
 
 -- Write a step to the tape, and before the first one the header.

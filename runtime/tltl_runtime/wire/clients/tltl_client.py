@@ -53,10 +53,11 @@ import os
 import socket
 import sys
 from contextlib import suppress
+from itertools import count
 from math import isfinite
 from pathlib import Path
 from struct import pack
-from typing import Any, Iterable, Mapping, TextIO  # noqa: UP035 - Python 3.8 has no better place for them.
+from typing import Any, Iterable, Iterator, Mapping, TextIO  # noqa: UP035 - Python 3.8 has no better place for them.
 from zlib import adler32
 
 PROTOCOL = 1
@@ -338,30 +339,17 @@ class Recorder:
         self._game = game
         self._file: TextIO | None = None
         self._tape: TextIO | None = None
-        self._samples = 0
+        self._played: dict[str, Any] = {}
 
     def begin(self, scene: str | None = None, variant: str = "v0", seed: int | None = None) -> Path:
-        """Begin a new trace, and end the one before; return the path of the new file.
+        """Begin a new trace, and end the one before; return the path of its file, which the first sample makes.
 
         A tape says which scene, variant and seed were played.
         """
         self.end()
-        self._folder.mkdir(parents=True, exist_ok=True)
-        number = 1
-        while True:
-            path = self._folder / f"trace-{number:04d}.csv"
-            try:
-                if not _tape_path(path).exists():
-                    self._file = path.open("x", encoding="utf-8", newline="\n")
-                    break
-            except FileExistsError:
-                pass
-            number += 1
-        self._path, self._played = path, {"scene": scene, "variant": variant, "seed": seed}
+        self._played = {"scene": scene, "variant": variant, "seed": seed}
         self._samples, self._digest = 0, 1
-        names = ("time", *self._signals) if self._clock_hz else self._signals
-        self._write(map(_cell, names))
-        return path
+        return next(self._free_paths())
 
     def sample(self, signals: Mapping[str, float], action: Any = None) -> None:
         """Write the values of all signals at one moment to the file at once; begin a trace if there is none.
@@ -372,8 +360,10 @@ class Recorder:
         action_text = (
             None if action is None else json.dumps(action, separators=(",", ":"), allow_nan=False, default=_as_list)
         )
-        if self._file is None:
+        if not self._played:
             self.begin()
+        if self._file is None:
+            self._make_trace()
         if self._samples and (action_text is None) != (self._tape is None):
             raise ValueError("give the action of each sample of an episode, or of none")
         if action_text is not None:
@@ -388,6 +378,20 @@ class Recorder:
             if file is not None:
                 file.close()
         self._file = self._tape = None
+        self._played = {}
+
+    def _free_paths(self) -> Iterator[Path]:
+        paths = (self._folder / f"trace-{number:04d}.csv" for number in count(1))
+        return (path for path in paths if not path.exists() and not _tape_path(path).exists())
+
+    def _make_trace(self) -> None:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        for path in self._free_paths():
+            # Another recorder may just have made this file.
+            with suppress(FileExistsError):
+                self._file, self._path = path.open("x", encoding="utf-8", newline="\n"), path
+                break
+        self._write(map(_cell, ("time", *self._signals) if self._clock_hz else self._signals))
 
     def _write_step(self, action: str, texts: Mapping[str, str], numbers: list[float]) -> None:
         """Write a step to the tape, and before the first one the header."""

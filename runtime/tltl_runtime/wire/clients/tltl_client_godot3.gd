@@ -592,9 +592,9 @@ class Recorder:
 	var _signals = []
 	var _clock_hz = null
 	var _game = ""
-	var _path = ""
+	var _path = ""  # of the trace that is written; "" before its first sample
 	var _samples = 0
-	var _played = {}
+	var _played = {}  # empty if no trace has begun
 	var _has_tape = false
 	var _low = 1  # of the digest, Adler-32
 	var _high = 0
@@ -605,26 +605,16 @@ class Recorder:
 		_clock_hz = clock_hz
 		_game = game
 
-	# Begins a new trace, and ends the one before; returns the path of the new file.  A tape says which
-	# scene, variant and seed were played.
+	# Begins a new trace, and ends the one before; returns the path of its file, which the first sample
+	# makes.  A tape says which scene, variant and seed were played.
 	func begin(scene = null, variant: String = "v0", seed_ = null) -> String:
-		var number = 1
-		Directory.new().make_dir_recursive(_folder)
-		_path = _folder.plus_file("trace-%04d.csv" % number)
-		while File.new().file_exists(_path) or File.new().file_exists(_tape_path()):
-			number += 1
-			_path = _folder.plus_file("trace-%04d.csv" % number)
+		end()
 		_samples = 0
 		_has_tape = false
 		_low = 1
 		_high = 0
 		_played = {"scene": scene, "variant": variant, "seed": seed_}
-		var names = ["time"] if _clock_hz else []
-		for name in _signals:
-			var is_plain = not ("," in name) and not name.begins_with('"')
-			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
-		_write(_path, PoolStringArray(names).join(","), File.WRITE)
-		return _path
+		return _free_path()
 
 	# Writes the values of all signals at one moment to the file at once; begins a trace if there is
 	# none.  With `action`, what the person did in the tick before it, the step is written to the tape,
@@ -639,8 +629,10 @@ class Recorder:
 			if value is float and (is_nan(value) or is_inf(value)):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
-		if _path == "":
+		if _played.empty():
 			begin()
+		if _path == "" and not _make_trace():
+			return false
 		if _samples > 0 and (action != null) != _has_tape:
 			return _refuse("give the action of each sample of an episode, or of none")
 		if action != null and not _write_step(action, cells, signals):
@@ -653,15 +645,36 @@ class Recorder:
 	# Ends the trace and its tape, if there is one.
 	func end() -> void:
 		_path = ""
+		_played = {}
 
 	func _refuse(reason: String) -> bool:
 		problem = reason
 		push_error(reason)
 		return false
 
+	func _free_path() -> String:
+		var number = 1
+		var path = _folder.plus_file("trace-0001.csv")
+		while File.new().file_exists(path) or File.new().file_exists(_tape_path(path)):
+			number += 1
+			path = _folder.plus_file("trace-%04d.csv" % number)
+		return path
+
+	func _make_trace() -> bool:
+		Directory.new().make_dir_recursive(_folder)
+		var path = _free_path()
+		var names = ["time"] if _clock_hz else []
+		for name in _signals:
+			var is_plain = not ("," in name) and not name.begins_with('"')
+			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
+		if not _write(path, PoolStringArray(names).join(","), File.WRITE):
+			return false
+		_path = path
+		return true
+
 	# Writes a step to the tape, and before the first one the header.
 	func _write_step(action, texts: Array, signals: Dictionary) -> bool:
-		if not _has_tape and not _write(_tape_path(), _header(signals), File.WRITE):
+		if not _has_tape and not _write(_tape_path(_path), _header(signals), File.WRITE):
 			return false
 		_has_tape = true
 		var members = PoolStringArray()
@@ -674,7 +687,7 @@ class Recorder:
 			_high = (_high + _low) % 65521
 		var digest = ',"digest":"%04x%04x"' % [_high, _low] if (_samples + 1) % 60 == 0 else ""
 		var line = '{"action":' + Digits.json(action) + ',"signals":{' + members.join(",") + "}" + digest + "}"
-		return _write(_tape_path(), line, File.READ_WRITE)
+		return _write(_tape_path(_path), line, File.READ_WRITE)
 
 	func _header(signals: Dictionary) -> String:
 		var types = PoolStringArray()
@@ -687,8 +700,8 @@ class Recorder:
 		var text = Digits.json(about)
 		return text.substr(0, text.length() - 1) + ',"signals":{' + types.join(",") + "}}"
 
-	func _tape_path() -> String:
-		return _path.get_basename() + ".tape.jsonl"
+	func _tape_path(path: String) -> String:
+		return path.get_basename() + ".tape.jsonl"
 
 	func _write(path: String, line: String, mode: int) -> bool:
 		var file = File.new()

@@ -556,7 +556,7 @@ class Recorder:
 	var _tape: FileAccess = null
 	var _tape_path: String = ""
 	var _samples: int = 0
-	var _played: Dictionary = {}
+	var _played: Dictionary = {}  # empty if no trace has begun
 	var _low: int = 1  # of the digest, Adler-32
 	var _high: int = 0
 
@@ -566,31 +566,15 @@ class Recorder:
 		_clock_hz = clock_hz
 		_game = game
 
-	## Begins a new trace, and ends the one before; returns the path of the new file.  A tape says which
-	## scene, variant and seed were played.
+	## Begins a new trace, and ends the one before; returns the path of its file, which the first sample
+	## makes.  A tape says which scene, variant and seed were played.
 	func begin(scene: Variant = null, variant: String = "v0", seed_: Variant = null) -> String:
 		end()
-		DirAccess.make_dir_recursive_absolute(_folder)
-		var number: int = 1
-		while FileAccess.file_exists(_path(number)) or FileAccess.file_exists(_path(number, "tape.jsonl")):
-			number += 1
-		_file = FileAccess.open(_path(number), FileAccess.WRITE)
-		if _file == null:
-			_refuse("cannot write %s" % _path(number))
-			return ""
 		_samples = 0
 		_low = 1
 		_high = 0
-		_tape_path = _path(number, "tape.jsonl")
 		_played = {"scene": scene, "variant": variant, "seed": seed_}
-		var names := PackedStringArray()
-		if _clock_hz > 0.0:
-			names.append("time")
-		for name in _signals:
-			var is_plain: bool = not ("," in name) and not name.begins_with('"')
-			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
-		_write(_file, ",".join(names))
-		return _path(number)
+		return _path(_free_number())
 
 	## Writes the values of all signals at one moment to the file at once; begins a trace if there is
 	## none.  With `action`, what the person did in the tick before it, the step is written to the tape,
@@ -605,7 +589,9 @@ class Recorder:
 			if value is float and not is_finite(value):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
-		if _file == null and begin() == "":
+		if _played.is_empty():
+			begin()
+		if _file == null and not _make_trace():
 			return false
 		if _samples > 0 and (action != null) != (_tape != null):
 			return _refuse("give the action of each sample of an episode, or of none")
@@ -621,6 +607,29 @@ class Recorder:
 	func end() -> void:
 		_file = null
 		_tape = null
+		_played = {}
+
+	func _free_number() -> int:
+		var number: int = 1
+		while FileAccess.file_exists(_path(number)) or FileAccess.file_exists(_path(number, "tape.jsonl")):
+			number += 1
+		return number
+
+	func _make_trace() -> bool:
+		DirAccess.make_dir_recursive_absolute(_folder)
+		var number: int = _free_number()
+		_file = FileAccess.open(_path(number), FileAccess.WRITE)
+		if _file == null:
+			return _refuse("cannot write %s" % _path(number))
+		_tape_path = _path(number, "tape.jsonl")
+		var names := PackedStringArray()
+		if _clock_hz > 0.0:
+			names.append("time")
+		for name in _signals:
+			var is_plain: bool = not ("," in name) and not name.begins_with('"')
+			names.append(name if is_plain else '"' + name.replace('"', '""') + '"')
+		_write(_file, ",".join(names))
+		return true
 
 	# Writes a step to the tape, and before the first one the header.
 	func _write_step(action: Variant, texts: PackedStringArray, signals: Dictionary) -> bool:

@@ -18,6 +18,8 @@ static int record_tape(const char *folder) {
     tltl_recorder_init(&recorder, folder, signals, 3, 60);
     recorder.game = "walk";
     tltl_recorder_begin_scene(&recorder, "crypt", "v1", 7);
+    values[0] = values[1] = values[2] = atof("nan");
+    if (tltl_recorder_step(&recorder, "0", values)) return 1;
     for (step = 1; step <= 130; ++step) {
         values[0] = step / 3.0;
         values[1] = sizes[step % 6];
@@ -28,6 +30,8 @@ static int record_tape(const char *folder) {
     tltl_recorder_begin(&recorder);
     if (!tltl_recorder_sample(&recorder, values) || tltl_recorder_step(&recorder, "1", values)) return 1;
     puts(recorder.error);
+    tltl_recorder_begin(&recorder);
+    puts(recorder.path);
     return !tltl_recorder_end(&recorder);
 }
 
@@ -41,6 +45,7 @@ int main(int argc, char **argv) {
     if (argc > 2) {
         values[0] = atof(argv[2]);
         values[1] = 1;
+        tltl_recorder_begin(&recorder);
         if (!tltl_recorder_sample(&recorder, values)) fprintf(stderr, "%s\n", recorder.error);
         return tltl_recorder_end(&recorder) && !recorder.error[0] ? 0 : 1;
     }

@@ -10,6 +10,7 @@ if arg[2] == "tape" then
   local sizes = {[0] = 5e-324, -0.0, 1e-300, 1e22, -123456.789, 0.1}
   local recorder = tltl_client.Recorder(arg[1], {"near(a, b)", "size", "seen"}, 60, "walk")
   recorder:begin("crypt", "v1", 7)
+  pcall(recorder.sample, recorder, {["near(a, b)"] = 0 / 0, size = 2, seen = false}, 0)
   for step = 1, 130 do
     local signals = {["near(a, b)"] = step / 3, size = sizes[step % 6], seen = step == 130}
     recorder:sample(signals, {step % 3, 1})
@@ -21,6 +22,7 @@ if arg[2] == "tape" then
 elseif arg[2] then
   local numbers = {nan = 0 / 0, inf = math.huge, ["-inf"] = -math.huge}
   local recorder = tltl_client.Recorder(arg[1], {"near(a, b)", "seen"})
+  recorder:begin()
   recorder:sample({["near(a, b)"] = numbers[arg[2]] or tonumber(arg[2]), seen = true})
   recorder:finish()
 else
