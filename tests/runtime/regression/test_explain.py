@@ -374,6 +374,11 @@ def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) ->
     assert sentences(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
+def test_a_region_that_kills_is_named_once(level: StealthLevel, fspa: Fspa) -> None:
+    now = deaths(fspa, 14, by=("north_hall",))
+    assert sentences(level, fspa, now)[1].startswith("dies in the north hall in 14 of 25 episodes")
+
+
 def test_places_with_the_same_text_are_one_group(level: StealthLevel, fspa: Fspa) -> None:
     """A place outside the region `middle` is in the middle of the level, too."""
     region = Region("middle", Box((3.8, 3.8, 0.0), (4.2, 4.2, 3.0)))

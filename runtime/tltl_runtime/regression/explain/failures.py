@@ -215,7 +215,9 @@ def _end_phrase(
     observers, adverb = _majority([[name for name in episode.seen_by if name not in end.by] for episode in episodes])
     saw = phrase(f", {adverb}seen by ", things_phrase(observers)) if observers else _NOTHING
     if end.cause == "killed":
-        by = phrase(" by ", things_phrase(end.by)) if end.by else _NOTHING
+        # In a region that kills, the place says who did it: "dies in the chasm".
+        killers = [name for name in end.by if name not in end.where.mentions.regions]
+        by = phrase(" by ", things_phrase(killers)) if killers else _NOTHING
         broken, adverb = _majority([episode.clauses or episode.broke for episode in episodes])
         broke = f", {adverb}breaking {quoted_names(broken)}" if broken else ""
         return phrase("dies", place, by, broke, saw, "," if broken or observers else "")
