@@ -14,16 +14,17 @@ from tltlc.monitor.tables import tables
 class NearestEdge:
     """The step, of some steps in one state, that came nearest to an edge towards acceptance.
 
-    ``row`` is the index of the step; of several equally near steps, the first. ``robustness``, in
+    ``row`` is the index of the step; of several equally near steps, the last. ``robustness``, in
     [-1, 1], is the greatest robustness of a guard of these edges at this step. ``atom`` is the
     index of the atom that limits this robustness, and ``wanted`` the truth value of the atom that
-    the guard needs.
+    the guard needs. ``reached`` says whether the atom had this truth value at another of the steps.
     """
 
     row: int
     robustness: float
     atom: int
     wanted: bool
+    reached: bool
 
 
 def nearest_edge(fspa: Fspa, state: int, rows: Sequence[Sequence[float]]) -> NearestEdge | None:
@@ -38,6 +39,6 @@ def nearest_edge(fspa: Fspa, state: int, rows: Sequence[Sequence[float]]) -> Nea
         return None
     nearness = [max(robustness(guard, values) for guard in guards) for values in rows]
     greatest = max(nearness)
-    row = nearness.index(greatest)
+    row = max(index for index, value in enumerate(nearness) if value == greatest)
     atom, wanted = bounding_literal(guards, rows[row])
-    return NearestEdge(row, greatest, atom, wanted)
+    return NearestEdge(row, greatest, atom, wanted, any((values[atom] > 0.0) == wanted for values in rows))

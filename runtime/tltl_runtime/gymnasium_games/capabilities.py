@@ -26,7 +26,7 @@ _WITHOUT: Final[Mapping[Capability, str]] = {
     "outline": "maps show positions alone, and sentences name no regions",
     "cause": "sentences do not say who or what ended an episode",
     "snapshot": "a training replays actions to return to a place",
-    "render": "there are no films, and nobody can play in a window",
+    "render": "there are no films, and `tltlc play` has nothing to show",
 }
 """What tltlc does not do, or does more slowly, without a capability. A game needs none of them."""
 

@@ -82,7 +82,7 @@ def with_few_environments(patch: pytest.MonkeyPatch) -> None:
     """Let retraining use 4 environments, so that an iteration is short."""
     settings = read_settings()
     few = replace(settings, rollout=replace(settings.rollout, envs=4))
-    patch.setattr("tltl_runtime.regression.retrain.retrain.read_settings", lambda: few)
+    patch.setattr("tltl_runtime.regression.retrain.retrain.read_settings", lambda level: few)
 
 
 def edit(name: str, old: str, new: str) -> None:

@@ -364,6 +364,9 @@ def test_an_atom_that_must_not_hold_is_described_as_such(level: StealthLevel, fs
     assert sentences(level, fspa, now)[1].endswith("; `visible` still held")
     with_open = [replace(explained, nearest=NearestMiss("open", -1.0, MIDDLE)) for explained in now]
     assert sentences(level, fspa, with_open)[1].endswith("; `open` was not reached")
+    at_times = [replace(explained, nearest=NearestMiss("open", -1.0, MIDDLE, reached=True)) for explained in now]
+    text = sentences(level, fspa, at_times)[1]
+    assert text.endswith("; `open` held at times, but not together with the rest")
 
 
 def test_the_order_of_killers_does_not_count(level: StealthLevel, fspa: Fspa) -> None:
@@ -455,6 +458,18 @@ def test_a_comparison_is_missed_by_a_length(level: StealthLevel) -> None:
     (stage, end, *_) = sentences(level, fspa, now, [an_episode(index, states=(0, 1)) for index in range(25)])
     assert stage.startswith("makes `x >= 7` true in 0 of 25")
     assert end.endswith("; `x >= 7` was missed by 1.00 m at best")
+
+
+def test_a_breach_without_a_time_needs_no_comma(level: StealthLevel) -> None:
+    (fspa,) = compile_text(MEASURED)
+    spins = [Measure("spin", 12 + gap, gap, "") for gap in (0.5, 2.1)]
+    now = [
+        replace(an_episode(index, False, cause="violated", by=("spin < 12",)), measured=spins[index % 2])
+        for index in range(25)
+    ]
+    before = [an_episode(index, states=(0, 1)) for index in range(25)]
+    texts = sentences(level, fspa, now, before)
+    assert any(text.endswith("; `spin` reached 14.1 at worst") for text in texts), texts
 
 
 def test_a_broken_clause_is_quoted_with_how_far_and_when_it_broke(level: StealthLevel) -> None:

@@ -12,6 +12,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.logic.text.printer import words_text
 from tltlc.monitor.monitor import Monitor
+from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.run import TraceOutcome, outcome, run
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import Session
@@ -279,7 +280,7 @@ def test_the_details_have_the_states_and_the_nearest_sample() -> None:
     assert FSPA.states[violated].verdict == "violated"
     assert details.unmet == waiting
     assert details.nearest is not None
-    assert (FSPA.atoms[details.nearest.atom].name, details.nearest.wanted, details.nearest.row) == ("out", True, 0)
+    assert (FSPA.atoms[details.nearest.atom].name, details.nearest.wanted, details.nearest.row) == ("out", True, 1)
 
 
 def test_an_accepted_trace_has_no_nearest_sample() -> None:
@@ -306,3 +307,16 @@ def test_the_arrivals_are_those_of_the_monitor(part: int) -> None:
 
 def _samples(rows: Iterable[str]) -> Iterable[dict[str, float]]:
     return read_trace(io.BytesIO(_trace(rows)), "trace", FSPA.signals, None)
+
+
+def test_the_nearest_sample_is_the_last_of_equally_near_ones() -> None:
+    """The door stays shut although both crystals are taken: the door is missing, not the first crystal."""
+    signals = "".join(f"signal {name}: bool\n" for name in ("red", "blue", "door"))
+    text = signals + "spec go { limit 9 steps\n reach red and blue and door }"
+    (fspa,) = compile_text(text)
+    rows = [[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, 1.0, -1.0]]
+    nearest = nearest_edge(fspa, 0, rows)
+    assert nearest is not None
+    assert (nearest.row, fspa.atoms[nearest.atom].name, nearest.wanted, nearest.reached) == (2, "door", True, False)
+    swapped = nearest_edge(fspa, 0, [[1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]])
+    assert swapped is not None and (fspa.atoms[swapped.atom].name, swapped.reached) == ("red", True)

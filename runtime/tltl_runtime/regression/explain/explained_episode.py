@@ -44,7 +44,9 @@ class NearestMiss:
     If the atom had to be true, and the player makes it true by approaching an entity, ``target`` is
     that entity. ``distance`` is then the least distance to the target, in metres, at which the atom
     was still false. Otherwise, both are None. ``missed`` measures the atom at that moment if it is a
-    comparison: its ``gap`` is by how much the episode missed it. Otherwise, it is None.
+    comparison: its ``gap`` is by how much the episode missed it. Otherwise, it is None. ``reached`` says
+    whether the atom was as it had to be at another moment of the stay, when others were not. It is not
+    known of episodes in older baselines.
     """
 
     atom: str
@@ -54,6 +56,7 @@ class NearestMiss:
     distance: float | None = None
     wanted: bool = True
     missed: traces.Measure | None = None
+    reached: bool = False
 
 
 @record
@@ -172,6 +175,7 @@ def _nearest_miss(episode: RecordedEpisode, state: int, positions: Sequence[Poin
         distance=distance,
         wanted=nearest.wanted,
         missed=_measure(episode, nearest.atom, steps[nearest.row] + 1),
+        reached=nearest.reached,
     )
 
 

@@ -48,7 +48,7 @@ def _breach_phrase(episodes: Sequence[ExplainedEpisode]) -> Phrase:
         value = worst.gap if worst.value is None else worst.value
         reached = "was off by" if worst.value is None else "reached"
         text = f"; `{worst.quantity}` {reached} {quantity_text(value, worst.unit, worst.gap)}"
-        text += " at worst," * (len(measured) > 1)
+        text += " at worst" * (len(measured) > 1) + "," * (len(measured) > 1 and bool(times))
     return Phrase(text + _times_text(times))
 
 
@@ -85,6 +85,9 @@ def _miss_text(fspa: Fspa, misses: Sequence[NearestMiss]) -> str:
     """
     atom, wanted = misses[0].atom, misses[0].wanted
     opposite = next((known.opposite for known in fspa.atoms if known.name == atom), None)
+    if any(miss.reached for miss in misses):
+        state = f"`{atom}` was false" if not wanted and opposite is None else f"`{atom if wanted else opposite}` held"
+        return f"{state} at times, but not together with the rest"
     if measured := [miss.missed for miss in misses if miss.missed is not None]:
         least = min(measured, key=lambda measure: measure.gap)
         gap = quantity_text(least.gap, least.unit, least.gap)

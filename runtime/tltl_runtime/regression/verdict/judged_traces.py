@@ -176,7 +176,11 @@ def _explained(fspa: Fspa, index: int, verdict: traces.TraceVerdict, limit: int 
         nearest=None
         if nearest is None
         else NearestMiss(
-            fspa.atoms[nearest.atom].name, round(nearest.robustness, 4), wanted=nearest.wanted, missed=details.missed
+            fspa.atoms[nearest.atom].name,
+            round(nearest.robustness, 4),
+            wanted=nearest.wanted,
+            missed=details.missed,
+            reached=nearest.reached,
         ),
         way=(),
         broke=() if cause is None else cause.atoms,

@@ -76,6 +76,13 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
             # resumed.
             write_run(run)
         return checkpoint
+    check_is_new(run)
+    write_run(run)
+    return None
+
+
+def check_is_new(run: TrainingRun) -> None:
+    """Raise TltlError, TLT0867, if the folder of a new training holds a training already."""
     if (run.folder / RUN).exists():
         title = f"`{run.folder}` already contains a training"
         help_ = f"continue it with `{resume_command(run.folder)}`, or name another folder with --out"
@@ -86,8 +93,6 @@ def start_or_resume(run: TrainingRun, resume: bool) -> Checkpoint | None:
                 "or name another folder with --out"
             )
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
-    write_run(run)
-    return None
 
 
 def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorEnv:

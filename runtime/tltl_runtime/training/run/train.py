@@ -22,7 +22,7 @@ from tltl_runtime.training.files.settings import algorithm_name, rsl_config
 from tltl_runtime.training.files.training_lock import lock_training
 from tltl_runtime.training.imitation.demonstrations import Attempt
 from tltl_runtime.training.imitation.gail import Gail
-from tltl_runtime.training.ppo.distributed import ProcessGroup, join_process_group
+from tltl_runtime.training.ppo.distributed import ProcessGroup, join_process_group, process_group
 from tltl_runtime.training.ppo.policy import card_of, policy_of
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
@@ -32,6 +32,7 @@ from tltl_runtime.training.run.checkpoint_restore import restore_checkpoint
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.named_classes import class_of, device_of
 from tltl_runtime.training.run.preparation import (
+    check_is_new,
     initial_policy,
     load_imitation_data,
     make_environments,
@@ -104,6 +105,8 @@ def train(
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
     # A new training writes nothing if it cannot begin. A resumed one first checks that nothing has changed.
     check_one_at_a_time(run)
+    if not resume and process_group().rank == 0:
+        check_is_new(run)
     if not game_of(run.level).promises_replays:
         on_measuring(searches=run.settings.searches)
     spaces = None if resume else _checked_spaces(run)
