@@ -5,14 +5,17 @@ from __future__ import annotations
 from itertools import pairwise
 from math import dist
 
+import numpy as np
 import pytest
 
 from tests.runtime.regression.page import samples
+from tltl_runtime.game.episode_summary import summary_of
 from tltl_runtime.regression.explain.explain import findings
-from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
+from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, explain_episode
 from tltl_runtime.stealth.recordings.episode import Episode
 from tltl_runtime.support.record_json import from_json, to_json
 from tltlc.core.record import replace
+from tltlc.tools.judge.verdict import RejectionCause
 
 EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
 
@@ -46,6 +49,15 @@ def test_a_success_has_no_cause_of_failure(explained: ExplainedEpisode) -> None:
 
 def test_an_explained_episode_survives_json(explained: ExplainedEpisode) -> None:
     assert from_json(ExplainedEpisode, to_json(explained), "episode") == explained
+
+
+def test_only_a_game_with_a_clock_has_seconds() -> None:
+    episode = samples.cover_and_hide_failed()[0]
+    cause = RejectionCause("broken", len(episode.times) - 1, ("keep alive",), ("alive",))
+    summary = replace(summary_of(episode, 0), cause=cause)
+    assert explain_episode(summary, episode).seconds == round(float(episode.times[-1]), 4)
+    numbered = replace(episode, times=np.arange(len(episode.times), dtype=np.float64))
+    assert explain_episode(summary, numbered).seconds is None
 
 
 def test_a_death_has_its_killers_and_the_closest_approach() -> None:

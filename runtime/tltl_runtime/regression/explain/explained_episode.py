@@ -78,7 +78,8 @@ class ExplainedEpisode:
     - ``clauses`` are the clauses of the spec that the episode broke, as in its source text. They are not
       known of episodes in older baselines.
     - ``measured`` measures the comparison that broke the spec; None if no comparison did.
-    - ``seconds`` is the time since the reset when the spec broke; None if it did not.
+    - ``seconds`` is the time since the reset when the spec broke; None if it did not, or if the game has no
+      clock.
 
     A recorded trace is an episode without a game: it has no places, no enemies and no barriers. Its
     ``by`` are the clauses of the spec that the trace breaks or does not meet.
@@ -129,8 +130,13 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
         shut=game.shut_barriers(episode),
         clauses=broken.clauses if broken and broken.kind == "broken" else (),
         measured=broken.measure if broken else None,
-        seconds=round(float(episode.times[broken.step]), 4) if broken else None,
+        seconds=round(float(episode.times[broken.step]), 4) if broken and _has_clock(episode) else None,
     )
+
+
+def _has_clock(episode: RecordedEpisode) -> bool:
+    """Whether the times of an episode are seconds; those of a game without a clock are the numbers of its steps."""
+    return episode.times.tolist() != list(range(len(episode.times)))
 
 
 def arrivals_of(episode: RecordedEpisode) -> tuple[Arrival, ...]:
