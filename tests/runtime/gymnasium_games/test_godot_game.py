@@ -210,3 +210,18 @@ def _outcome(env: WireEnv, action: list[int]) -> tuple[Any, ...]:
     except Exception as error:
         return (type(error).__name__,)
     return observation.tolist(), ended, dict(env.tltl_signals()), dict(env.tltl_positions())
+
+
+@pytest.mark.slow
+@needs_engine
+def test_the_trained_agent_reaches_the_beacon_unless_the_ferry_turns_round(
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    monkeypatch.chdir(FOLDER)
+    result = tltlc("regress", "suite.toml", "--out", tmp_path, "--workers", "1")
+    assert result.status == 1, result.err
+    lines = [line.split() for line in result.out.splitlines() if line.startswith("courtyard")]
+    verdicts = {words[0]: words[1] for words in lines}
+    assert (verdicts["courtyard:v0"], verdicts["courtyard:short_ferry"]) == ("pass", "fail")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 from math import dist
 
-import numpy as np
 import pytest
 
 from tests.runtime.regression.page import samples
@@ -56,7 +55,8 @@ def test_only_a_game_with_a_clock_has_seconds() -> None:
     cause = RejectionCause("broken", len(episode.times) - 1, ("keep alive",), ("alive",))
     summary = replace(summary_of(episode, 0), cause=cause)
     assert explain_episode(summary, episode).seconds == round(float(episode.times[-1]), 4)
-    numbered = replace(episode, times=np.arange(len(episode.times), dtype=np.float64))
+    shots = tuple(replace(shot, time=float(step)) for step, shot in enumerate(episode.snapshots))
+    numbered = replace(episode, snapshots=shots)
     assert explain_episode(summary, numbered).seconds is None
 
 
