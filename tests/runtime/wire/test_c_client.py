@@ -302,3 +302,12 @@ def test_a_recorder_writes_the_tape_of_a_play(language: str, build: Build, tmp_p
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
     assert not (tmp_path / "trace-0004.csv").exists()
+
+
+@with_compilers
+def test_digests_are_right_where_the_compiler_does_not_keep_signs_of_zero(
+    language: str, build: Build, tmp_path: Path
+) -> None:
+    result = run(build(language, "record.c", "-fno-signed-zeros"), str(tmp_path), "tape")
+    assert result.returncode == 0, result.stderr
+    recorded_tapes.check_tape(tmp_path / "trace-0001.tape.jsonl", tmp_path)

@@ -1675,8 +1675,9 @@ static int tltl_begin_tape_(tltl_recorder *recorder) {
 static void tltl_digest_(uint32_t *digest, double value) {
     uint64_t bits;
     int place;
-    if (value == 0) value = 0;
     memcpy(&bits, &value, sizeof bits);
+    // With -ffast-math, a compiler may leave out a comparison with 0 that changes the sign alone.
+    if (bits == (uint64_t)1 << 63) bits = 0;
     for (place = 0; place < 64; place += 8) {
         digest[0] = (digest[0] + (uint32_t)(bits >> place & 255)) % 65521;
         digest[1] = (digest[1] + digest[0]) % 65521;
