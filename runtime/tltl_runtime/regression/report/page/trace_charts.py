@@ -85,8 +85,13 @@ def _chart(fspa: Fspa, curves: TraceCurves) -> Markup:
     parts += _state_strip(fspa, curves)
     for row, atom in enumerate(fspa.atoms):
         # The row of a goal such as `x >= 7` shows this comparison, and not the atom that the compiler made of it.
-        name, sign = (atom.opposite or "", -1.0) if is_opposite_asked(fspa, row) else (atom.name, 1.0)
-        parts += _atom_row(name, [sign * values[row] for values in curves.atoms], _STATES + _ROW * row)
+        values, top = [values[row] for values in curves.atoms], _STATES + _ROW * row
+        holds = [value > 0.0 for value in values]
+        if atom.opposite is not None and is_opposite_asked(fspa, row):
+            # At 0, the opposite holds.
+            parts += _atom_row(atom.opposite, [-value for value in values], [not held for held in holds], top)
+        else:
+            parts += _atom_row(atom.name, values, holds, top)
     parts += _axis(fspa, curves.steps, height - _AXIS)
     return element("svg", *parts, class_="diagram trace", viewBox=f"0 0 {_WIDTH} {height}", role="img")
 
@@ -117,10 +122,11 @@ def _state_strip(fspa: Fspa, curves: TraceCurves) -> Iterator[Markup]:
             yield element("text", str(state), class_="stay-name", x=middle, y=15)
 
 
-def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
+def _atom_row(name: str, values: Sequence[float], holds: Sequence[bool], top: int) -> Iterator[Markup]:
     """Yield the SVG of an atom's row: its name, its zero line, a box wherever it holds, and its curve.
 
-    ``values`` are the atom's values at the samples. ``top`` is the upper edge of the row.
+    ``values`` are the atom's values at the samples, and ``holds`` says at which of them it holds. ``top`` is
+    the upper edge of the row.
     """
     steps, zero, height = len(values), top + _ROW / 2, _ROW / 2 - 2
     short = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
@@ -129,7 +135,7 @@ def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
     y = coordinate(zero)
     yield element("line", class_="grid", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y)
     points = list(_points(values))
-    for first, last in _stretches(values):
+    for first, last in _stretches(holds):
         left, width = _x(first, steps), _x(last, steps) - _x(first, steps)
         when = f"at step {last}" if last == first + 1 else f"from step {first + 1} to {last}"
         box = {"x": coordinate(left), "width": coordinate(max(0.5, width)), "y": top + 2, "height": _ROW - 4}
@@ -138,20 +144,20 @@ def _atom_row(name: str, values: Sequence[float], top: int) -> Iterator[Markup]:
     yield element("polyline", class_="atom", points=path)
 
 
-def _stretches(values: Sequence[float]) -> Iterator[tuple[int, int]]:
-    """Yield the runs of samples at which an atom with these ``values`` holds, as (first, last + 1).
+def _stretches(holds: Sequence[bool]) -> Iterator[tuple[int, int]]:
+    """Yield the runs of samples at which an atom ``holds``, as (first, last + 1).
 
     In a trace whose samples are drawn in groups, an atom counts as holding in a whole group if it
     holds at one of its samples.
     """
-    size = _group_size(len(values))
+    size = _group_size(len(holds))
     start = None
-    for group in range(0, len(values) + size, size):
-        holds = any(value > 0.0 for value in values[group : group + size])
-        if holds and start is None:
+    for group in range(0, len(holds) + size, size):
+        is_held = any(holds[group : group + size])
+        if is_held and start is None:
             start = group
-        elif not holds and start is not None:
-            yield start, min(group, len(values))
+        elif not is_held and start is not None:
+            yield start, min(group, len(holds))
             start = None
 
 
