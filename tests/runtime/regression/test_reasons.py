@@ -180,6 +180,7 @@ def test_a_change_of_a_game_file_counts_only_for_the_scenes_that_it_affects(
         ("aBcdefgh", "line 2"),
         ("aBcdeFGh", "line 2, lines 6 to 7"),
         ("adefgh", "2 lines removed after line 1"),
+        ("bcdefgh", "1 line removed at the start"),
         ("abcdefghij", "lines 9 to 10"),
         ("AbCdEfGh", "line 1, line 3, line 5 and 1 more"),
     ],

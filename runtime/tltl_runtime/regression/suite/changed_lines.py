@@ -35,7 +35,8 @@ def _parts(old: list[str], new: list[str], start: int) -> Iterator[str]:
     for kind, low, high, first, last in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
         if kind == "delete":
             count = high - low
-            yield f"{count} line{'s' * (count != 1)} removed after line {start + first}"
+            place = f"after line {start + first}" if start + first else "at the start"
+            yield f"{count} line{'s' * (count != 1)} removed {place}"
         elif kind != "equal":
             yield _lines_text(start + first, start + last)
 
