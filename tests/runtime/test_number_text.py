@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.support.number_text import column, count_text, number, percent, share, short_list
+from tltl_runtime.support.number_text import column, count_text, number, percent, quantity_text, share, short_list
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,20 @@ def test_only_0_and_1_are_shown_as_0_and_1(value: float, places: int) -> None:
 
 def test_minus_zero_is_shown_as_zero() -> None:
     assert [number(value, 2) for value in (-0.0, -0.004, -0.006, 12.345)] == ["0.00", "0.00", "-0.01", "12.35"]
+
+
+@pytest.mark.parametrize(
+    ("value", "gap", "text"),
+    [
+        (14.06, 2.06, "14.1 m"),
+        (0.625, 1.0, "0.62 m"),
+        (12.0004, 0.0004, "12.0004 m"),
+        (0.0, 0.0, "0.00 m"),
+        (7.0, 1e-15, "7.00 m"),
+    ],
+)
+def test_a_quantity_has_the_decimals_that_show_its_difference_if_any_do(value: float, gap: float, text: str) -> None:
+    assert quantity_text(value, "m", gap) == text
 
 
 @pytest.mark.parametrize(("most", "text"), [(4, "a, b, c"), (3, "a, b, c"), (2, "a, b and 1 more")])

@@ -48,11 +48,11 @@ def count_text(count: int, total: int, noun: str = "", *, is_compared: bool = Fa
 def quantity_text(value: float, unit: str, gap: float = inf) -> str:
     """Return a measured number with its unit, such as ``0.62 m`` or ``14.1``.
 
-    There are at most two decimals, or as many as show a difference of ``gap``, up to six.
+    There are at most two decimals, or as many as show a difference of ``gap``, up to six. A difference
+    that six decimals do not show needs no more of them.
     """
-    decimals = 2 if abs(value) < 10.0 else 1
-    while decimals < 6 and round(gap, decimals) == 0.0:
-        decimals += 1
+    least = 2 if abs(value) < 10.0 else 1
+    decimals = next((places for places in range(least, 7) if round(gap, places) != 0.0), least)
     return f"{number(value, decimals)}{' ' * bool(unit)}{unit}"
 
 

@@ -12,6 +12,8 @@ from tltl_runtime.game.geometry import Box, Region
 from tltl_runtime.game.mentions import Mentions
 from tltl_runtime.regression.explain.explain import findings
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
+from tltl_runtime.regression.explain.nearest_miss import approach_phrase
+from tltl_runtime.regression.explain.stages import Subgoal
 from tltl_runtime.stealth.level import Point, StealthLevel
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
@@ -472,6 +474,15 @@ def test_a_breach_without_a_time_needs_no_comma(level: StealthLevel) -> None:
     assert any(text.endswith("; `spin` reached 14.1 at worst") for text in texts), texts
 
 
+def test_a_comparison_that_only_equality_misses_is_just_missed(level: StealthLevel) -> None:
+    (fspa,) = compile_text(MEASURED)
+    miss = NearestMiss("x < 7", -0.0, MIDDLE, wanted=True, missed=Measure("x", 7.0, 0.0, "m"))
+    now = [an_episode(index, False, nearest=miss) for index in range(25)]
+    met = [an_episode(index, states=(0, 1)) for index in range(25)]
+    (end,) = [text for text in sentences(level, fspa, now, met) if "missed" in text]
+    assert end.endswith("; `x < 7` was just missed")
+
+
 def test_a_broken_clause_is_quoted_with_how_far_and_when_it_broke(level: StealthLevel) -> None:
     (fspa,) = compile_text(MEASURED)
     spins = [Measure("spin", 12 + gap, gap, "rad/s") for gap in (0.5, 2.1)]
@@ -493,6 +504,14 @@ def test_a_broken_clause_is_quoted_with_how_far_and_when_it_broke(level: Stealth
     )
     (only, *_) = [text for text in sentences(level, fspa, [*now[:1], *met], met) if "breaks" in text]
     assert "in 1 of 31 episodes (3%)" in only
+
+
+def test_the_most_frequent_of_the_broken_quantities_is_told_of_traces_without_times() -> None:
+    (fspa,) = compile_text(MEASURED)
+    measures = [Measure("x", 9.0, 2.0, "m"), Measure("x", 8.0, 1.0, "m"), Measure("spin", 40.0, 28.0, "")]
+    now = [replace(an_episode(index, False), measured=measures[index % 3]) for index in range(30)]
+    breach = approach_phrase(None, fspa, Subgoal(), now)
+    assert breach.text == "; `x` reached 9.00 m at worst"
 
 
 def test_a_clause_that_two_atoms_break_is_quoted_with_the_atom(level: StealthLevel) -> None:

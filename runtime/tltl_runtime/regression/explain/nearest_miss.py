@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from typing import Final
 
 from tltl_runtime.game.level import Level
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, NearestMiss
@@ -11,6 +12,9 @@ from tltl_runtime.regression.explain.phrase import Phrase, phrase, things_phrase
 from tltl_runtime.regression.explain.stages import Subgoal, near_enough
 from tltl_runtime.support.number_text import number, quantity_text
 from tltlc.api import Fspa
+
+_LEAST_GAP: Final = 5e-7
+"""Smaller differences are not told as numbers: six decimals do not show them."""
 
 
 def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: Sequence[ExplainedEpisode]) -> Phrase:
@@ -36,8 +40,12 @@ def approach_phrase(level: Level | None, fspa: Fspa, undone: Subgoal, episodes: 
 def _breach_phrase(episodes: Sequence[ExplainedEpisode]) -> Phrase:
     """Say how far and when episodes broke the spec: ``; `abs(spin)` reached 14.1 at worst, at 2.1 s to 5 s``.
 
-    Empty if they did not break it, or if nothing about it is known.
+    If they broke comparisons of several quantities, such as two of one clause, it is about the most frequent
+    one. Empty if they did not break it, or if nothing about it is known.
     """
+    quantities = Counter(episode.measured.quantity for episode in episodes if episode.measured is not None)
+    for quantity, _ in quantities.most_common(1):
+        episodes = [episode for episode in episodes if episode.measured and episode.measured.quantity == quantity]
     measured = [episode.measured for episode in episodes if episode.measured is not None]
     times = [episode.seconds for episode in episodes if episode.seconds is not None]
     if not times and not measured:
@@ -91,7 +99,8 @@ def _miss_text(fspa: Fspa, misses: Sequence[NearestMiss]) -> str:
     if measured := [miss.missed for miss in misses if miss.missed is not None]:
         least = min(measured, key=lambda measure: measure.gap)
         gap = quantity_text(least.gap, least.unit, least.gap)
-        return f"`{atom if wanted else opposite}` was missed by {gap} at best"
+        by = f"missed by {gap} at best" if least.gap >= _LEAST_GAP else "just missed"
+        return f"`{atom if wanted else opposite}` was {by}"
     if not wanted:
         return f"`{atom}` still held" if opposite is None else f"`{opposite}` was not reached"
     best = max(miss.robustness for miss in misses)
