@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gzip
 import os
 import signal
 import subprocess
@@ -49,6 +50,17 @@ def test_a_trace_that_does_not_fit_into_memory_is_refused(traces: list[str], mon
     monkeypatch.setattr(pool, "JUDGED_TRACE", Limit(size=20, values=100))
     (judged,) = judge_files(HIDE, CLAUSES, traces[30:31], 1)
     assert [diagnostic.code for diagnostic in judged.diagnostics] == ["TLT0004"]
+
+
+def test_the_limits_of_a_packed_trace_are_those_of_its_text(
+    traces: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pool, "JUDGED_TRACE", Limit(size=1_000, values=100))
+    packed = [tmp_path / name for name in ("few.csv", "many.csv", "long.csv")]
+    for path, rows in zip(packed, (b"0\n" * 90, b"0\n" * 101, b"0" + b" " * 1_000), strict=True):
+        path.write_bytes(gzip.compress(b"seen\n" + rows))
+    judged = list(judge_files(HIDE, CLAUSES, [*map(str, packed)], 1))
+    assert [[diagnostic.code for diagnostic in trace.diagnostics] for trace in judged] == [[], ["TLT0004"], ["TLT0004"]]
 
 
 SCRIPT = """

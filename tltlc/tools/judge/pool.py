@@ -18,6 +18,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.child_interrupts import block_interrupts
 from tltlc.io.files import read_bytes
 from tltlc.io.limits import JUDGED_TRACE
+from tltlc.monitor.packed import unpacked
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.judge import Judge
 from tltlc.tools.judge.verdict import JudgedTrace
@@ -73,6 +74,9 @@ def _cores() -> int:
 def _judge_file(judge: Judge, path: str) -> JudgedTrace:
     try:
         data = read_bytes(path, path, JUDGED_TRACE.size)
+        if len(data) <= JUDGED_TRACE.size:
+            # The limits are those of the text in memory, and a small packed file may have a very long one.
+            data = unpacked(data, path)
         assert JUDGED_TRACE.values is not None
         if len(data) > JUDGED_TRACE.size or data.count(b"\n") > JUDGED_TRACE.values:
             title = f"`{path}` is larger than {JUDGED_TRACE.size >> 20} MiB or {JUDGED_TRACE.values:,} samples"
