@@ -51,7 +51,8 @@ def write_tape(path: str | os.PathLike[str], tape: Tape) -> None:
 
     Raises:
         TltlError: TLT0005, the file cannot be written.
-        ValueError: a number is not finite, or a step has other signals than the header, or other types.
+        ValueError: a number is not finite, or a step has no action, or other signals than the header, or
+            other types.
     """
     data = "".join(f"{line}\n" for line in _lines(tape)).encode()
     fileio.write_file(Path(path), gzip.compress(data, mtime=0) if os.fspath(path).endswith(".gz") else data)
@@ -61,6 +62,8 @@ def _lines(tape: Tape) -> Iterator[str]:
     yield _text(_header(tape.header))
     digest = traces.TapeDigest()
     for number, step in enumerate(tape.steps, start=1):
+        if step.action is None:
+            raise ValueError(f"step {number} has no action")
         if step.signals.keys() != tape.header.signals.keys():
             raise ValueError(f"step {number} has other signals than the header of the tape")
         values = {name: step.signals[name] for name in tape.header.signals}

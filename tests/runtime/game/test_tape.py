@@ -53,6 +53,12 @@ def test_a_wrong_step_is_not_written(tmp_path: Path, signals: dict[str, float]) 
     assert not [*tmp_path.iterdir()]
 
 
+def test_a_step_without_an_action_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="step 1 has no action"):
+        write_tape(tmp_path / "x.tape.jsonl", replace(TAPE, steps=(TapeStep(None, TAPE.steps[0].signals),)))
+    assert not [*tmp_path.iterdir()]
+
+
 def test_what_is_no_tape_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "x.tape.jsonl"
     write_tape(path, TAPE)
