@@ -596,6 +596,7 @@ class Recorder:
 	var _samples = 0
 	var _played = {}  # empty if no trace has begun
 	var _has_tape = false
+	var _are_bools = []  # for each signal of the tape, which keeps the type of its first value
 	var _low = 1  # of the digest, Adler-32
 	var _high = 0
 
@@ -635,7 +636,7 @@ class Recorder:
 			return false
 		if _samples > 0 and (action != null) != _has_tape:
 			return _refuse("give the action of each sample of an episode, or of none")
-		if action != null and not _write_step(action, cells, signals):
+		if action != null and not _write_step(action, signals):
 			return false
 		if _clock_hz:
 			cells.push_front(Digits.text(_samples / float(_clock_hz)))
@@ -673,15 +674,20 @@ class Recorder:
 		return true
 
 	# Writes a step to the tape, and before the first one the header.
-	func _write_step(action, texts: Array, signals: Dictionary) -> bool:
+	func _write_step(action, signals: Dictionary) -> bool:
 		if not _has_tape and not _write(_tape_path(_path), _header(signals), File.WRITE):
 			return false
 		_has_tape = true
 		var members = PoolStringArray()
 		var bytes = StreamPeerBuffer.new()
 		for index in range(_signals.size()):
-			members.append(to_json(_signals[index]) + ":" + texts[index])
-			bytes.put_double(float(signals[_signals[index]]) + 0.0)  # -0 counts as 0
+			var number = float(signals[_signals[index]]) + 0.0  # -0 counts as 0
+			var text = Digits.text(number)
+			if _are_bools[index]:
+				text = "true" if number != 0.0 else "false"
+				number = 1.0 if number != 0.0 else 0.0
+			members.append(to_json(_signals[index]) + ":" + text)
+			bytes.put_double(number)
 		for byte in bytes.data_array:
 			_low = (_low + byte) % 65521
 			_high = (_high + _low) % 65521
@@ -691,7 +697,9 @@ class Recorder:
 
 	func _header(signals: Dictionary) -> String:
 		var types = PoolStringArray()
+		_are_bools = []
 		for name in _signals:
+			_are_bools.append(signals[name] is bool)
 			types.append(to_json(name) + ':{"type":"%s"}' % ("bool" if signals[name] is bool else "number"))
 		var about = {"tape": 1, "game": _game, "spec": null, "clock_hz": _clock_hz}
 		about["versions"] = {"godot": Engine.get_version_info()["string"]}

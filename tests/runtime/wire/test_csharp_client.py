@@ -138,9 +138,10 @@ internal sealed class Driver
             catch (System.ArgumentException) {}
             for (int step = 1; step <= 130; step++)
             {
-                recorder.Sample(
-                    new Tltl.Message {{"near(a, b)", step / 3.0}, {"size", sizes[step % 6]}, {"seen", step == 130}},
-                    new[] {step % 3, 1});
+                var values = new Tltl.Message {{"near(a, b)", step / 3.0}, {"size", sizes[step % 6]}, {"seen", false}};
+                if (step == 3) values["near(a, b)"] = true;
+                if (step > 128) values["seen"] = step - 129;
+                recorder.Sample(values, new[] {step % 3, 1});
             }
             recorder.Begin();
             var signals = new Tltl.Message {{"near(a, b)", 1}, {"size", 2}, {"seen", false}};

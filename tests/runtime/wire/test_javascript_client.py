@@ -285,6 +285,8 @@ recorder.begin("crypt", "v1", 7);
 try { recorder.sample({ "near(a, b)": 0 / 0, size: 2, seen: false }, 0); } catch {}
 for (let step = 1; step <= 130; step++) {
   const signals = { "near(a, b)": step / 3, size: sizes[step % 6], seen: step === 130 };
+  if (step === 3) signals["near(a, b)"] = true;
+  if (step > 128) signals.seen = step - 129;
   recorder.sample(signals, step % 2 ? [step % 3, 1] : Uint8Array.of(step % 3, 1));
 }
 """

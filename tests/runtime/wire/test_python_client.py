@@ -162,7 +162,8 @@ def test_a_recorder_writes_the_tape_of_a_play(tmp_path: Path) -> None:
     recorder = tltl_client.Recorder(folder, ["near(a, b)", "size", "seen"], clock_hz=60, game="walk")
     recorder.begin("crypt", "v1", seed=7)
     for step in range(1, recorded_tapes.STEPS + 1):
-        recorder.sample(recorded_tapes.signals(step), recorded_tapes.action(step))
+        mixed = {"near(a, b)": True} if step == 3 else {"seen": step - 129} if step > 128 else {}
+        recorder.sample({**recorded_tapes.signals(step), **mixed}, recorded_tapes.action(step))
     recorder.begin()
     recorder.sample({"near(a, b)": 1, "size": 2, "seen": False})
     recorder.end()

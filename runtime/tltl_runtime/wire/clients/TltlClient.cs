@@ -708,6 +708,7 @@ namespace Tltl
         private Message _played;
         private long _samples;
         private uint _low, _high;
+        private bool[] _areBools;
 
         /// <param name="folder">Where the files are written; it is made if need be.</param>
         /// <param name="signals">The names of the signals, as specs write them.</param>
@@ -759,7 +760,7 @@ namespace Tltl
             {
                 throw new InvalidOperationException("give the action of each sample of an episode, or of none");
             }
-            if (action != null) WriteStep(actionText, values, signals);
+            if (action != null) WriteStep(actionText, signals);
             if (_clockHz != null) values.Insert(0, Json.Number(_samples / _clockHz.Value));
             Write(values);
             _samples++;
@@ -822,7 +823,7 @@ namespace Tltl
         }
 
         /// <summary>Writes a step to the tape, and before the first one the header.</summary>
-        private void WriteStep(string action, List<string> texts, IDictionary signals)
+        private void WriteStep(string action, IDictionary signals)
         {
             if (_tape == null)
             {
@@ -831,10 +832,14 @@ namespace Tltl
                 _tape.Write(Json.Text(Header(signals)) + "\n");
             }
             var members = new List<string>();
-            for (int i = 0; i < texts.Count; i++)
+            for (int i = 0; i < _signals.Length; i++)
             {
-                members.Add(Json.Text(_signals[i]) + ":" + texts[i]);
-                Digest(((IConvertible)signals[_signals[i]]).ToDouble(CultureInfo.InvariantCulture));
+                // A signal keeps the type of its first value.
+                double number = ((IConvertible)signals[_signals[i]]).ToDouble(CultureInfo.InvariantCulture);
+                if (_areBools[i]) number = number != 0 ? 1 : 0;
+                string text = !_areBools[i] ? Json.Number(number) : number != 0 ? "true" : "false";
+                members.Add(Json.Text(_signals[i]) + ":" + text);
+                Digest(number);
             }
             string digest = (_high * 65536 + _low).ToString("x8", CultureInfo.InvariantCulture);
             string end = (_samples + 1) % 60 == 0 ? ",\"digest\":\"" + digest + "\"" : "";
@@ -846,9 +851,11 @@ namespace Tltl
         private Message Header(IDictionary signals)
         {
             var types = new Message();
-            foreach (string name in _signals)
+            _areBools = new bool[_signals.Length];
+            for (int i = 0; i < _signals.Length; i++)
             {
-                types[name] = new Message {{"type", signals[name] is bool ? "bool" : "number"}};
+                _areBools[i] = signals[_signals[i]] is bool;
+                types[_signals[i]] = new Message {{"type", _areBools[i] ? "bool" : "number"}};
             }
             var header = new Message {{"tape", 1}, {"game", _game}};
             foreach (KeyValuePair<string, object> part in _played) header[part.Key] = part.Value;

@@ -304,6 +304,7 @@ export class Recorder {
   #tape = null; // a file in Node, and a text in a page
   #lastTape = "";
   #sums; // of the digest, Adler-32
+  #areBools; // whether each signal is a bool in the tape: it keeps the type of its first value
 
   constructor(folder, signals, { clockHz = null, fs = null, game = "game" } = {}) {
     [this.#folder, this.#signals, this.#clockHz, this.#game] = [folder, [...signals], clockHz, game];
@@ -334,6 +335,7 @@ export class Recorder {
     const values = this.#signals.map((name) => cellOf(name, signals[name]));
     checkFinite(action, "the action");
     const actionText = JSON.stringify(plain(action));
+    if (actionText === undefined) throw new TypeError("the action is no value of JSON");
     if (this.#played === null) this.begin();
     if (this.#text === null) this.#makeTrace();
     if (this.#samples && (action === null) !== (this.#tape === null)) {
@@ -384,15 +386,17 @@ export class Recorder {
     if (this.#samples === 0) {
       const versions = IS_NODE ? { node: process.version } : {};
       const about = { ...this.#played, spec: null, versions, clock_hz: this.#clockHz };
-      const types = quoted.map((name, i) => `${name}:{"type":"${/^[tf]/.test(texts[i]) ? "bool" : "number"}"}`);
+      this.#areBools = texts.map((text) => /^[tf]/.test(text));
+      const types = quoted.map((name, i) => `${name}:{"type":"${this.#areBools[i] ? "bool" : "number"}"}`);
       const header = JSON.stringify({ tape: 1, game: this.#game, ...about });
       this.#tape = this.#fs ? this.#fs.openSync(tapeName(this.#name), "wx") : "";
       this.#writeTape(`${header.slice(0, -1)},"signals":{${types}}}\n`);
     }
     const bytes = new DataView(new ArrayBuffer(8));
     let [low, high] = this.#sums;
-    for (const name of this.#signals) {
-      bytes.setFloat64(0, Number(signals[name]) + 0, true); // -0 counts as 0
+    const values = this.#signals.map((name, i) => (this.#areBools[i] ? Boolean : Number)(signals[name]));
+    for (const value of values) {
+      bytes.setFloat64(0, Number(value) + 0, true); // -0 counts as 0
       for (let place = 0; place < 8; place++) {
         low = (low + bytes.getUint8(place)) % 65521;
         high = (high + low) % 65521;
@@ -401,7 +405,7 @@ export class Recorder {
     this.#sums = [low, high];
     const digest = (high * 65536 + low).toString(16).padStart(8, "0");
     const end = (this.#samples + 1) % 60 === 0 ? `,"digest":"${digest}"` : "";
-    const members = quoted.map((name, i) => `${name}:${texts[i]}`);
+    const members = quoted.map((name, i) => `${name}:${values[i]}`);
     this.#writeTape(`{"action":${action},"signals":{${members}}${end}}\n`);
   }
 

@@ -798,10 +798,17 @@ function Recorder:_write_step(action, texts, signals)
   end
   local members = {}
   for index, name in ipairs(self._signals) do
-    local value = signals[name]
-    members[index] = quoted(name) .. ":" .. texts[index]
-    for _, number in ipairs({double_bytes(value == true and 1 or value or 0)}) do
-      self._low = (self._low + number) % 65521
+    local text, value = texts[index], signals[name]
+    local number = value == true and 1 or value or 0
+    if self._are_bools[index] then
+      number = number ~= 0 and 1 or 0
+      text = number == 1 and "true" or "false"
+    elseif type(value) == "boolean" then
+      text = number_text(number)
+    end
+    members[index] = quoted(name) .. ":" .. text
+    for _, part in ipairs({double_bytes(number)}) do
+      self._low = (self._low + part) % 65521
       self._high = (self._high + self._low) % 65521
     end
   end
@@ -811,8 +818,10 @@ end
 
 function Recorder:_header(signals)
   local types, about = {}, self._played
+  self._are_bools = {}  -- A signal keeps the type of its first value.
   for index, name in ipairs(self._signals) do
-    types[index] = quoted(name) .. ':{"type":"' .. (type(signals[name]) == "boolean" and "bool" or "number") .. '"}'
+    self._are_bools[index] = type(signals[name]) == "boolean"
+    types[index] = quoted(name) .. ':{"type":"' .. (self._are_bools[index] and "bool" or "number") .. '"}'
   end
   about.tape, about.game, about.spec, about.clock_hz = 1, self._game, null, self._clock_hz or null
   about.versions = {lua = _VERSION}

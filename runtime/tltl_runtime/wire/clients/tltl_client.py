@@ -367,7 +367,7 @@ class Recorder:
         if self._samples and (action_text is None) != (self._tape is None):
             raise ValueError("give the action of each sample of an episode, or of none")
         if action_text is not None:
-            self._write_step(action_text, texts, [float(signals[name]) for name in self._signals])
+            self._write_step(action_text, texts, {name: float(signals[name]) for name in self._signals})
         times = [repr(self._samples / self._clock_hz)] if self._clock_hz else []
         self._write([*times, *texts.values()])
         self._samples += 1
@@ -393,17 +393,23 @@ class Recorder:
                 break
         self._write(map(_cell, ("time", *self._signals) if self._clock_hz else self._signals))
 
-    def _write_step(self, action: str, texts: Mapping[str, str], numbers: list[float]) -> None:
+    def _write_step(self, action: str, texts: Mapping[str, str], numbers: Mapping[str, float]) -> None:
         """Write a step to the tape, and before the first one the header."""
         if self._tape is None:
             self._tape = _tape_path(self._path).open("x", encoding="utf-8", newline="\n")
-            types = {name: {"type": _type(text)} for name, text in texts.items()}
+            self._bools = {name for name, text in texts.items() if text in ("true", "false")}
+            types = {name: {"type": "bool" if name in self._bools else "number"} for name in texts}
             about = {"spec": None, "versions": {"python": sys.version.split()[0]}, "clock_hz": self._clock_hz}
             header = {"tape": 1, "game": self._game, **self._played, **about, "signals": types}
             self._tape.write(json.dumps(header, separators=(",", ":"), default=_as_list) + "\n")
-        members = ",".join(f"{json.dumps(name)}:{text}" for name, text in texts.items())
+        # A signal keeps the type of its first value.
+        numbers = {name: float(number != 0) if name in self._bools else number for name, number in numbers.items()}
+        values = {
+            name: _value(name, number == 1 if name in self._bools else number) for name, number in numbers.items()
+        }
+        members = ",".join(f"{json.dumps(name)}:{value}" for name, value in values.items())
         # The bytes of -0 are not those of 0.
-        self._digest = adler32(pack(f"<{len(numbers)}d", *(number + 0.0 for number in numbers)), self._digest)
+        self._digest = adler32(pack(f"<{len(numbers)}d", *(number + 0.0 for number in numbers.values())), self._digest)
         is_checked = (self._samples + 1) % 60 == 0
         digest = f',"digest":"{self._digest:08x}"' if is_checked else ""
         self._tape.write(f'{{"action":{action},"signals":{{{members}}}{digest}}}\n')
@@ -425,10 +431,6 @@ def _value(name: str, value: float) -> str:
 
 def _tape_path(trace: Path) -> Path:
     return trace.with_name(f"{trace.stem}.tape.jsonl")
-
-
-def _type(text: str) -> str:
-    return "bool" if text in ("true", "false") else "number"
 
 
 def _as_list(value: Any) -> Any:

@@ -554,6 +554,7 @@ class Recorder:
 	var _game: String = ""
 	var _file: FileAccess = null
 	var _tape: FileAccess = null
+	var _are_bools: Array = []  # for each signal of the tape, which keeps the type of its first value
 	var _tape_path: String = ""
 	var _samples: int = 0
 	var _played: Dictionary = {}  # empty if no trace has begun
@@ -595,7 +596,7 @@ class Recorder:
 			return false
 		if _samples > 0 and (action != null) != (_tape != null):
 			return _refuse("give the action of each sample of an episode, or of none")
-		if action != null and not _write_step(action, cells, signals):
+		if action != null and not _write_step(action, signals):
 			return false
 		if _clock_hz > 0.0:
 			cells.insert(0, Digits.text(_samples / _clock_hz))
@@ -632,7 +633,7 @@ class Recorder:
 		return true
 
 	# Writes a step to the tape, and before the first one the header.
-	func _write_step(action: Variant, texts: PackedStringArray, signals: Dictionary) -> bool:
+	func _write_step(action: Variant, signals: Dictionary) -> bool:
 		if _tape == null:
 			_tape = FileAccess.open(_tape_path, FileAccess.WRITE)
 			if _tape == null:
@@ -641,8 +642,13 @@ class Recorder:
 		var members := PackedStringArray()
 		var bytes := StreamPeerBuffer.new()
 		for index in range(_signals.size()):
-			members.append(JSON.stringify(_signals[index]) + ":" + texts[index])
-			bytes.put_double(float(signals[_signals[index]]) + 0.0)  # -0 counts as 0
+			var number: float = float(signals[_signals[index]]) + 0.0  # -0 counts as 0
+			var text: String = Digits.text(number)
+			if _are_bools[index]:
+				text = "true" if number != 0.0 else "false"
+				number = 1.0 if number != 0.0 else 0.0
+			members.append(JSON.stringify(_signals[index]) + ":" + text)
+			bytes.put_double(number)
 		for byte in bytes.data_array:
 			_low = (_low + byte) % 65521
 			_high = (_high + _low) % 65521
@@ -652,7 +658,9 @@ class Recorder:
 
 	func _header(signals: Dictionary) -> String:
 		var types := PackedStringArray()
+		_are_bools = []
 		for name in _signals:
+			_are_bools.append(signals[name] is bool)
 			types.append(JSON.stringify(name) + ':{"type":"%s"}' % ("bool" if signals[name] is bool else "number"))
 		var about: Dictionary = {"tape": 1, "game": _game, "spec": null}
 		about["clock_hz"] = _clock_hz if _clock_hz > 0.0 else null

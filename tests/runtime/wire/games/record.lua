@@ -13,6 +13,8 @@ if arg[2] == "tape" then
   pcall(recorder.sample, recorder, {["near(a, b)"] = 0 / 0, size = 2, seen = false}, 0)
   for step = 1, 130 do
     local signals = {["near(a, b)"] = step / 3, size = sizes[step % 6], seen = step == 130}
+    if step == 3 then signals["near(a, b)"] = true end
+    if step > 128 then signals.seen = step - 129 end
     recorder:sample(signals, {step % 3, 1})
   end
   recorder:begin()
