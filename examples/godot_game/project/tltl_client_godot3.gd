@@ -531,6 +531,17 @@ class Digits:
 			parts.append(json(item))
 		return "[" + parts.join(",") + "]"
 
+	# Whether all numbers of a value of JSON are finite.
+	static func are_finite(value) -> bool:
+		if value is float:
+			return not (is_nan(value) or is_inf(value))
+		var items = value.values() if value is Dictionary else value
+		if typeof(items) >= TYPE_ARRAY:
+			for item in items:
+				if not are_finite(item):
+					return false
+		return true
+
 	# Returns the text of a number that is very small or very large: all its digits, and an exponent.
 	static func odd(value: float) -> String:
 		if is_nan(value) or is_inf(value):
@@ -630,6 +641,8 @@ class Recorder:
 			if value is float and (is_nan(value) or is_inf(value)):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
+		if not Digits.are_finite(action):
+			return _refuse("the action is %s, and numbers must be finite" % str(action))
 		if _played.empty():
 			begin()
 		if _path == "" and not _make_trace():

@@ -26,6 +26,7 @@ var recorder = Tltl.Recorder.new("FOLDER", ["near(a, b)", "size", "seen"], 60, "
 var sizes = [pow(2, -1074), -0.0, 1e-300, 1e22, -123456.789, 0.1]
 recorder.begin("crypt", "v1", 7)
 recorder.sample({"near(a, b)": NAN, "size": 2, "seen": false}, 0)
+recorder.sample({"near(a, b)": 1, "size": 2, "seen": false}, {"move": [1, NAN]})
 for step in range(1, 131):
 	var signals = {"near(a, b)": step / 3.0, "size": sizes[step % 6], "seen": false}
 	if step == 3:
@@ -39,8 +40,8 @@ print(recorder.sample({"near(a, b)": 1, "size": 2, "seen": false}, 1), recorder.
 recorder.end()"""
 """The body of a function that records the play in Godot, and then an episode without actions.
 
-The recorder refuses the first sample, and yet the tape says what `begin` was given. In some steps, a number has a bool
-as its value, and a bool a number.
+The recorder refuses the first two samples, and yet the tape says what `begin` was given. In some steps, a number has
+a bool as its value, and a bool a number.
 """
 
 

@@ -487,6 +487,17 @@ class Digits:
 			parts.append(json(item))
 		return "[" + ",".join(parts) + "]"
 
+	## Whether all numbers of a value of JSON are finite.
+	static func are_finite(value: Variant) -> bool:
+		if value is float and not is_finite(value):
+			return false
+		var items: Variant = value.values() if value is Dictionary else value
+		if typeof(items) >= TYPE_ARRAY:
+			for item in items:
+				if not are_finite(item):
+					return false
+		return true
+
 	## Returns the text of a number that is very small or very large: all its digits, and an exponent.
 	static func odd(value: float) -> String:
 		var factor: float = absf(value)
@@ -590,6 +601,8 @@ class Recorder:
 			if value is float and not is_finite(value):
 				return _refuse("the signal %s is %s, and numbers must be finite" % [name, value])
 			cells.append(("true" if value else "false") if value is bool else Digits.text(float(value)))
+		if not Digits.are_finite(action):
+			return _refuse("the action is %s, and numbers must be finite" % str(action))
 		if _played.is_empty():
 			begin()
 		if _file == null and not _make_trace():
