@@ -86,3 +86,18 @@ def test_a_search_without_demonstrations_is_shown(tmp_path: Path, report: Traini
     nothing = replace(report, searched=replace(SEARCHED, lengths=()))
     text = "\n".join(_lines(tmp_path, 80, 24, nothing))
     assert "search: no way found in 1 min 20 s; episodes begin at the level's start" in text
+
+
+def test_a_game_file_may_change_while_its_scene_is_trained(
+    tmp_path: Path, report: TrainingReport, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = Path("pole.game.toml")
+    file.write_text('[game]\ngymnasium = "CartPole-v1"\n\n[[scene]]\nname = "short"\n')
+    console = Console(width=100, height=24, file=StringIO())
+    display = TrainingDisplay(replace(run_in(tmp_path), level=str(file)), console)
+    file.write_text("[game")
+    display.show_report(report)
+    with console.capture() as captured:
+        console.print(display.picture())
+    assert "pole.game.toml:short:v0, seed 3" in captured.get()

@@ -75,6 +75,9 @@ class EvaluationFiles:
         self._json = None if cli.is_stdout(json_file) else json_file
         self._game = game_of(setup.level)
         self._level = self._game.load_level(setup.level, setup.variant)
+        # Show the path of a user's level, which may have the name of a level of the package. Read the name of a scene
+        # now: the game file may change while the episodes are played.
+        self._place = place_title(setup.level, self._level.variant)
         self._summaries: dict[bool, list[EpisodeSummary]] = {True: [], False: []}
         self._lost: dict[bool, list[LostEpisode]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
@@ -137,9 +140,7 @@ class EvaluationFiles:
     def text(self) -> str:
         """Return the text report."""
         setup = self._setup
-        # Show the path of a user's level, which may have the name of a level of the package.
-        place = place_title(setup.level, self._level.variant)
-        head = f"{place}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
+        head = f"{self._place}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         evaluations = {CHOICES[sampled]: evaluation for sampled, evaluation in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(evaluations)}"
         failed = [episode.index for episodes in self._summaries.values() for episode in episodes if not episode.success]

@@ -56,6 +56,8 @@ class TrainingDisplay:
 
     def __init__(self, run: TrainingRun, console: Console) -> None:
         self._run, self._console = run, console
+        # The name of a scene may be in the game file, which the user may change while the training goes on.
+        self._title = f"{run.fspa.name} on {place_title(run.level, run.variant.text)}, seed {run.seed}"
         self._report: TrainingReport | None = None
         self._plan = self._stage = ""
         self._search: SearchProgress | None = None
@@ -97,14 +99,13 @@ class TrainingDisplay:
         """Return the current picture, fitted to the current size of the terminal."""
         run, (columns, lines) = self._run, self._console.size
         width = min(_WIDTH, columns - _MARGIN)
-        title = f"{run.fspa.name} on {place_title(run.level, run.variant.text)}, seed {run.seed}"
         bar = _BAR[width < _WIDTH]
         return Panel(
             # Two lines are for the border, and one line below the border stays free.
             self._before_first_iteration(bar)
             if self._report is None
             else self._after_iteration(self._report, bar, lines - 3),
-            title=Text(title, "bold", overflow="ellipsis"),
+            title=Text(self._title, "bold", overflow="ellipsis"),
             subtitle=Text(_tail(str(run.folder), width - 6), "dim"),
             width=width,
             title_align="left",
