@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import deque
 from collections.abc import Iterable, Iterator
 from itertools import chain, groupby
 from typing import Final
@@ -53,13 +54,21 @@ def telling_lines(lines: Iterable[str], most: int) -> list[str]:
 
 def script_error(lines: Iterable[str]) -> str:
     """Return the first message about an error in a script of the game, in one line; empty if there is none."""
-    found = next(filter(_is_script_error, _messages(lines)), ())
-    return " ".join(line.strip() for line in found if line != _REPEATED)
+    return _in_one_line(next(filter(_is_script_error, _messages(lines)), ()))
+
+
+def last_message(lines: Iterable[str]) -> str:
+    """Return the last message that is no noise, in one line; empty if there is none."""
+    return _in_one_line(next(iter(deque(_messages(lines), maxlen=1)), ()))
 
 
 def has_unreadable_script(lines: Iterable[str]) -> bool:
     """Whether the game's engine says that it cannot read one of the game's scripts."""
     return any(map(_UNREADABLE.search, lines))
+
+
+def _in_one_line(message: _Message) -> str:
+    return " ".join(line.strip() for line in message if line != _REPEATED)
 
 
 def _messages(lines: Iterable[str]) -> Iterator[_Message]:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Final
 
-from tltl_runtime.wire.error_lines import has_unreadable_script, script_error, telling_lines
+from tltl_runtime.wire.error_lines import has_unreadable_script, last_message, script_error
 from tltl_runtime.wire.game_process import GameProcess
 from tltlc.api import record
 
@@ -24,8 +24,8 @@ class SlowStart:
     """A game that has not said ``hello`` yet.
 
     ``name`` is that of the game. It has been starting for ``waited_s`` seconds and may do so for ``start_s``.
-    ``last_line`` is an error in one of its scripts, else the last line that it wrote to standard error; empty if
-    there is none.
+    ``last_line`` is an error in one of its scripts, else the last message that it wrote to standard error, in one
+    line; empty if there is none.
     """
 
     name: str
@@ -83,7 +83,7 @@ class StartWatch:
         now = time.monotonic()
         if now - self._told < LONG_S:
             return
-        last_line = script_error(lines) or next(iter(telling_lines(lines, 1)), "")
+        last_line = script_error(lines) or last_message(lines)
         if last_line != self._last_line:
             self._told, self._last_line = now, last_line
             _tell.get()(SlowStart(self._name, now - self._begin, self._start_s, last_line))

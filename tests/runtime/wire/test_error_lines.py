@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.wire.error_lines import has_unreadable_script, script_error, telling_lines
+from tltl_runtime.wire.error_lines import has_unreadable_script, last_message, script_error, telling_lines
 
 PARSE_ERROR = ["SCRIPT ERROR: GDScript::reload: Parse Error: misplaced: func", "   At: res://player.gd:20."]
 STEP_ERROR = ["SCRIPT ERROR: step: Invalid operands 'int' and 'Nil'.", "   At: res://main.gd:47."]
@@ -71,3 +71,9 @@ def test_the_first_error_in_a_script_is_one_line() -> None:
         "SCRIPT ERROR: step: Invalid operands 'int' and 'Nil'. At: res://main.gd:47."
     )
     assert script_error([*NOISE, "loading"]) == ""
+
+
+def test_the_last_message_is_one_line_also_if_it_is_repeated() -> None:
+    assert last_message(["loading", *["no such node"] * 2, *NOISE]) == "no such node"
+    assert last_message(["loading", *FOLLOWS]) == f"{FOLLOWS[0]} {FOLLOWS[1].strip()}"
+    assert last_message(NOISE) == ""
