@@ -39,7 +39,7 @@ def own_package_files(game: GameFile) -> Iterator[Path]:
     """Yield the Python files of the packages of the user that a game file names."""
     for package in _packages(game):
         if not _is_installed(package):
-            yield from (path for path in _files(package) if path.suffix == ".py")
+            yield from (path for _, path in _files(package) if path.suffix == ".py")
 
 
 def _packages(game: GameFile) -> list[str]:
@@ -58,7 +58,7 @@ def _fingerprint(package: str) -> list[str]:
     if _is_installed(package):
         found = _distribution(package)
         return [found.version, _sha256((found.read_text("RECORD") or "").encode())] if found else []
-    return [f"{path.name} {_content_hash(path)}" for path in _files(package)]
+    return [f"{path.relative_to(root).as_posix()} {_content_hash(path)}" for root, path in _files(package)]
 
 
 def _content_hash(path: Path) -> str:
@@ -83,14 +83,17 @@ def _roots(package: str) -> list[Path]:
     return [Path(spec.origin).resolve()] if spec.origin and Path(spec.origin).is_file() else []
 
 
-def _files(package: str) -> list[Path]:
-    """Return the files of a package or of a module, sorted; without hidden ones and what Python has compiled."""
-    files: list[Path] = []
+def _files(package: str) -> list[tuple[Path, Path]]:
+    """Return the files of a package or of a module, sorted, each after the folder of the package that it is in.
+
+    Hidden files and what Python has compiled are left out. The folder of a module is the one around its file.
+    """
+    files: list[tuple[Path, Path]] = []
     for root in _roots(package):
         for path in [root] if root.is_file() else root.rglob("*"):
             parts = path.relative_to(root).parts
             if not any(part.startswith((".", "__pycache__")) for part in parts) and path.is_file():
-                files.append(path)
+                files.append((root.parent if root.is_file() else root, path))
             if len(files) >= _MOST_FILES:
                 break
     return sorted(files)

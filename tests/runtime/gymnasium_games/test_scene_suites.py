@@ -112,6 +112,21 @@ def test_edits_of_a_package_of_the_user_are_noticed(
     assert "left out" not in chosen.err and "short:v0" in chosen.out
 
 
+def test_a_module_that_moves_to_another_folder_of_a_package_is_noticed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder in ("first", "second"):
+        (tmp_path / "moved_package" / folder).mkdir(parents=True)
+    module = tmp_path / "moved_package" / "first" / "env.py"
+    module.write_text(games.GRID)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    text = games.GAME.replace("[game]", '[game]\nimport = ["moved_package"]')
+    game = read_game_file(games.write(tmp_path / "game", corridor__game__toml=text))
+    before = installed_code_hash(game)
+    module.rename(tmp_path / "moved_package" / "second" / "env.py")
+    assert installed_code_hash(game) not in ("", before)
+
+
 def test_an_installed_package_counts_by_what_was_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     game = games.write(tmp_path, corridor__game__toml=games.GAME.replace("[game]", '[game]\nimport = ["click"]'))
     before = installed_code_hash(read_game_file(game))
