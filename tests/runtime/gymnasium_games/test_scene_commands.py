@@ -278,6 +278,20 @@ def test_the_game_of_a_project_needs_no_option(tltlc: Run, tmp_path: Path, monke
     assert "training named on corridor.game.toml:long:v0" in tltlc("train", "named.tltl", *options[:-1], "named").err
 
 
+def test_the_check_prints_no_control_characters_of_a_game(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code = games.GRID.replace('"cell": float(game.cell)', '"cell": float(game.cell), "\\x1b[2J\\n::error::": 0.0')
+    assert code != games.GRID
+    games.write(tmp_path, corridor__py=code)
+    result = tltlc("check", "--game", "corridor.game.toml:short:v0")
+    assert "  not changed by 200 random steps: \ufffd[2J ::error::\n" in result.err
+    assert "\x1b" not in result.err
+
+
 EXPERT = """
 
 class Expert:

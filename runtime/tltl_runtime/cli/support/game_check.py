@@ -87,7 +87,7 @@ class _GameCheck:
             fits[fspa.name] = check_fit(scene_report.supply, fspa, places)
             self._report.add(fits[fspa.name])
         for line in _lines(scene_report, fits):
-            self._report.say(line)
+            self._report.say(plain_text(line))  # the names of signals and params are the game's
         self._report.facts["scenes"].append(_facts(self._game, scene_report, fits))
 
     def _specs(self, scene: str, variant: str) -> Iterator[tuple[Fspa, SpecPlaces]]:
@@ -145,7 +145,7 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
         yield f"  a restored snapshot is what was saved: {_ANSWERS[scene_report.restores]}"
     if scene_report.last_lines:
         yield "  the game's standard error ends:"
-        yield from (f"    {plain_text(line)}" for line in scene_report.last_lines)
+        yield from (f"    {line}" for line in scene_report.last_lines)
 
 
 def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
