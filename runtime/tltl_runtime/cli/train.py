@@ -48,7 +48,7 @@ Examples:
   tltlc train --game lake.game.toml:small --out lake_agent
   tltlc train lake.tltl:cross --game lake.game.toml:small --minutes 15 --seed 3 --out runs/cross
   tltlc train --resume runs/cross --minutes 30
-  tltlc train --print-config > settings.toml
+  tltlc train --game lake.game.toml:small --print-config > settings.toml
   tltlc train --game lake.game.toml:small --config settings.toml
   tltlc train --from lake_agent --game lake.game.toml:small:slippery
   tltlc train plans.tltl:careful --level my_level.toml:v1
@@ -151,10 +151,9 @@ def command(
         from tltl_runtime.cli.support.training_run import (
             TrainOptions,
             check_limits,
-            initial_policy_options,
             new_run,
-            new_settings,
             resumed_run,
+            settings_to_print,
         )
         from tltl_runtime.training.files.run_file import resume_command
         from tltl_runtime.training.files.settings import settings_text
@@ -163,9 +162,7 @@ def command(
         train_options = TrainOptions(spec=spec, sensors=sensors, **options)
         if print_config:
             settings = (
-                new_settings(train_options, initial_policy_options(train_options))
-                if resume is None
-                else resumed_run(train_options, resume).settings
+                settings_to_print(train_options) if resume is None else resumed_run(train_options, resume).settings
             )
             click.echo(settings_text(settings), nl=False)
             return cli.exits.CLEAN

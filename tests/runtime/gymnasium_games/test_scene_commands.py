@@ -278,6 +278,20 @@ def test_the_game_of_a_project_needs_no_option(tltlc: Run, tmp_path: Path, monke
     assert "training named on corridor.game.toml:long:v0" in tltlc("train", "named.tltl", *options[:-1], "named").err
 
 
+def test_the_printed_settings_are_those_with_which_the_scene_is_trained(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    games.write(tmp_path, tltl__toml='game = "corridor.game.toml"\n')
+    printed = tltlc("train", "--game", "corridor.game.toml:long", "--print-config")
+    assert "hidden = [128, 128]" in printed.out and "envs = 16 " in printed.out
+    assert tltlc("train", "corridor.tltl:fetch", "--print-config") == printed
+    for argument in ("cover_and_hide", "missing.tltl"):
+        assert "hidden = [512, 512]" in tltlc("train", argument, "--print-config").out
+
+
 def test_the_check_prints_no_control_characters_of_a_game(
     tltlc: Run,  # noqa: F811
     tmp_path: Path,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from shlex import quote
 from typing import Any, Literal, TypeVar
@@ -81,11 +82,8 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
         TltlError: the spec, the level, the sensors or the settings are invalid, or the initial policy
             does not fit them; TLT0873, the folder has files, but no training.
     """
-    if options.spec is not None and names_level(options.spec):
-        if options.level is not None:
-            raise _usage(f"`{options.spec}` is a level, and so is `{options.level}`: name a spec, or only one of them")
-        options = replace(options, level=options.spec, spec=None)
-    elif options.spec is not None:
+    options = _with_named_level(options)
+    if options.spec is not None:
         check_spelling(fileio.split_spec_name(options.spec)[0])
     initial = initial_policy_options(options)
     path, variant = _level_and_variant(options, initial)
@@ -124,6 +122,26 @@ def new_run(options: TrainOptions, folder: Path | None) -> TrainingRun:
     )
 
 
+def settings_to_print(options: TrainOptions) -> TrainingSettings:
+    """Return the settings of a new training, also if the options do not say for which level.
+
+    Raises the errors of :func:`initial_policy_options` and :func:`new_settings`.
+    """
+    initial, level = initial_policy_options(options), None
+    with suppress(TltlError, click.UsageError):
+        level, _ = _level_and_variant(_with_named_level(options), initial)
+    return new_settings(options, initial, level)
+
+
+def _with_named_level(options: TrainOptions) -> TrainOptions:
+    """Return the options with a level in place of a spec, if the argument for the spec names a level."""
+    if options.spec is None or not names_level(options.spec):
+        return options
+    if options.level is not None:
+        raise _usage(f"`{options.spec}` is a level, and so is `{options.level}`: name a spec, or only one of them")
+    return replace(options, level=options.spec, spec=None)
+
+
 def initial_policy_options(options: TrainOptions) -> InitialPolicyOptions | None:
     """Return the policy with which a new training begins; None without the option ``--from``.
 
@@ -132,14 +150,12 @@ def initial_policy_options(options: TrainOptions) -> InitialPolicyOptions | None
     return None if options.policy is None else read_policy_option(options.policy)
 
 
-def new_settings(
-    options: TrainOptions, initial: InitialPolicyOptions | None, level: str | None = None
-) -> TrainingSettings:
-    """Return the settings of a new training; ``level`` is what it plays, by default the level of the options.
+def new_settings(options: TrainOptions, initial: InitialPolicyOptions | None, level: str | None) -> TrainingSettings:
+    """Return the settings of a new training; ``level`` is what it plays, None if that is unknown.
 
     Raises the errors of :func:`read_settings` and :func:`with_policy_network`.
     """
-    settings = _with_limits(read_settings(options.config, level or options.level or ""), options)
+    settings = _with_limits(read_settings(options.config, level or ""), options)
     settings = replace(settings, method=_value_or(options.method, settings.method))
     return settings if initial is None else with_policy_network(settings, initial, options.config)
 
