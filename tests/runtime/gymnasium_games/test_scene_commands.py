@@ -8,12 +8,14 @@ from base64 import b64decode
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PIL import Image
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.gymnasium_games import games
+from tltl_runtime.cli.support import regression_run
 
 Run = Callable[..., Outcome]
 SETTINGS = """\
@@ -189,6 +191,30 @@ def test_films_are_drawn_again_only_if_something_has_changed(tltlc: Run, tmp_pat
     kept.unlink()
     assert films() == (True, first)
     assert films("--fresh") == (True, first)
+
+
+@pytest.mark.usefixtures("trained")
+def test_a_game_file_that_breaks_while_cases_are_played_costs_no_report(
+    folder: Path,
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    game = folder / "corridor.game.toml"
+    text, report = game.read_text(), regression_run._report
+
+    def report_after_an_edit(*arguments: Any) -> None:
+        game.write_text("[game")
+        report(*arguments)
+
+    assert tltlc("baseline", "suite.toml", "--workers", "1").status in (0, 1)
+    monkeypatch.setattr(regression_run, "_report", report_after_an_edit)
+    try:
+        result = tltlc("regress", "suite.toml", "--out", tmp_path, "--workers", "1")
+    finally:
+        game.write_text(text)
+    assert result.status in (0, 1), result.err
+    assert "There is no film" in (tmp_path / "report.html").read_text()
 
 
 @pytest.mark.slow

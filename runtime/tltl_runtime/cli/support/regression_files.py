@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, cast, get_args
 
@@ -207,13 +208,15 @@ def _films(
     """Return the films of a case; those in its ``folder``, if it was played and recorded in the same way before."""
     place = prepared.setup.level, prepared.setup.variant.text
     recordings = {index: folder / name for index, name in report.recordings if index in episodes}
-    code = prepared.level.game.installed_code(prepared.level)
+    draw = partial(
+        episode_films, prepared.level.game, place, report.explanation, episodes, partial(outcome.on_film, report.name)
+    )
+    try:
+        code = prepared.level.game.installed_code(prepared.level)
+    except TltlError:
+        # The game file has been edited since the case was played, and has an error: the notes beside the films say it.
+        return draw()
     inputs = films_hash([to_json(prepared.played), to_json(report.explanation), code], place, recordings)
-
-    def draw() -> CaseFilms:
-        show = lambda count, total: outcome.on_film(report.name, count, total)  # noqa: E731
-        return episode_films(prepared.level.game, place, report.explanation, episodes, show)
-
     return kept_films(folder, inputs, draw)
 
 
