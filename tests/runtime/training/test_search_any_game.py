@@ -30,7 +30,13 @@ from tltl_runtime.training.exploration import snapshots
 from tltl_runtime.training.exploration.cells import NO_CELL, cell_of, position_grid, signal_grid
 from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, UNREPEATED
 from tltl_runtime.training.exploration.returning_env import ReturningEnv
-from tltl_runtime.training.exploration.search import SearchProgress, SearchSettings, SuccessfulEpisode, TrajectorySearch
+from tltl_runtime.training.exploration.search import (
+    SearchProgress,
+    SearchSettings,
+    SuccessfulEpisode,
+    TrajectorySearch,
+    _CellArchive,
+)
 from tltl_runtime.training.exploration.search_plan import SearchPlan, search_plan
 from tltl_runtime.training.files.report import TrainingReport
 from tltl_runtime.training.files.run_file import TrainingRun
@@ -337,6 +343,17 @@ def test_places_to_which_a_game_does_not_lead_again_are_left_out(tmp_path: Path)
     assert len(last.lengths) >= 3 and last.complete
     assert 0 < last.dropped < 100
     assert (dropped_line(last) or "").startswith(f"the search left out {last.dropped} place")
+
+
+def test_a_place_is_left_out_once_and_not_if_other_actions_lead_there() -> None:
+    archive = _CellArchive(np.random.default_rng(7))
+    archive.add(0, 1, 5, [[0], [1]])
+    start = archive.draw()
+    assert [archive.drop(start), archive.drop(start), bool(archive)] == [True, False, False]
+    archive.add(0, 1, 5, [[0], [1]])
+    start = archive.draw()
+    archive.add(0, 1, 5, [[2]])
+    assert [archive.drop(start), bool(archive)] == [False, True]
 
 
 def test_a_search_ends_if_the_game_does_not_lead_to_most_places_again(tmp_path: Path) -> None:

@@ -173,7 +173,7 @@ class TrajectorySearch:
         self._random = np.random.default_rng(seed)
         self._archive = _CellArchive(self._random)
         self._cells: set[tuple[int, int]] = set()
-        self._dropped = 0
+        self._dropped_starts = self._dropped_cells = 0
         self.demonstrations: list[SuccessfulEpisode] = []
 
     def run(self) -> Iterator[SearchProgress]:
@@ -264,15 +264,15 @@ class TrajectorySearch:
 
     def _drop(self, starts: Sequence[EpisodeStart]) -> None:
         """Leave out the cells and the failed episodes to which the game did not lead again."""
-        for start in starts[self._dropped :]:
-            self._archive.drop(start)
+        for start in starts[self._dropped_starts :]:
+            self._dropped_cells += self._archive.drop(start)
             self._failures = [failure for failure in self._failures if failure.seed != start.seed]
-        self._dropped = len(starts)
+        self._dropped_starts = len(starts)
 
     def _progress(self, steps: int, episodes: EpisodesInProgress, seconds: float, *, complete: bool) -> SearchProgress:
         lengths = tuple(sorted(len(demonstration.actions) for demonstration in self.demonstrations))
         return SearchProgress(
-            steps, episodes.replayed, seconds, len(self._cells), lengths, complete, len(episodes.unrepeated)
+            steps, episodes.replayed, seconds, len(self._cells), lengths, complete, self._dropped_cells
         )
 
 
@@ -313,15 +313,16 @@ class _CellArchive:
         draw_counts[cell] += 1
         return self._starts[state][cell]
 
-    def drop(self, start: EpisodeStart) -> None:
-        """Remove the cell to which this start leads, unless other actions have been found since."""
-        for state, starts in list(self._starts.items()):
-            cell = next((cell for cell, known in starts.items() if known is start), None)
-            if cell is None:
-                continue
-            del starts[cell], self._draw_counts[state][cell]
-            if not starts:
-                del self._starts[state], self._draw_counts[state]
+    def drop(self, start: EpisodeStart) -> bool:
+        """Remove the cell to which this start leads, unless other actions have been found since; return whether."""
+        found = ((state, cell) for state, starts in self._starts.items() for cell in starts if starts[cell] is start)
+        state, cell = next(found, (None, None))
+        if state is None or cell is None:
+            return False
+        del self._starts[state][cell], self._draw_counts[state][cell]
+        if not self._starts[state]:
+            del self._starts[state], self._draw_counts[state]
+        return True
 
     def remove(self, seed: int) -> None:
         """Remove the cells whose actions are from episodes with this seed."""
