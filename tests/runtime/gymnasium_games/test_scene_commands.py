@@ -264,6 +264,9 @@ def test_a_changed_file_of_the_game_selects_its_cases(tltlc: Run, trained: Path,
         (("train", "--game", "corridor.game.toml:short", "--level", "vault"), "give --level or --game, not both"),
         (("train", "--game", "corridor.game.toml:long"), "TLT0721"),
         (("evaluate", "run/policy.safetensors"), "--game FILE.game.toml:short`"),
+        (("evaluate", "corridor.game.toml:short"), "is a scene of a game file, not a policy"),
+        (("evaluate", "corridor.game.toml:shorts"), "did you mean `short`?"),
+        (("evaluate", "corridor.game.toml"), "name the scene with --game"),
     ],
 )
 @pytest.mark.usefixtures("trained")

@@ -46,10 +46,25 @@ def check_named(policy: Path | None, level: str | None) -> None:
     """
     if policy is not None and not names_level(level_of_scene(str(policy))) and not fileio.exists(policy):
         check_spelling(str(policy))
+        check_no_scene(policy)
         fileio.read_bytes(policy, str(policy), 0)
     if level is not None:
         name, variant = split_level(level)
         game_of(name).load_level(name, variant or "v0")
+
+
+def check_no_scene(policy: Path) -> None:
+    """Check that the argument for a policy is no scene of a game file.
+
+    Raises:
+        TltlError: TLT0840, it is one; the game file cannot be read, or has no such scene.
+    """
+    place = split_level(str(policy))[0]
+    if is_scene(place) and not fileio.is_dir(policy):
+        game_of(place).level_files.variants(place)
+        title = f"`{policy}` is a scene of a game file, not a policy"
+        help_ = "name a .safetensors file, or the folder of a training; name the scene with --game"
+        raise TltlError([Diagnostic("TLT0840", title, help=help_)])
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from tltl_runtime.cli.support.level_argument import check_level_exists, check_spelling, names_level
+from tltl_runtime.cli.support.level_argument import check_level_exists, check_no_scene, check_spelling, names_level
 from tltl_runtime.game.level_name import GAME_FILE, split_level
 from tltl_runtime.game.registry import game_of, shipped_levels
 from tltl_runtime.gymnasium_games.level_scenes import level_of_scene
@@ -76,11 +76,12 @@ def policy_path(path: Path) -> Path:
     """Return the file of a policy: ``path`` itself, or the policy in it if it is a folder.
 
     Raises:
-        TltlError: TLT0840, the file is an ONNX model or a TOML file; TLT0872, the folder contains no
-            policy; TLT0001, the metrics of the training cannot be read, or the path does not exist and
+        TltlError: TLT0840, the file is an ONNX model or a TOML file, or the path is a scene; TLT0872, the folder
+            contains no policy; TLT0001, the metrics of the training cannot be read, or the path does not exist and
             resembles a level's name.
     """
     check_spelling(str(path))
+    check_no_scene(path)
     if path.suffix.lower() == ".onnx" and fileio.is_file(path):
         title = f"`{path}` is an ONNX model for other engines, not a policy"
         raise TltlError(
