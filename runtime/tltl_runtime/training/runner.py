@@ -16,6 +16,7 @@ from rsl_rl.utils import check_nan
 from torch import Tensor, nn
 
 from tltl_runtime.policies.spaces.distribution import IndependentParts
+from tltl_runtime.policies.spaces.torch_model import Normalizer
 from tltl_runtime.training.exploration.self_imitation import imitate
 from tltl_runtime.training.files.report import Iteration
 from tltl_runtime.training.ppo.distributed import process_group
@@ -60,10 +61,12 @@ class Runner(OnPolicyRunner):
             state |= {
                 name: _in_layout_of(value, parameter) for name, value in state.items() if value.shape == parameter.shape
             }
+        _keep_old_scales(self.alg.actor, self.alg.critic)
 
     def load_actor(self, weights: Mapping[str, NDArray[np.float16]]) -> None:
         """Load weights, by name, into the actor. The critic keeps its random weights."""
         self.alg.actor.load_state_dict({name: torch.from_numpy(weight).float() for name, weight in weights.items()})
+        _keep_old_scales(self.alg.actor)
 
     def scale_inverse_temperature(self, factor: float) -> None:
         """Multiply the actor's logits by ``factor``; above 1, this makes likely choices likelier.
@@ -156,6 +159,14 @@ class Runner(OnPolicyRunner):
             title = f"iteration {self.current_learning_iteration + 1}: {error}"
             help_ = "fix the environment, or the sensor or signal that gives these values"
             raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None
+
+
+def _keep_old_scales(*models: nn.Module) -> None:
+    """Keep the scales of numbers that bounds alone scale in models whose weights were loaded."""
+    for model in models:
+        normalizer = getattr(model, "normalizer", None)
+        if isinstance(normalizer, Normalizer):
+            normalizer.freeze_if_unused()
 
 
 def _in_layout_of(tensor: Tensor, parameter: Tensor) -> Tensor:

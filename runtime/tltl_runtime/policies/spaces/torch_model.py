@@ -118,6 +118,14 @@ class Normalizer(nn.Module):
         """Return the scaled numbers [batch, numbers], clipped to [-FARTHEST, FARTHEST]."""
         return ((numbers - self.mean) / self.deviation).clamp(-FARTHEST, FARTHEST)
 
+    def freeze_if_unused(self) -> None:
+        """Keep the scale for good if no observation has changed it so far.
+
+        The bounds alone scale the numbers of such weights: these are of an older version, and expect that scale.
+        """
+        if not self.count.item():
+            self._least.zero_()
+
     def update(self, numbers: Tensor) -> None:
         """Update the running mean and deviation with a batch [batch, numbers].
 

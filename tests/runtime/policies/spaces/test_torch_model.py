@@ -163,6 +163,17 @@ def test_a_flag_that_is_rarely_set_does_not_become_huge() -> None:
     assert normalizer(torch.ones(1, 1)).item() == pytest.approx(2.0)
 
 
+def test_a_scale_that_no_observation_has_changed_can_be_kept() -> None:
+    layouts = SpaceLayouts(observation_layout(spaces.Box(-10, 10, (1,))), action_layout(MIXED))
+    for batches, deviation in ((0, 10.0), (1, 0.5)):
+        normalizer = Normalizer(layouts)
+        for _ in range(batches):
+            normalizer.update(torch.zeros(8, 1))
+        normalizer.freeze_if_unused()
+        normalizer.update(torch.zeros(8, 1))
+        assert normalizer.deviation.item() == pytest.approx(deviation)
+
+
 @pytest.mark.slow
 def test_processes_scale_by_what_all_of_them_have_seen(tmp_path: Path) -> None:
     torch.multiprocessing.spawn(_update_in_a_process, (tmp_path,), nprocs=2)
