@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
+import numpy as np
+
 from tltl_runtime.game.episode import EndKind, RecordedEpisode
 from tltl_runtime.game.geometry import Point
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
@@ -136,7 +138,7 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
 
 def _has_clock(episode: RecordedEpisode) -> bool:
     """Whether the times of an episode are seconds; those of a game without a clock are the numbers of its steps."""
-    return episode.times.tolist() != list(range(len(episode.times)))
+    return not np.array_equal(episode.times, np.arange(len(episode.times)))
 
 
 def arrivals_of(episode: RecordedEpisode) -> tuple[Arrival, ...]:
