@@ -56,13 +56,16 @@ def test_the_line_of_an_iteration(stop: Stop) -> None:
     ("lengths", "ways"),
     [
         ((), "no way to meet the spec yet"),
-        ((80,), "1 way to meet the spec, the shortest of 80 steps"),
-        ((80, 90), "2 ways to meet the spec, the shortest of 80 steps"),
+        ((80,), "1 of 10 ways to meet the spec, the shortest of 80 steps"),
+        ((80, 90), "2 of 10 ways to meet the spec, the shortest of 80 steps"),
     ],
 )
 def test_the_line_of_the_search(lengths: tuple[int, ...], ways: str) -> None:
     searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
-    assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {ways}"
+    exploration = replace(read_settings().exploration, ways=10, steps=64_000)
+    line = f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {ways}"
+    assert search_line(searched, exploration) == f"{line}, at most 9 min 9 s left"
+    assert search_line(replace(searched, complete=True), exploration) == line
 
 
 def test_the_line_at_the_end_of_the_search() -> None:

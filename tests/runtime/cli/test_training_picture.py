@@ -74,7 +74,7 @@ def test_violations_are_shown_at_the_state_before(tmp_path: Path, report: Traini
 def test_before_the_first_iteration_the_search_is_shown(tmp_path: Path) -> None:
     assert "playing the first steps" in _lines(tmp_path, 80, 24, None)[1]
     text = " ".join(line.strip("│ ") for line in _lines(tmp_path, 80, 24, SEARCHED))
-    assert "1,200 places, 2 ways to meet the spec, the shortest of 80 steps" in text
+    assert "1,200 places, 2 of 10 ways to meet the spec, the shortest of 80 steps" in text
 
 
 def test_before_the_first_checkpoint_ctrl_c_is_explained(tmp_path: Path, report: TrainingReport) -> None:

@@ -127,7 +127,9 @@ class _LineDisplay:
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
         self._has_searched = True
-        self._print(search_line(progress), always=self._has_trained and progress.complete)
+        self._print(
+            search_line(progress, self._run.settings.exploration), always=self._has_trained and progress.complete
+        )
 
     def show_attempt(self, attempt: Attempt) -> None:
         requested = self._run.settings.imitation.demonstrations

@@ -99,16 +99,18 @@ def no_search_line(plan: SearchPlan | None) -> str:
     return f"it began without a search for demonstrations{reason}: see docs/games.md"
 
 
-def search_line(progress: SearchProgress) -> str:
-    """Describe in one line the progress of the search for ways to meet the spec."""
+def search_line(progress: SearchProgress, exploration: SearchSettings) -> str:
+    """Describe in one line the progress of the search for ways to meet the spec, and how long it may still take."""
     if count := len(progress.lengths):
-        demonstrations = (
-            f"{count} way{'s' * (count > 1)} to meet the spec, the shortest of {min(progress.lengths)} steps"
-        )
+        ways = f"{count} of {exploration.ways} ways to meet the spec, the shortest of {min(progress.lengths)} steps"
     else:
-        demonstrations = "no way to meet the spec yet"
+        ways = "no way to meet the spec yet"
     spent = f"{progress.steps:,} steps in {duration(progress.seconds)}"
-    return f"searching: {spent}, {progress.places:,} places, {demonstrations}"
+    left = ""
+    if progress.steps and not progress.complete:
+        left_s = progress.seconds / progress.steps * (exploration.steps - progress.steps)
+        left = f", at most {duration(left_s)} left" if left_s > 0 else ""
+    return f"searching: {spent}, {progress.places:,} places, {ways}{left}"
 
 
 def search_end(exploration: SearchSettings) -> str:
