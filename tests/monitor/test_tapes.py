@@ -122,9 +122,9 @@ def test_a_wrong_header_is_refused(header: dict[str, Any], label: str) -> None:
     ],
 )
 def test_a_wrong_step_is_refused(step: dict[str, Any], label: str) -> None:
-    code, title, found = message(tape(STEP, step))
+    code, title, printed = message(tape(STEP, step))
     assert (code, title) == ("TLT0622", "line 3 of the trace cannot be read")
-    assert found == label
+    assert printed == label
 
 
 def test_each_sixtieth_step_has_the_digest_of_all_signals_so_far() -> None:

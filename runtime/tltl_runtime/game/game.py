@@ -264,7 +264,7 @@ class Game(ABC, Generic[LevelT, EpisodeT]):
         return None
 
     def runs_already(self, level: LevelT) -> bool:
-        """Return whether the game of a level was started by somebody else, who plays for one environment at a time."""
+        """Return whether tltlc connects to a running game of a level, which plays for one environment at a time."""
         del level
         return False
 

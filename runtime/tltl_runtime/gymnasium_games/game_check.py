@@ -146,14 +146,14 @@ def _report(game: GameFile, env: SceneEnv, scene: str, variant: str) -> SceneRep
 
 def _losses(name: str, plays: Sequence[ScenePlay]) -> Iterator[Diagnostic]:
     """Yield how the game was lost in the plays; once if it was lost at the same step in the same way."""
-    said = set()
+    titles = set()
     for played in plays:
         if played.loss is not None:
             when = f"in step {played.steps + 1} of a play" if played.moments else "in the reset of a play"
             title = f"{played.loss.title}, {when} of `{name}`"
-            if title not in said:
+            if title not in titles:
                 yield replace(played.loss, title=title)
-            said.add(title)
+            titles.add(title)
 
 
 def _check_places(env: SceneEnv) -> None:

@@ -56,8 +56,8 @@ def _packages(game: GameFile) -> list[str]:
 
 def _fingerprint(package: str) -> list[str]:
     if _is_installed(package):
-        found = _distribution(package)
-        return [found.version, _sha256((found.read_text("RECORD") or "").encode())] if found else []
+        installed = _distribution(package)
+        return [installed.version, _sha256((installed.read_text("RECORD") or "").encode())] if installed else []
     return [f"{path.relative_to(root).as_posix()} {_content_hash(path)}" for root, path in _files(package)]
 
 

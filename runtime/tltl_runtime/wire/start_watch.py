@@ -13,7 +13,7 @@ from tltl_runtime.wire.game_process import GameProcess
 from tltlc.api import record
 
 LONG_S: Final = 5.0
-"""Seconds after which a person is told that a game is still starting, and again if the game has written more."""
+"""A line says that a game is still starting after this many seconds, and again if the game has written more."""
 
 GRACE_S: Final = 5.0
 """Seconds in which a game says ``hello`` in spite of a script that cannot be read."""

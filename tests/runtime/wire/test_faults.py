@@ -240,7 +240,7 @@ def test_who_waits_is_told_what_a_starting_game_wrote_last(monkeypatch: pytest.M
     monkeypatch.setattr("tltl_runtime.wire.start_watch.LONG_S", 0.0)
     with no_new_children(), telling_slow_starts(tell), pytest.raises(ToldError):
         WireEnv(faulty("no hello"))
-    # Before it has written anything, the line is empty; nothing is told twice.
+    # Before the game has written anything, the line is empty. No line is printed twice.
     assert lines in (["loading assets"], ["", "loading assets"])
 
 

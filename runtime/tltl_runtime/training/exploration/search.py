@@ -315,8 +315,8 @@ class _CellArchive:
 
     def drop(self, start: EpisodeStart) -> bool:
         """Remove the cell to which this start leads, unless other actions have been found since; return whether."""
-        found = ((state, cell) for state, starts in self._starts.items() for cell in starts if starts[cell] is start)
-        state, cell = next(found, (None, None))
+        places = ((state, cell) for state, starts in self._starts.items() for cell in starts if starts[cell] is start)
+        state, cell = next(places, (None, None))
         if state is None or cell is None:
             return False
         del self._starts[state][cell], self._draw_counts[state][cell]
