@@ -281,7 +281,7 @@ def test_stages_in_any_order_are_described_by_what_was_reached(level: StealthLev
     assert stage.endswith("as before, then reaches `exit` in 10 of 25 episodes; before: in 25 of 25 episodes")
 
 
-def test_stages_that_differ_between_episodes_are_described_by_distance(level: StealthLevel) -> None:
+def test_stages_that_differ_between_episodes_are_described_by_the_count_of_goals(level: StealthLevel) -> None:
     (fspa,) = compile_text(ANY_ORDER)
     ways = [("s1", "s2", "exit"), ("exit", "s1", "s2")]
     before = [an_episode(index, states=after(fspa, *ways[index % 2])) for index in range(25)]
@@ -291,9 +291,18 @@ def test_stages_that_differ_between_episodes_are_described_by_distance(level: St
     ]
     stage = sentences(level, fspa, now, before)[0]
     assert stage.endswith(
-        ", then comes within 1 transition of acceptance as before, "
+        ", then reaches 2 of the 3 goals `s1`, `s2` and `exit` as before, "
         "then meets the spec in 10 of 25 episodes; before: in 25 of 25 episodes"
     )
+
+
+def test_goals_in_any_order_are_counted_in_what_remained(level: StealthLevel) -> None:
+    (fspa,) = compile_text(ANY_ORDER)
+    before = [an_episode(index, states=after(fspa, "s1", "s2", "exit")) for index in range(25)]
+    now = [an_episode(index, False, states=after(fspa, *(("exit", "s1") if index < 15 else ()))) for index in range(25)]
+    remained = [sentence for sentence in sentences(level, fspa, now, before) if "failures" in sentence]
+    assert remained[0].startswith("in 15 of 25 failures, 2 of 3 goals were reached: `s1` and `exit`; `s2` was missed (")
+    assert remained[1] == "in 10 of 25 failures, 0 of 3 goals were reached; `s1`, `s2` and `exit` were missed (state 0)"
 
 
 def test_a_limit_of_less_than_half_is_called_most_often(level: StealthLevel, fspa: Fspa) -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from tltl_runtime.regression.explain.open_goals import OpenGoals, open_goals, subgoal_of_all
 from tltl_runtime.regression.explain.stages import (
     Subgoal,
     is_opposite_asked,
     near_enough,
     subgoal,
-    subgoal_of_all,
     subgoals_phrase,
     target_of,
 )
@@ -42,9 +42,42 @@ def test_states_with_one_stage_share_its_description() -> None:
     fspa = spec("reach near(s1)\n reach near(s2)\n reach near(exit)")
     two, one = ([state.id for state in fspa.states if state.distance == distance] for distance in (2, 1))
     assert subgoal_of_all(fspa, one[:1], 1).text == subgoal(fspa, one[0]).text
-    assert subgoal_of_all(fspa, two, 2).text == "comes within 1 transition of acceptance"
+    assert subgoal_of_all(fspa, two, 2).text == "reaches 2 of the 3 goals `s1`, `s2` and `exit`"
     assert subgoal_of_all(fspa, one, 1).text == "meets the spec"
-    assert subgoal_of_all(fspa, (*two, *one), 3).text == "comes within 2 transitions of acceptance"
+
+
+def test_stages_without_plain_goals_are_counted_as_steps() -> None:
+    fspa = spec(
+        "require eventually (near(s1) and next eventually near(exit))\n"
+        "require eventually (near(s2) and next eventually near(exit))"
+    )
+    states = {distance: [state.id for state in fspa.states if state.distance == distance] for distance in (2, 3)}
+    assert subgoal_of_all(fspa, states[2], 2).text == "comes to the last step of the spec"
+    assert subgoal_of_all(fspa, states[2] + states[3], 3).text == "comes to the last 2 steps of the spec"
+
+
+def test_goals_in_any_order_are_reached_or_open() -> None:
+    declared = "entity s1\nsignal open_door: bool\nsignal x: length in [0 m, 9 m]\n"
+    fspa = spec("reach near(s1)\n reach open_door\n reach x >= 7 m\n keep alive", declared)
+    goals = {(its.reached, its.open) for state in fspa.states if (its := open_goals(fspa, state.id))}
+    assert (("s1", "x >= 7"), ("open_door",)) in goals
+    assert (("s1", "open_door", "x >= 7"), ()) in goals
+    assert open_goals(fspa, 0) == OpenGoals((), ("s1", "open_door", "x >= 7"))
+
+
+@pytest.mark.parametrize("body", ["reach near(s1) then near(s2)", "reach near(s1)", "reach near(s1) reach not alive"])
+def test_other_specs_have_no_goals_in_any_order(body: str) -> None:
+    assert open_goals(spec(body), 0) is None
+
+
+def test_alternatives_of_several_atoms_share_the_verb() -> None:
+    fspa = spec("reach (b and c) or d", "".join(f"signal {name}: bool\n" for name in "bcd"))
+    assert subgoal(fspa, 0).text == "makes `d`, or both `b` and `c`, true"
+
+
+def test_atoms_that_hold_together_are_listed() -> None:
+    fspa = spec("reach a reach b reach c", "".join(f"signal {name}: bool\n" for name in "abc"))
+    assert subgoal(fspa, 0).text == "makes `a`, `b` and `c` true"
 
 
 def test_alternative_goals_are_all_named() -> None:

@@ -16,9 +16,10 @@ from tltl_runtime.game.level import Level
 from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, region_text
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.explain.failures import end_of, failures
+from tltl_runtime.regression.explain.open_goals import open_goals, subgoal_of_all
 from tltl_runtime.regression.explain.path_points import positions_along
-from tltl_runtime.regression.explain.phrase import phrase
-from tltl_runtime.regression.explain.stages import Subgoal, subgoal_of_all, subgoals_phrase
+from tltl_runtime.regression.explain.phrase import phrase, quoted_names
+from tltl_runtime.regression.explain.stages import Subgoal, subgoals_phrase
 from tltl_runtime.support.number_text import count_text, percent
 from tltlc.api import Fspa, label_text, record
 
@@ -170,9 +171,24 @@ def _remaining(fspa: Fspa, now: Sequence[ExplainedEpisode]) -> Iterator[Finding]
     failed = [episode for episode in now if not episode.summary.success]
     for state, count in Counter(episode.summary.unmet for episode in failed).most_common(_MOST_STATES):
         counted = count_text(count, len(failed), f"failure{'s' * (len(failed) != 1)}")
-        text = f"in {counted}, this remained: {label_text(fspa, state).rstrip('.')} (state {state})"
+        text = f"in {counted}, {_remaining_text(fspa, state)} (state {state})"
         indices = (episode.summary.index for episode in failed if episode.summary.unmet == state)
         yield Finding(text, tuple(sorted(indices)))
+
+
+def _remaining_text(fspa: Fspa, state: int) -> str:
+    """Say what remains in a state: ``2 of 3 goals were reached: `a` and `b`; `c` was missed``.
+
+    If goals in any order are not all that remains, the text is that of the state: ``this remained: Reach c``.
+    """
+    goals = open_goals(fspa, state)
+    if goals is None or not goals.open:
+        return f"this remained: {label_text(fspa, state).rstrip('.')}"
+    count = len(goals.reached)
+    reached = f": {quoted_names(goals.reached)}" if count else ""
+    were, missed = ("was" if number == 1 else "were" for number in (count, len(goals.open)))
+    total = count + len(goals.open)
+    return f"{count} of {total} goals {were} reached{reached}; {quoted_names(goals.open)} {missed} missed"
 
 
 def _lengths(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Iterator[Finding]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from typing import Final, Literal
 
 from tltl_runtime.game.mentions import Mentions, union
-from tltl_runtime.regression.explain.phrase import Phrase
+from tltl_runtime.regression.explain.phrase import Phrase, quoted_names
 from tltl_runtime.spec.goals import distance_signals
 from tltlc.api import EMPTY, Fspa, Implicant, expressions, monitors, record
 
 _REACHES: Final = "reaches "
+
+_Kind = Literal["reach", "true", "false"]
+"""What to do with names: reach these entities, or make these atoms true or false."""
 
 _FAR: Final = 1e4
 """A distance, in metres, that is greater than any distance in a level."""
@@ -41,7 +44,7 @@ class Subgoal:
     @property
     def place(self) -> str:
         """The entities to reach in words, for example ```a` or `b```; empty if there are none."""
-        return " or ".join(" and ".join(f"`{target}`" for target in together) for together in self.targets)
+        return _alternatives(self.targets)
 
     @property
     def mentions(self) -> Mentions:
@@ -49,7 +52,18 @@ class Subgoal:
         return Mentions(tuple(target for together in self.targets for target in together))
 
 
-_MEETS: Final = Subgoal(other="meets the spec")
+def _alternatives(groups: Sequence[Sequence[str]]) -> str:
+    """List groups of names of which one group is enough: ```a` or `b```, ```a`, or both `b` and `c```."""
+    texts = [quoted_names(names) for names in groups]
+    if all(len(names) == 1 for names in groups):
+        return f"{', '.join(texts[:-1])} or {texts[-1]}" if len(texts) > 1 else "".join(texts)
+    if len(texts) > 1:
+        quantity = {1: "", 2: "both "}
+        texts = [f"{quantity.get(len(names), 'all of ')}{text}" for names, text in zip(groups, texts, strict=True)]
+    return ", or ".join(texts)
+
+
+MEETS: Final = Subgoal(other="meets the spec")
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
@@ -112,38 +126,49 @@ def subgoal(fspa: Fspa, state: int) -> Subgoal:
     If several things do so, they are alternatives. If nothing is left to do, or if no edge leads
     towards acceptance, the text of the subgoal is ``meets the spec``.
     """
-    subgoals = [_subgoal(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
-    distinct = list(dict.fromkeys(subgoal for subgoal in subgoals if subgoal is not None))
-    if len(distinct) < 2:
-        return distinct[0] if distinct else _MEETS
-    if all(subgoal.targets for subgoal in distinct):
-        return Subgoal(tuple(together for subgoal in distinct for together in subgoal.targets), is_choice=True)
-    return Subgoal(other=" or ".join(subgoal.text for subgoal in distinct), is_choice=True)
+    ways = [_way(fspa, prime) for edge in monitors.tables(fspa).improving[state] for prime in edge.guard.primes]
+    distinct = list(dict.fromkeys(way for way in ways if way is not None))
+    if not distinct:
+        return MEETS
+    groups = {kind: tuple(names for way_kind, names in distinct if way_kind == kind) for kind, _ in distinct}
+    is_choice = len(distinct) > 1
+    if groups.keys() == {"reach"}:
+        return Subgoal(groups["reach"], is_choice=is_choice)
+    return Subgoal(other=" or ".join(_kind_text(*group) for group in groups.items()), is_choice=is_choice)
 
 
-def _subgoal(fspa: Fspa, prime: Implicant) -> Subgoal | None:
+def _kind_text(kind: _Kind, groups: Sequence[Sequence[str]]) -> str:
+    """Return a text such as ``makes `a` or `b` true`` for alternatives of one kind."""
+    names = _alternatives(groups)
+    comma = "," * (len(groups) > 1 and any(len(together) > 1 for together in groups))
+    return f"{_REACHES}{names}" if kind == "reach" else f"makes {names}{comma} {kind}"
+
+
+def _way(fspa: Fspa, prime: Implicant) -> tuple[_Kind, tuple[str, ...]] | None:
     """Return what the player must do to make a prime implicant true; None if there is nothing to do.
 
     Literals that every accepting run needs all the time are left out. Of the other literals, only
     the first of these kinds that occurs is named:
 
-    1. atoms that must hold and have a target to approach (see :func:`target_of`);
-    2. other atoms that must hold;
-    3. atoms that must not hold.
+    1. ``reach``: the entities to approach for atoms that must hold (see :func:`target_of`);
+    2. ``true``: other atoms that must hold;
+    3. ``false``: atoms that must not hold.
     """
     literals = [(atom, holds) for atom, holds in prime if not _is_invariant(fspa, atom, holds)]
     if targets := [target for atom, holds in literals if holds and (target := target_of(fspa, atom))]:
-        return Subgoal((tuple(targets),))
-    for truth in (True, False):
-        if atoms := [
-            f"`{name}`" for name, holds in (_literal(fspa, *literal) for literal in literals) if holds == truth
-        ]:
-            return Subgoal(other=f"makes {' and '.join(atoms)} {str(truth).lower()}")
-    return None
+        return "reach", tuple(targets)
+    names = [literal_name(fspa, *literal) for literal in literals]
+    if made_true := tuple(name for name, holds in names if holds):
+        return "true", made_true
+    made_false = tuple(name for name, holds in names if not holds)
+    return ("false", made_false) if made_false else None
 
 
-def _literal(fspa: Fspa, atom: int, holds: bool) -> tuple[str, bool]:
-    """Return the text of an atom and whether it must hold: ``x >= 7`` that holds for ``x < 7`` that does not."""
+def literal_name(fspa: Fspa, atom: int, holds: bool) -> tuple[str, bool]:
+    """Return the text of an atom and whether it must hold: ``x >= 7`` that holds for ``x < 7`` that does not.
+
+    ``atom`` is the index of the atom, and ``holds`` whether it must hold.
+    """
     opposite = fspa.atoms[atom].opposite
     return (fspa.atoms[atom].name, holds) if holds or opposite is None else (opposite, True)
 
@@ -157,19 +182,6 @@ def is_opposite_asked(fspa: Fspa, atom: int) -> bool:
         return False
     primes = (prime for edges in monitors.tables(fspa).improving for edge in edges for prime in edge.guard.primes)
     return {truth for prime in primes for literal, truth in prime if literal == atom} == {False}
-
-
-def subgoal_of_all(fspa: Fspa, states: Collection[int], distance: int) -> Subgoal:
-    """Return one subgoal for several states that all have the same ``distance`` from acceptance.
-
-    If the states have different subgoals, the result says only how near to acceptance the next state
-    is: ``comes within 2 transitions of acceptance``.
-    """
-    subgoals = {subgoal(fspa, state) for state in states}
-    if len(subgoals) == 1:
-        return subgoals.pop()
-    transitions = f"{distance - 1} transition{'s' * (distance > 2)}"
-    return Subgoal(other=f"comes within {transitions} of acceptance") if distance > 1 else _MEETS
 
 
 def _is_invariant(fspa: Fspa, atom: int, truth: bool) -> bool:
