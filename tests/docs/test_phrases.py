@@ -74,6 +74,10 @@ def test_a_wrong_phrase_differs_from_the_right_one(wrong: str, right: str) -> No
 
 ACCEPTED = {
     "`reach near(key)` `reach near(chest)`": (["near(chest)", "near(key)"], ["near(key)", "near(key)"]),
+    "`reach near(key) then near(exit)` `reach near(chest) then near(exit)`": (
+        ["near(chest)", "near(key)", "near(exit)"],
+        ["near(key)", "near(exit)", "near(chest)"],
+    ),
     "`require (not near(chest)) weak_until near(key)`": (
         ["", "near(key)", "near(chest)"],
         ["near(chest)", "near(key)"],
