@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.game.level_name import level_stem
@@ -10,7 +11,7 @@ from tltl_runtime.game.mentions import NO_MENTIONS, Mentions, union
 from tltl_runtime.regression.explain.explain import Finding, findings, most_frequent_end
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode, summaries_of
 from tltl_runtime.regression.explain.phrase import Phrase
-from tltl_runtime.regression.report.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.report.reasons import edits, is_unchanged, obstacles, reasons
 from tltl_runtime.regression.report.retraining_result import RetrainingResult
 from tltl_runtime.regression.suite.suite import Case
 from tltl_runtime.regression.suite.thresholds import Thresholds
@@ -19,6 +20,10 @@ from tltl_runtime.regression.verdict.level_texts import level_texts
 from tltl_runtime.regression.verdict.play import JudgedCase
 from tltl_runtime.regression.verdict.verdict import CaseVerdict, FigureChange, Judgement
 from tltlc.api import Diagnostic, TltlError, record
+
+_UNCHANGED: Final = (
+    "nothing has changed since the baseline: the level, the spec, the policy and all versions are those of the baseline"
+)
 
 
 @record
@@ -56,7 +61,7 @@ class CaseReport:
       baseline.
     - ``explanation`` says what the policy does differently from the baseline.
     - ``edits`` are sentences about what has changed since the baseline: files, overlays (files that
-      change a level), versions of software.
+      change a level), versions of software. If a case does not pass and nothing has changed, they say so.
     - ``descriptions`` are texts in which the designer describes the overlays. They are also in
       ``edits``.
     - ``mentions`` names the things and regions of the level that ``causes`` and ``edits`` mention,
@@ -101,13 +106,13 @@ class CaseReport:
 
     @property
     def headline(self) -> str:
-        """The most important sentence of the report; empty if there is none."""
+        """What has changed, and the most important sentence of what follows; empty if there is none."""
         return self.chosen_headline or next(iter(self.reasons), "")
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """All sentences of the report, most important first."""
-        return (*self.causes, *(finding.text for finding in self.explanation), *self.edits)
+        """All sentences of the report: what has changed, then what follows, most important first."""
+        return (*self.edits, *self.causes, *(finding.text for finding in self.explanation))
 
 
 def report_on(result: JudgedCase) -> CaseReport:
@@ -119,17 +124,27 @@ def report_on(result: JudgedCase) -> CaseReport:
     summaries, summaries_before = summaries_of(now), summaries_of(before)
     statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
     blocked = tuple(obstacles(level, setup.fspa))
+    # A case cannot pass while an outdated spec judges it.
+    verdict = "review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict
     changes = tuple(_edits(result))
+    if (
+        verdict != "pass"
+        and not changes
+        and not outdated
+        and is_unchanged(result.prepared.played, result.reference.played)
+    ):
+        changes = (Phrase(_UNCHANGED),)
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.
     is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
     most_frequent = most_frequent_end(level, setup.fspa, now, before) if is_worse else None
+    blocked_text = next((obstacle.text for obstacle in blocked), None)
+    main = blocked_text or headline(result.judgement, case.thresholds, statistics, most_frequent)
     return CaseReport(
         name=case.name,
         level=level.name,
         variant=level.variant,
-        # A case cannot pass while an outdated spec judges it.
-        verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
+        verdict=verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
         figures=figures,
@@ -143,8 +158,7 @@ def report_on(result: JudgedCase) -> CaseReport:
             *([result.lost.line] if result.lost else []),
         ),
         chosen_headline=outdated
-        or next((obstacle.text for obstacle in blocked), None)
-        or headline(result.judgement, case.thresholds, statistics, most_frequent),
+        or (main if verdict == "pass" else "; ".join((*(edit.text for edit in changes[:1]), main))),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(edit.text for edit in changes),
         mentions=union(sentence.mentions for sentence in (*blocked, *changes)),
@@ -168,7 +182,7 @@ def _edits(result: JudgedCase) -> Iterator[Phrase]:
 
 
 def headline(judgement: Judgement, thresholds: Thresholds, statistics: Sequence[str], most_frequent: str | None) -> str:
-    """Return the headline of a case's report: the first of these sentences that applies.
+    """Return what a case's headline says of its episodes: the first of these sentences that applies.
 
     1. ``most_frequent``, which says how failed episodes end most often; only if it is not None and
        the pass rate may be below the threshold;

@@ -140,6 +140,11 @@ def edits(
             yield Phrase(f"the baseline was recorded with {name} {version}, this run {this_run}")
 
 
+def is_unchanged(now: Identity, before: Identity) -> bool:
+    """Whether a case is played as its baseline was: with equal files, spec, policy, seed and versions."""
+    return now == before
+
+
 def _is_of_variants(name: str, now: Identity) -> bool:
     """Whether a file may belong to some variants alone: an overlay, or a file that a scene depends on."""
     return file_kind(name) == "overlay" or _is_game(now)
