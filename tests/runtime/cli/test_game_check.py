@@ -13,7 +13,7 @@ def test_all_scenes_and_variants_are_checked_against_their_own_spec(tltlc, insid
     games.write(inside)
     result: Outcome = tltlc("check", "--game", "corridor.game.toml")
     assert (result.status, result.out) == (0, "")
-    assert "short:v0 has everything that `fetch` needs\n  signals: has_key, door_open, cell\n" in result.err
+    assert "short:v0 has the signals that `fetch` uses\n  signals: has_key, door_open, cell\n" in result.err
     assert "observation: Dict(cell: Box(1, float32, 0 to 7), has_key: Discrete(2))\n  action: Discrete(3)" in result.err
     assert "long:v0: the scene does not name a spec; name one before --game" in result.err
     assert result.err.count("equal seeds and actions give equal plays: yes") == 3
@@ -24,7 +24,7 @@ def test_a_scene_and_a_variant_can_be_chosen(tltlc, inside: Path) -> None:  # ty
     assert tltlc("check", "--game", "corridor.game.toml:short").err.count("short:v") == 2
     assert tltlc("check", "--game=corridor.game.toml:short:v1").err.count("short:v1") == 1
     result: Outcome = tltlc("check", "corridor.tltl", "--game", "corridor.game.toml:long")
-    assert "long:v0 has everything that `fetch` needs" in result.err
+    assert "long:v0 has the signals that `fetch` uses" in result.err
 
 
 def test_an_artefact_is_checked_against_a_game(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -118,7 +118,7 @@ def test_a_level_and_a_game_can_be_checked_together(tltlc, inside: Path) -> None
     result: Outcome = tltlc("check", "--level", "navigation:v0", "--game", "corridor.game.toml:short:v0")
     assert result.status == 0
     assert "navigation:v0 supplies" in result.err
-    assert "short:v0 has everything" in result.err
+    assert "short:v0 has the signals that" in result.err
 
 
 def test_the_help_has_the_options_for_games_if_there_is_a_game(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

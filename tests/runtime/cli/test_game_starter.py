@@ -129,7 +129,7 @@ def test_the_starter_in_python_runs(tltlc: Run, made: Callable[[str], list[str]]
     listed = _COMMAND.findall(Path("README.md").read_text())
     assert [command for command in listed if command in commands] == commands
     result = tltlc("check", "--game", "hall.game.toml")
-    assert "hall:v0 has everything that `leave` needs" in result.err
+    assert "hall:v0 has the signals that `leave` uses" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     in_workflow = [run.removeprefix("tltlc ") for run in runs_of_workflow() if run.startswith("tltlc ")]
     assert [command.split()[0] for command in in_workflow] == ["test", "check", "regress"]
@@ -149,7 +149,7 @@ def test_the_starters_in_processes_are_checked(tltlc: Run, made: Callable[[str],
     commands = made_in_process(made, kind)
     result = tltlc(*commands[0].split())
     assert result.status == 0, result.err
-    assert "hall:v0 has everything that `leave` needs" in result.err
+    assert "hall:v0 has the signals that `leave` uses" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     listed = _COMMAND.findall(Path("README.md").read_text())
     assert [command for command in listed if command in commands] == commands

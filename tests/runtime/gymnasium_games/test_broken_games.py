@@ -47,7 +47,7 @@ def test_the_check_goes_on_after_a_lost_game(tltlc: Run, folder: Path) -> None: 
     title = "ended with exit status 3 instead of answering `step`, in step 1 of a play of `short:v0`"
     assert f"error[TLT0791]: the game `counter.game.toml` {title}" in result.err
     assert result.err.count("error[") == 1 and "now: exit" in result.err
-    assert "short:v0 has everything that `count` needs\n  signals: position, moves, at_goal\n" in result.err
+    assert "short:v0 has the signals that `count` uses\n  signals: position, moves, at_goal\n" in result.err
     assert "equal seeds and actions give equal plays: unknown, because the game was lost" in result.err
     assert "a restored snapshot is what was saved: yes" in result.err
 

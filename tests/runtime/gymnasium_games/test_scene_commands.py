@@ -331,7 +331,7 @@ def test_the_check_prints_no_control_characters_of_a_game(
     assert code != games.GRID
     games.write(tmp_path, corridor__py=code)
     result = tltlc("check", "--game", "corridor.game.toml:short:v0")
-    assert "  not changed by 200 random steps: \ufffd[2J ::error::\n" in result.err
+    assert "  in 200 random steps, `\ufffd[2J ::error::` never changed\n" in result.err
     assert "\x1b" not in result.err
 
 

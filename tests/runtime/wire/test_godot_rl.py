@@ -191,7 +191,7 @@ def _game(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_game_file_needs_only_a_function_of_the_observation(tltlc: Run) -> None:  # noqa: F811
     result = tltlc("check", "--game", "row.game.toml")
     assert result.status == 0, result.err
-    assert "row:long has everything that `arrive` needs" in result.err
+    assert "row:long has the signals that `arrive` uses" in result.err
     assert "signals: place, in_view" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import click
+import numpy as np
 
 from tltl_runtime.cli.support.level_check import check_levels
 from tltl_runtime.cli.support.plain_text import plain_text
@@ -120,16 +121,13 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
     name, supply = f"{scene_report.scene}:{scene_report.variant}", scene_report.supply
     for spec, diagnostics in fits.items():
         fits_spec = cli.status_of(diagnostics) == cli.CLEAN
-        yield f"{name} has everything that `{spec}` needs" if fits_spec else f"{name} does not fit `{spec}`"
+        yield f"{name} has the signals that `{spec}` uses" if fits_spec else f"{name} does not fit `{spec}`"
     if not fits:
         yield name
     listed = [*map(str, supply.moments[0].sample)]
     signals = ", ".join(listed[:_MOST_SIGNALS]) + (", …" if len(listed) > _MOST_SIGNALS else "")
     yield f"  signals: {signals or 'none'}"
-    if 0 < len(scene_report.unchanged) < len(listed):
-        unchanged = ", ".join(scene_report.unchanged[:_MOST_SIGNALS])
-        more = ", …" if len(scene_report.unchanged) > _MOST_SIGNALS else ""
-        yield f"  not changed by {scene_report.play.steps} random steps: {unchanged}{more}"
+    yield from _still_lines(scene_report)
     if supply.params:
         yield f"  params: {', '.join(f'{key} = {float(value):g}' for key, value in supply.params.items())}"
     yield f"  observation: {space_text(scene_report.observation)}"
@@ -146,6 +144,24 @@ def _lines(scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) 
     if scene_report.last_lines:
         yield "  the game's standard error ends:"
         yield from (f"    {line}" for line in scene_report.last_lines)
+
+
+def _still_lines(scene_report: SceneReport) -> Iterator[str]:
+    """Yield a line about the signals that were never true in the play, and one about others that no step changed."""
+    moments, steps = scene_report.play.moments, scene_report.play.steps
+    if len(scene_report.unchanged) == len(scene_report.supply.moments[0].sample):
+        return  # A warning says it.
+    false = [
+        name
+        for name in scene_report.unchanged
+        if all(isinstance(value := moment.sample.get(name), (bool, np.bool_)) and not value for moment in moments)
+    ]
+    constant = [name for name in scene_report.unchanged if name not in false]
+    for names, what in ((false, "was never true"), (constant, "never changed")):
+        if names:
+            listed = ", ".join(f"`{name}`" for name in names[:_MOST_SIGNALS])
+            more = ", …" if len(names) > _MOST_SIGNALS else ""
+            yield f"  in {steps} random steps, {listed}{more} {what}"
 
 
 def _facts(game: GameFile, scene_report: SceneReport, fits: Mapping[str, Sequence[Diagnostic]]) -> dict[str, Any]:
