@@ -168,10 +168,14 @@ def text_scale(figure: Figure, bounds: Box, metre: float = 1.0) -> float:
 
 
 def plan_axes(figure: Figure, bounds: Box, title: str, scale: float, unit: str = "m") -> Any:
-    """Return new axes of a figure for a plan; ``scale`` is the factor of its text, from :func:`text_scale`."""
+    """Return new axes of a figure for a plan; ``scale`` is the factor of its text, from :func:`text_scale`.
+
+    ``unit`` is the unit of the coordinates; empty if it is not known.
+    """
+    of_unit = f", {unit}" if unit else ""
     (x0, y0, _), (x1, y1, _) = bounds.low, bounds.high
     axes: Any = figure.add_subplot(
-        xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=title, xlabel=f"x, {unit}", ylabel=f"y, {unit}"
+        xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=title, xlabel=f"x{of_unit}", ylabel=f"y{of_unit}"
     )
     axes.tick_params(labelsize=10 * scale)
     for axis in (axes.xaxis, axes.yaxis):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tltl_runtime.game.episode import Cause, EndKind
 from tltl_runtime.game.geometry import Point
+from tltl_runtime.game.moments import duration_text, moment_text
 from tltl_runtime.game.violation import broken_atoms
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltlc.api import label_text
@@ -14,20 +15,24 @@ def scene_cause(episode: SceneEpisode) -> Cause:
 
     If the spec was not broken either, the text says what remained to be done.
     """
-    time = float(episode.times[-1])
+    time, moment = float(episode.times[-1]), moment_text(episode.times, len(episode.times) - 1)
     broken = broken_atoms(episode) if episode.end == "violation" else []
     names = tuple(name for name, _ in broken)
     kind = _kind(episode)
     if kind == "killed":
-        text = f"ended by {episode.killer} at {time:.2f} s"
+        text = f"ended by {episode.killer} at {moment}"
         return Cause(kind, (episode.killer,), time, _place(episode), text, names)
     if kind == "violated":
         words = ", ".join(f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken)
-        return Cause(kind, names, time, _place(episode), f"violated at {time:.2f} s{': ' * bool(words)}{words}", names)
+        return Cause(kind, names, time, _place(episode), f"violated at {moment}{': ' * bool(words)}{words}", names)
     if kind == "success":
-        return Cause(kind, (), time, _place(episode), f"success after {time:.2f} s")
+        return Cause(kind, (), time, _place(episode), f"success after {duration_text(episode.times)}")
     remaining = label_text(episode.fspa, int(episode.states[-1])).rstrip(".")
-    when = f"limit after {len(episode.actions)} steps" if kind == "limit" else f"stopped after {time:.2f} s"
+    when = (
+        f"limit after {len(episode.actions)} steps"
+        if kind == "limit"
+        else f"stopped after {duration_text(episode.times)}"
+    )
     return Cause(kind, (), time, _place(episode), f"{when}, remaining: {remaining}")
 
 

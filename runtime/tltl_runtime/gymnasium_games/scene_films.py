@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from tltl_runtime.game.films import Films, Picture
+from tltl_runtime.game.moments import moment_text
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltlc.api import Diagnostic, Notation, TltlError, label_text
 
@@ -52,6 +53,7 @@ class SceneFilms(Films[SceneEpisode]):
                     continue
                 frame = scene_frame(env, episode.level, _ADVICE)
                 state = int(episode.states[row])
-                text = f"{episode.times[row]:.2f} s  state {state}: {label_text(episode.fspa, state, notation)}"
+                moment = moment_text(episode.times, row)
+                text = f"{moment}  state {state}: {label_text(episode.fspa, state, notation)}"
                 picture = with_strip(frame, text, size)
                 yield from (picture for _ in range(count))

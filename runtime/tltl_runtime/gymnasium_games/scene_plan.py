@@ -27,7 +27,7 @@ def draw_scene_episode(episode: SceneEpisode, size: tuple[int, int] | None, nota
     """Draw the path of an episode as a PNG: see :func:`~tltl_runtime.game.plan.draw_path`."""
     assert episode.positions is not None, "the game does not say where the player is"
     landmarks = {} if episode.entities is None else episode.entities.still()
-    plan = _plan(episode.level, landmarks, episode.positions[:, :2])
+    plan = _plan(episode.level, landmarks, episode.positions[:, :2], _unit(episode.fspa))
     path: list[Point] = [(x, y, z) for x, y, z in episode.positions.tolist()]
     return draw_path(plan, episode, path, size, notation)
 
@@ -35,21 +35,21 @@ def draw_scene_episode(episode: SceneEpisode, size: tuple[int, int] | None, nota
 def draw_scene_trajectories(level: SceneLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
     """Draw the trajectories of many episodes as a PNG: see :func:`~tltl_runtime.game.plan.draw_paths`."""
     points = np.concatenate([trajectory.points for trajectory in trajectories]).astype(np.float64)
-    return draw_paths(_plan(level, dict(level.landmarks), points), fspa, trajectories, title)
+    return draw_paths(_plan(level, dict(level.landmarks), points, _unit(fspa)), fspa, trajectories, title)
 
 
-def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.float64]) -> Plan:
+def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.float64], unit: str) -> Plan:
     """Return the plan of a scene with its outline and landmarks.
 
     ``points``, (n, 2), are the points of the paths to draw. Without an outline, the plan's bounds
-    enclose these points.
+    enclose these points. ``unit`` is that of the coordinates; empty if it is not known.
     """
     bounds = bounds_around(points) if level.bounds is None else level.bounds
     metre = scale_of(bounds)
 
     def axes(figure: Figure) -> Any:
         scale = text_scale(figure, bounds, metre)
-        drawn = plan_axes(figure, bounds, f"{level.name} {level.variant}", scale)
+        drawn = plan_axes(figure, bounds, f"{level.name} {level.variant}", scale, unit)
         drawn.set_facecolor(FLOOR)
         if level.outline is not None:
             _add_outline(drawn, level.outline, 8 * scale)
@@ -59,6 +59,11 @@ def _plan(level: SceneLevel, landmarks: dict[str, Point], points: NDArray[np.flo
         return drawn
 
     return Plan(bounds, axes, metre)
+
+
+def _unit(fspa: Fspa) -> str:
+    """Return the unit of positions: metres if a signal of the spec is a length; else it is not known, and empty."""
+    return "m" if any(signal.type == "length" for signal in fspa.signals) else ""
 
 
 def _add_outline(axes: Any, outline: LevelOutline, letters: float) -> None:

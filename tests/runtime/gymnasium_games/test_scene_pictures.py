@@ -7,11 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from tests.runtime.gymnasium_games import vault
 from tests.runtime.gymnasium_games.vault_episodes import played
 from tltl_runtime.game.episode import trajectory
+from tltl_runtime.game.geometry import Box
+from tltl_runtime.game.plan import plan_axes
 from tltl_runtime.gymnasium_games.gymnasium_game import GAME
 from tltl_runtime.gymnasium_games.scene_episode import SceneEpisode
 from tltl_runtime.gymnasium_games.scene_pictures import ScenePictures
@@ -37,6 +40,12 @@ def colours(png: bytes) -> set[tuple[int, ...]]:
     pixels = np.asarray(Image.open(BytesIO(png)).convert("RGB")).reshape(-1, 3)
     values, counts = np.unique(pixels, axis=0, return_counts=True)
     return set(map(tuple, values[counts >= 100].tolist()))
+
+
+@pytest.mark.parametrize(("unit", "labels"), [("m", ("x, m", "y, m")), ("", ("x", "y"))])
+def test_the_axes_of_a_plan_name_a_unit_that_is_known(unit: str, labels: tuple[str, str]) -> None:
+    axes = plan_axes(Figure(), Box((0.0, 0.0, 0.0), (4.0, 3.0, 0.0)), "hall", 1.0, unit)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == labels
 
 
 def test_an_episode_is_drawn_on_the_outline(episode: SceneEpisode) -> None:

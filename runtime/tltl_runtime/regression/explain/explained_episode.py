@@ -6,10 +6,9 @@ from collections.abc import Iterable, Sequence
 from types import MappingProxyType
 from typing import Final
 
-import numpy as np
-
 from tltl_runtime.game.episode import EndKind, RecordedEpisode
 from tltl_runtime.game.geometry import Point
+from tltl_runtime.game.moments import has_clock
 from tltl_runtime.regression.explain.path_points import TrajectoryPoints, simplified_trajectory
 from tltl_runtime.regression.explain.stages import distance_column, target_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -132,13 +131,8 @@ def explain_episode(summary: EpisodeSummary, episode: RecordedEpisode) -> Explai
         shut=game.shut_barriers(episode),
         clauses=broken.clauses if broken and broken.kind == "broken" else (),
         measured=broken.measure if broken else None,
-        seconds=round(float(episode.times[broken.step]), 4) if broken and _has_clock(episode) else None,
+        seconds=round(float(episode.times[broken.step]), 4) if broken and has_clock(episode.times) else None,
     )
-
-
-def _has_clock(episode: RecordedEpisode) -> bool:
-    """Whether the times of an episode are seconds; those of a game without a clock are the numbers of its steps."""
-    return not np.array_equal(episode.times, np.arange(len(episode.times)))
 
 
 def arrivals_of(episode: RecordedEpisode) -> tuple[Arrival, ...]:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
+from tests.runtime.gymnasium_games import vault
+from tests.runtime.gymnasium_games.vault_episodes import played
 from tests.runtime.regression.handmade import changed
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.report.page.curves import progress_curves, progress_distribution
+from tltlc.core.record import replace
 
 
 def test_each_recorded_episode_has_a_curve() -> None:
@@ -21,6 +26,14 @@ def test_each_recorded_episode_has_a_curve() -> None:
         assert points == sorted(points, key=lambda point: (point[0], -point[1]))  # time increases, progress never falls
         heights = {y for _, y in points}
         assert len(heights) == len(set(episode.progress.round(4).tolist()))
+
+
+@pytest.mark.parametrize("is_timed", [True, False])
+def test_the_axis_counts_steps_if_the_game_has_no_clock(is_timed: bool, tmp_path: Path) -> None:
+    episode = played(vault.write(tmp_path))
+    shown = episode if is_timed else replace(episode, times=np.arange(len(episode.times), dtype=np.float64))
+    labels = [element.text for element in ElementTree.fromstring(progress_curves({0: shown})).iter("text")]
+    assert labels[-1] == ("time, s" if is_timed else "step")
 
 
 def test_the_bars_show_the_shares_of_episodes() -> None:

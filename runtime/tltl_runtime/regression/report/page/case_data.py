@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from tltl_runtime.game.geometry import Box
 from tltl_runtime.game.level import Level
+from tltl_runtime.game.moments import has_clock
 from tltl_runtime.game.packing import runs, x_steps, y_steps
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.contents import ReportedCase, maps_of
@@ -31,12 +32,20 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
     before = level if case.baseline_level is None or case.baseline_level.bounds is None else case.baseline_level
     return {
         "slug": slug,
+        "unit": "s" if _is_timed(case) else "steps",
         "map": maps.map_data(level),
         "states": [label_text(fspa, state.id) for state in fspa.states],
         "now": _episodes_data(level, maps.metre(level), case.report.episodes),
         "before": _episodes_data(before, maps.metre(before), case.before),
         "episodes": [maps.episode_data(level, index, case.episodes[index]) for index in sorted(case.episodes)],
     }
+
+
+def _is_timed(case: ReportedCase) -> bool:
+    """Whether the times of a case are seconds. Its recordings say so; without any, its spec does."""
+    if case.episodes:
+        return any(has_clock(episode.times) for episode in case.episodes.values())
+    return case.fspa is not None and case.fspa.clock_s is not None
 
 
 def _episodes_data(level: Level, metre: float, episodes: Sequence[ExplainedEpisode]) -> dict[str, Any]:

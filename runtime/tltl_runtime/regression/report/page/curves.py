@@ -13,6 +13,7 @@ from typing import Final
 from markupsafe import Markup
 
 from tltl_runtime.game.episode import RecordedEpisode
+from tltl_runtime.game.moments import has_clock
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.support.markup import coordinate, element
 from tltl_runtime.support.number_text import percent
@@ -27,7 +28,7 @@ _GAP: Final = 0.5
 
 
 def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
-    """Plot progress, in [0, 1], over time, in seconds, for each recorded episode."""
+    """Plot progress, in [0, 1], over time for each recorded episode: in seconds, or in steps without a clock."""
     longest = max((float(recording.times[-1]) for recording in episodes.values()), default=0.0)
     frame = _CurveAxes(max(1.0, longest))
     lines = [
@@ -44,7 +45,8 @@ def progress_curves(episodes: Mapping[int, RecordedEpisode]) -> Markup:
     scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": coordinate(frame.x_most)}
     cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden="hidden", **scale)
     description = "Progress over time of the recorded episodes"
-    return _diagram(description, frame, "time, s", [*lines, cursor], frame.x_ticks())
+    is_timed = any(has_clock(episode.times) for episode in episodes.values())
+    return _diagram(description, frame, "time, s" if is_timed else "step", [*lines, cursor], frame.x_ticks())
 
 
 def progress_distribution(now: Sequence[ExplainedEpisode], before: Sequence[ExplainedEpisode]) -> Markup:

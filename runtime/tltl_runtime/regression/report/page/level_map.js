@@ -75,13 +75,13 @@ class LevelMap {
     return drawn;
   }
 
-  /** Draws a heat map; `most` is the value of the strongest colour. */
-  showHeat(heat, most, kind) {
+  /** Draws a heat map; `most` is the value of the strongest colour, `unit` that of times. */
+  showHeat(heat, most, kind, unit) {
     this.clear();
     for (let place = 0; place < heat.cells.length; place += 2) {
       const index = heat.cells[place];
       const value = heat.cells[place + 1];
-      const words = kind === "time" ? `${value < 0.01 ? "under 0.01" : value.toFixed(2)} s an episode` : `${value} failed here`;
+      const words = kind === "time" ? `${value < 0.01 ? "under 0.01" : value.toFixed(2)} ${unit} an episode` : `${value} failed here`;
       draw(
         this.layers.heat,
         "rect",

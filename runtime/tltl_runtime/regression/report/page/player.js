@@ -75,8 +75,8 @@ class Player {
     this.row = Math.max(0, Math.min(this.last, row));
     this.scrub.value = String(this.row);
     const state = episode.state[this.row];
-    const seconds = (episode.time[this.row] / 1000).toFixed(2);
-    this.moment.textContent = `step ${this.row} of ${this.last}, ${seconds} s`;
+    const seconds = this.facts.unit === "s" ? `, ${(episode.time[this.row] / 1000).toFixed(2)} s` : "";
+    this.moment.textContent = `step ${this.row} of ${this.last}${seconds}`;
     this.scrub.setAttribute("aria-valuetext", `${this.moment.textContent}, state ${state}`);
     const end = this.row < this.last ? "" : ` The end: ${episode.why}.`;
     this.stateText.replaceChildren(...prose(`State ${state}: ${this.facts.states[state]}${end}`));

@@ -43,8 +43,8 @@ class CaseView {
     } else {
       // Now and before have the same scale, so that their maps can be compared.
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
-      this.maps[when].showHeat(all[shown], most, shown);
-      const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
+      this.maps[when].showHeat(all[shown], most, shown, this.facts.unit);
+      const unit = shown === "time" ? `${most.toFixed(1)} ${this.facts.unit} an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
       const scope = this.facts.before.trajectories.length ? ", now or in the baseline" : "";
       const text = all[shown].cells.length ? `strongest${scope}: ${unit}` : "no episode failed";
       this.#fillLegend([[`cell ${shown}`, "", text]]);
