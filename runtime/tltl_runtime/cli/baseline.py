@@ -48,7 +48,9 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     level, policy, spec, seed, versions and code have not changed. Without SUITE, the command plays the levels that come
     with tltlc and writes `shipped.baseline.json`.
 
-    The exit status is 1 if none of the cases can pass with this baseline.
+    The exit status is 0 if the baseline is written. It is 1 if it is written, but none of the cases can pass with it;
+    each other status, and 1 with an error, means that it is not written. Other variants are not played: a variant that
+    fails changes no status here, but that of `tltlc regress`.
     """
     with cli.Report() as report, name_missing_extra("`tltlc baseline`"), ignore_closed_pipe():
         check_suite_exists(suite)
