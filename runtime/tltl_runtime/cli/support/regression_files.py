@@ -31,7 +31,7 @@ from tltl_runtime.regression.verdict.play import PreparedCase
 from tltl_runtime.regression.verdict.verdict import CaseVerdict
 from tltl_runtime.support.number_text import short_list
 from tltl_runtime.support.record_json import to_json
-from tltlc.api import TltlError, fileio, record, replace
+from tltlc.api import TltlError, fileio, record, replace, traces
 
 PAGE: Final = "report.html"
 """The name of the page in the folder of a run."""
@@ -167,12 +167,13 @@ def _reported_case(case: FinishedCase, outcome: SuiteRun) -> ReportedCase:
         return ReportedCase(
             report=case.report,
             fspa=case.traces.fspa,
+            clauses=_clause_texts(case.traces.clauses),
             before=case.traces.before.episodes,
             curves=example_curves(case.traces, case.report.explanation),
         )
     if case.prepared is None or case.reference is None:
         return ReportedCase(case.report)
-    game = case.prepared.level.game
+    game, judge = case.prepared.level.game, case.prepared.setup.clause_judge
     folder = case_folder(outcome.suite, case.report.name, outcome.folder / CASES)
     episodes = _episodes(case.report, game, folder)
     # Some games show their levels only while they are played: take what the recordings show.
@@ -181,6 +182,7 @@ def _reported_case(case: FinishedCase, outcome: SuiteRun) -> ReportedCase:
         report=case.report,
         level=level,
         fspa=case.prepared.setup.fspa,
+        clauses=_clause_texts(judge.clauses if judge else None),
         episodes=episodes,
         before=case.reference.episodes,
         baseline_level=_baseline_level(level, case.prepared, case.reference),
@@ -196,6 +198,11 @@ def _reported_case(case: FinishedCase, outcome: SuiteRun) -> ReportedCase:
         films=films.pictures,
         film_notes=films.notes,
     )
+
+
+def _clause_texts(clauses: traces.Clauses | None) -> tuple[str, ...]:
+    """Return the clauses of a spec as texts; none if not all of them are known."""
+    return tuple(part.text for part in clauses.parts) if clauses is not None and clauses.are_all else ()
 
 
 def _films(

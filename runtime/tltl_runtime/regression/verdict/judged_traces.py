@@ -54,7 +54,8 @@ class JudgedTraces:
     ``now`` are the traces of the case, and ``before`` those of its baseline. ``judgement`` is None if
     none of the traces of one of these sets can be judged. ``thresholds`` are those of the case. But if
     the traces are not judged as episodes, or the spec has no limit, the reward equals the progress; the
-    threshold of the reward is then so great that no change of the reward counts.
+    threshold of the reward is then so great that no change of the reward counts. ``clauses`` are the
+    clauses of the spec.
     """
 
     case: TraceCase
@@ -63,6 +64,7 @@ class JudgedTraces:
     judgement: Judgement | None
     now: TraceSet
     before: TraceSet
+    clauses: traces.Clauses
 
 
 def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: OnTrace) -> JudgedTraces:
@@ -93,7 +95,7 @@ def judge_traces(case: TraceCase, error: float, workers: int | None, on_trace: O
     )
     has_limit = case.as_episodes and fspa.limit_steps is not None
     thresholds = case.thresholds if has_limit else replace(case.thresholds, reward=_NEVER)
-    return JudgedTraces(case, thresholds, fspa, _judgement(thresholds, error, now, before), now, before)
+    return JudgedTraces(case, thresholds, fspa, _judgement(thresholds, error, now, before), now, before, clauses)
 
 
 def _files(paths: Sequence[str]) -> traces.TraceFiles:

@@ -85,6 +85,21 @@ def test_the_page_says_that_actions_are_sampled() -> None:
     assert "actions sampled, as in training" in html_report(replace(suite, cases=(case,)))
 
 
+def test_the_page_shows_the_clauses_as_they_were_written() -> None:
+    suite = samples.suite()
+    case = replace(suite.cases[0], clauses=("reach near(exit)", "keep abs(spin) <= 5"))
+    texts = Page(html_report(replace(suite, cases=(case,)))).texts
+    assert {"reach near(exit)", "keep abs(spin) <= 5"} <= set(texts)
+
+
+def test_the_automaton_has_a_legend() -> None:
+    (label, *_) = [element for element in page().all("ul") if element.get("aria-label") == "Legend of the automaton"]
+    assert label["class"] == "legend states"
+    texts = " ".join(page().texts)
+    for words in ("start", "goal: the spec is met", "violation", "episodes that failed in it"):
+        assert words in texts
+
+
 def test_cases_that_were_not_run_have_a_row_and_a_section_with_the_reason() -> None:
     not_run = (NotRun("<a>", "the run was stopped"), NotRun("b", "no file concerns it", "review"))
     parsed = Page(html_report(replace(samples.suite(), not_run=not_run)))
@@ -148,7 +163,7 @@ def test_equal_sentences_link_to_their_own_episodes() -> None:
     report = replace(case.report, causes=("met in 0", "it fails"), explanation=explanation, edits=("it fails",))
     text = html_report(SuiteReport("equal", 0, 0.05, {}, (replace(case, report=report),)))
     lines = re.findall(r"<li>it fails(.*?)</li>", text)
-    assert [re.findall(r"#cover_and_hide-v0/(\d)/", line) for line in lines] == [[], ["0"], ["1"], []]
+    assert [re.findall(r"#cover_and_hide-v0/(\d)/", line) for line in lines] == [[], [], ["0"], ["1"]]
 
 
 def test_nothing_is_loaded_from_outside() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
@@ -18,7 +18,7 @@ from tltl_runtime.regression.report.page.player_panel import player_panel
 from tltl_runtime.regression.report.page.render import render
 from tltl_runtime.regression.report.page.trace_charts import trace_charts
 from tltl_runtime.regression.report.page.traffic import traffic
-from tltlc.api import formula_text, record
+from tltlc.api import Fspa, formula_text, record
 
 
 @record
@@ -68,7 +68,7 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         slug=slug,
         report=case.report,
         facts=_facts(case.report),
-        goal=None if case.fspa is None else formula_text(case.fspa),
+        goal=None if case.fspa is None else _goal_text(case.fspa, case.clauses),
         reasons=tuple(_reasons(case, slug)),
         curve=base64.b64encode(case.curve).decode(),
         has_baseline=bool(case.before),
@@ -77,6 +77,11 @@ def case_section(case: ReportedCase, slug: str, automaton: AutomatonPicture | No
         no_map=missing_map_text(case),
         noun="traces" if case.report.traces else "episodes",
     )
+
+
+def _goal_text(fspa: Fspa, clauses: Sequence[str]) -> str:
+    """Return what a spec asks for: its clauses as the author wrote them; if they are unknown, a sentence."""
+    return ", ".join(f"`{clause}`" for clause in clauses) or formula_text(fspa)
 
 
 def not_run_section(case: NotRun, slug: str) -> Markup:
@@ -111,18 +116,17 @@ def _traces_text(count: int) -> str:
 
 
 def _reasons(case: ReportedCase, slug: str) -> Iterator[_Reason]:
-    """Yield the reasons for the verdict: its causes, then the findings, then the edits.
+    """Yield the reasons for the verdict: what was edited, then its causes, then the findings.
 
     A finding says what the policy does differently from the baseline. It has links to examples.
     """
     report = case.report
-    yield from map(_Reason, report.causes)
+    yield from map(_Reason, (*report.edits, *report.causes))
     for finding in report.explanation:
         links = (episode_links(finding, case.episodes, slug) if maps_of(case) else None) or trace_links(
             finding, case.curves, slug
         )
         yield _Reason(finding.text, links)
-    yield from map(_Reason, report.edits)
 
 
 def _drawings(case: ReportedCase, slug: str, automaton: AutomatonPicture | None) -> _Drawings | None:

@@ -23,6 +23,7 @@ class ReportedCase:
       of recorded traces has no level either.
     - ``episodes`` are the recorded episodes by index. ``before`` are the episodes of the baseline.
     - ``baseline_level`` is the level on which the baseline was recorded, or None if it is unknown.
+    - ``clauses`` are the clauses of the spec as its source has them; empty if not all of them are known.
     - ``curve`` is the plot of the policy's retraining as a PNG; empty if there is none.
     - ``curves`` are curves of example traces by index, for a case of recorded traces. If the game does
       not say where the player is, they are those of the recorded ``episodes``. Otherwise they are empty.
@@ -37,6 +38,7 @@ class ReportedCase:
     episodes: Mapping[int, RecordedEpisode] = EMPTY
     before: tuple[ExplainedEpisode, ...] = ()
     baseline_level: Level | None = None
+    clauses: tuple[str, ...] = ()
     curve: bytes = b""
     curves: Mapping[int, TraceCurves] = EMPTY
     is_on_empty_plan: bool = False
