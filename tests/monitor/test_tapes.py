@@ -160,8 +160,15 @@ def test_a_damaged_or_large_packed_tape_is_refused(monkeypatch: pytest.MonkeyPat
         with pytest.raises(TltlError, match=r"TLT0622.*`x.gz` cannot be unpacked: it is cut off or damaged"):
             as_text(data, "x.gz", SIGNALS)
     assert TAPE.unpacked is not None
-    with pytest.raises(TltlError, match=r"TLT0004.*`x.gz` has more than 64 MiB when it is unpacked"):
-        as_text(gzip.compress(b" " * (TAPE.unpacked + 1)), "x.gz", SIGNALS)
+    with pytest.raises(TltlError) as caught:
+        as_text(gzip.compress(b" " * (TAPE.unpacked + 1)), "my play.jsonl", SIGNALS)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0004"
+    assert diagnostic.title == "`my play.jsonl` has more than 64 MiB when it is unpacked"
+    assert diagnostic.help == (
+        "unpack it with `gunzip < 'my play.jsonl' > whole.jsonl`, and judge it alone: "
+        "`tltlc monitor SPEC whole.jsonl` reads any size"
+    )
 
 
 def test_the_schema_is_valid_and_has_the_types_of_signals() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import zlib
+from shlex import quote
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -19,10 +20,11 @@ def is_packed(start: bytes) -> bool:
     return start.startswith(_MAGIC)
 
 
-def unpacked(data: bytes, name: str) -> bytes:
+def unpacked(data: bytes, name: str, too_large: str | None = None) -> bytes:
     """Return the unpacked bytes of a file; return a file that is not packed unchanged.
 
-    ``name`` is the file's name in messages.
+    ``name`` is the file's name in messages. ``too_large`` is the help for a file that is too large, by default
+    how to judge it.
 
     Raises:
         TltlError: TLT0004, the file is too large; TLT0622, it is damaged.
@@ -38,6 +40,8 @@ def unpacked(data: bytes, name: str) -> bytes:
         raise TltlError([Diagnostic("TLT0622", title, help="use another copy, or record the play again")]) from None
     if len(text) > TAPE.unpacked:
         title = f"`{name}` has more than {TAPE.unpacked >> 20} MiB when it is unpacked"
-        help_ = "unpack it with `gunzip`, and judge it alone: `tltlc monitor SPEC TAPE` reads a tape of any size"
-        raise TltlError([Diagnostic("TLT0004", title, help=help_)])
+        # Without `<`, `gunzip` reads no file whose name does not end in `.gz`.
+        unpack = f"gunzip < {quote(name)} > whole.jsonl"
+        judge = f"unpack it with `{unpack}`, and judge it alone: `tltlc monitor SPEC whole.jsonl` reads any size"
+        raise TltlError([Diagnostic("TLT0004", title, help=too_large or judge)])
     return text

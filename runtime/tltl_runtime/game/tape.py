@@ -8,11 +8,17 @@ import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Final
 
 from tltlc.api import Diagnostic, TltlError, fileio, record, traces
 
 TapeHeader = traces.TapeHeader
 TapeStep = traces.TapeStep
+
+_TOO_LARGE: Final = (
+    "record shorter plays, or fewer signals; to judge this one, unpack it if it is packed: "
+    "`tltlc monitor SPEC TAPE` reads an unpacked tape of any size"
+)
 
 
 @record
@@ -37,12 +43,11 @@ def read_tape(path: str | os.PathLike[str]) -> Tape:
     data = fileio.read_bytes(path, name, most)
     if len(data) > most:
         title = f"`{name}` is larger than {most >> 20} MiB"
-        raise TltlError([Diagnostic("TLT0004", title, help="record shorter plays, or fewer signals")])
-    header, steps = traces.read_tape(traces.TraceLines(io.BytesIO(traces.unpacked(data, name)), name))
+        raise TltlError([Diagnostic("TLT0004", title, help=_TOO_LARGE)])
+    header, steps = traces.read_tape(traces.TraceLines(io.BytesIO(traces.unpacked(data, name, _TOO_LARGE)), name))
     tape = Tape(header, tuple(steps))
     if not tape.steps:
-        title = f"the tape `{name}` contains no step"
-        raise TltlError([Diagnostic("TLT0620", title, help="record at least one step with its action")])
+        raise _no_step(name)
     return tape
 
 
@@ -50,12 +55,19 @@ def write_tape(path: str | os.PathLike[str], tape: Tape) -> None:
     """Write a tape to a file atomically, packed with gzip if the name ends in ``.gz``; equal tapes give equal bytes.
 
     Raises:
-        TltlError: TLT0005, the file cannot be written.
+        TltlError: TLT0005, the file cannot be written; TLT0620, the tape has no step.
         ValueError: a number is not finite, or a step has no action, or other signals than the header, or
             other types.
     """
+    if not tape.steps:
+        raise _no_step(os.fspath(path))
     data = "".join(f"{line}\n" for line in _lines(tape)).encode()
     fileio.write_file(Path(path), gzip.compress(data, mtime=0) if os.fspath(path).endswith(".gz") else data)
+
+
+def _no_step(name: str) -> TltlError:
+    title = f"the tape `{name}` contains no step"
+    return TltlError([Diagnostic("TLT0620", title, help="record at least one step with its action")])
 
 
 def _lines(tape: Tape) -> Iterator[str]:

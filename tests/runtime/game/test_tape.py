@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+from collections.abc import Callable
 from math import nan
 from pathlib import Path
 from random import Random
@@ -14,6 +15,7 @@ from hypothesis import given
 
 from tests.docs.blocks import ROOT
 from tests.fuzzing import SEEDS, check, mutated_bytes, mutated_text, times
+from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltl_runtime import Tape, read_tape, write_tape
 from tltl_runtime.game.tape import TapeHeader, TapeStep
 from tltlc import TltlError
@@ -57,6 +59,40 @@ def test_a_step_without_an_action_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="step 1 has no action"):
         write_tape(tmp_path / "x.tape.jsonl", replace(TAPE, steps=(TapeStep(None, TAPE.steps[0].signals),)))
     assert not [*tmp_path.iterdir()]
+
+
+def test_a_tape_without_steps_is_neither_written_nor_read(tmp_path: Path) -> None:
+    path = tmp_path / "x.tape.jsonl"
+    with pytest.raises(TltlError) as written:
+        write_tape(path, Tape(HEADER, ()))
+    assert not [*tmp_path.iterdir()]
+    write_tape(path, TAPE)
+    path.write_bytes(path.read_bytes().partition(b"\n")[0])
+    with pytest.raises(TltlError) as read:
+        read_tape(path)
+    assert written.value.diagnostics == read.value.diagnostics
+
+
+def test_a_tape_that_is_too_large_can_be_judged_once_it_is_unpacked(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    tltlc: Callable[..., Outcome],
+) -> None:
+    monkeypatch.setattr(fileio.limits, "TAPE", replace(fileio.limits.TAPE, size=1000))
+    monkeypatch.setattr("tltlc.monitor.packed.TAPE", replace(fileio.limits.TAPE, unpacked=1000))
+    for path in (tmp_path / "x.tape.jsonl", tmp_path / "x.tape.jsonl.gz"):
+        write_tape(path, Tape(HEADER, TAPE.steps[:20]))
+        with pytest.raises(TltlError) as caught:
+            read_tape(path)
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.code == "TLT0004"
+        assert diagnostic.help == (
+            "record shorter plays, or fewer signals; to judge this one, unpack it if it is packed: "
+            "`tltlc monitor SPEC TAPE` reads an unpacked tape of any size"
+        )
+    (tmp_path / "walk.tltl").write_text("signal seen: bool\nspec walk = G !seen\n", encoding="utf-8")
+    result = tltlc("monitor", str(tmp_path / "walk.tltl"), str(tmp_path / "x.tape.jsonl"))
+    assert (result.status, result.out.count(",holding,")) == (0, 20), result.out
 
 
 def test_what_is_no_tape_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
