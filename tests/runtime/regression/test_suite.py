@@ -279,12 +279,40 @@ def test_the_shipped_policy_is_suggested_for_a_copy_of_its_level(tmp_path: Path)
                 "paths are relative to the suite",
             ),
         ),
+        (
+            'scene = "hall"\npolicy = "bots/agent.safetensors"',
+            (
+                "TLT0805",
+                "there is no policy `bots/agent.safetensors`",
+                "train it: `tltlc train --game {folder}/lake.game.toml:hall --out {folder}/bots/agent`, and write "
+                '`policy = "bots/agent"`; paths are relative to the suite',
+            ),
+        ),
+        (
+            'scene = "hall"\npolicy = "agent/policy.safetensors"',
+            (
+                "TLT0805",
+                "there is no policy `agent/policy.safetensors`",
+                "train it: `tltlc train --game {folder}/lake.game.toml:hall --out {folder}/agent`; "
+                "paths are relative to the suite",
+            ),
+        ),
+        (
+            'scene = "hall"\npolicy = "agent"\nspec = "lake.tltl:cross"',
+            (
+                "TLT0805",
+                "there is no policy `agent`",
+                "train it: `tltlc train {folder}/lake.tltl:cross --game {folder}/lake.game.toml:hall "
+                "--out {folder}/agent`; paths are relative to the suite",
+            ),
+        ),
     ],
 )
 def test_a_scene_needs_keys_of_its_own_for_its_variant_and_its_policy(
     tmp_path: Path, keys: str, error: tuple[str, str, str]
 ) -> None:
     (tmp_path / "lake.game.toml").write_text('[game]\ngymnasium = "FrozenLake-v1"\n\n[[scene]]\nname = "hall"\n')
+    (tmp_path / "lake.tltl").write_text("signal done: bool\nspec cross = F done\n")
     code, title, help_ = error
     errors = refused(tmp_path, f'game = "lake.game.toml"\n{keys}')
     assert errors == [(code, title.format(folder=tmp_path), help_.format(folder=tmp_path))]

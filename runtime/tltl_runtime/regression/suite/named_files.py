@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from collections.abc import Iterable
 from contextlib import suppress
 from difflib import get_close_matches
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Final
 
 from tltl_runtime.game.level import Level
@@ -105,6 +107,26 @@ def similar_policy(name: str, folder: Path, otherwise: str | None = None) -> str
     if otherwise is not None and similar_name(name, known) is None:
         return otherwise
     return suggestion(name, known, short_list([f"`{path}`" for path in known], _MOST_NAMED))
+
+
+def training_help(name: str, folder: Path, scene: str, spec: str | None) -> str:
+    """Return the command that trains the policy ``name`` for a scene, which a suite in ``folder`` names.
+
+    A training writes a folder. If ``name`` is that of a file, the help also says what the suite must name then.
+    ``spec`` is the one that the case names, None if it is that of the scene.
+    """
+    from tltl_runtime.training.files.run_file import POLICY
+
+    path = PurePosixPath(name)
+    if path.name == POLICY and path.parent.name:
+        training, then = path.parent.as_posix(), ""
+    elif path.suffix == SUFFIX:
+        training = path.with_suffix("").as_posix()
+        then = f", and write `policy = {json.dumps(training, ensure_ascii=False)}`"
+    else:
+        training, then = name, ""
+    words = ["tltlc", "train", *([spec] if spec else []), "--game", scene, "--out", str(folder / training)]
+    return f"train it: `{shlex.join(words)}`{then}; paths are relative to the suite"
 
 
 def _is_level(path: Path) -> bool:

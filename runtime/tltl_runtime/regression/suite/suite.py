@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from contextlib import suppress
 from os.path import normpath
 from pathlib import Path
-from shlex import quote
 from typing import Final
 
 from tltl_runtime.game.level_name import (
@@ -30,6 +29,7 @@ from tltl_runtime.regression.suite.named_files import (
     similar_level,
     similar_policy,
     spec_diagnostics,
+    training_help,
 )
 from tltl_runtime.regression.suite.thresholds import Thresholds, read_thresholds
 from tltl_runtime.regression.suite.trace_case import TraceCase, read_trace_case
@@ -217,7 +217,7 @@ def _case(
     spec = _spec(table, folder)
     episodes, thresholds = _episodes(table, episodes), read_thresholds(table, thresholds)
     name = table.text("name", "")
-    policy = _policy(table, folder, level)
+    policy = _policy(table, folder, level, spec)
     table.report_unknown_keys(_OF_THRESHOLDS)
     if len(table.log) > before or policy is None:
         return None
@@ -366,12 +366,12 @@ def _spec(table: CheckedTable, folder: Path) -> str | None:
     return spec
 
 
-def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
+def _policy(table: CheckedTable, folder: Path, level: str, spec: str | None) -> Path | None:
     """Read the policy of a case; return its path, or None if no policy comes with the level.
 
     The key ``policy`` is the path of a policy's file, the folder of a training, or the name of a level
     of the package: then it means the policy that comes with that level. By default, it is the policy
-    that comes with the case's level.
+    that comes with the case's level. ``spec`` is the one that the case names.
     """
     name = table.text("policy", "")
     if not name or name in shipped_policies():
@@ -386,8 +386,7 @@ def _policy(table: CheckedTable, folder: Path, level: str) -> Path | None:
         return shipped
     path = folder / name
     if not fileio.exists(path):
-        train = f"tltlc train --game {quote(level)} --out {quote(str(path))}"
-        untrained = f"train it: `{train}`; paths are relative to the suite" if is_scene(level) else None
+        untrained = training_help(name, folder, level, spec) if is_scene(level) else None
         help_ = similar_policy(name, folder, untrained)
         label = value_label(table.label_of("policy"))
         table.log.append(Diagnostic("TLT0805", f"there is no policy `{name}`", (label,), help_))
