@@ -315,11 +315,11 @@ export class Recorder {
    * Begin a new trace, and end the one before; return the path of its file, which the first sample makes, or in a page
    * its name.
    *
-   * A tape says which scene, variant and seed were played.
+   * A tape says which scene, variant and seed were played; without a variant it is `v0`.
    */
-  begin(scene = null, variant = "v0", seed = null) {
+  begin(scene = null, variant = null, seed = null) {
     this.end();
-    [this.#played, this.#samples, this.#sums] = [{ scene, variant, seed }, 0, [1, 0]];
+    [this.#played, this.#samples, this.#sums] = [{ scene, variant: variant ?? "v0", seed }, 0, [1, 0]];
     [this.#last, this.#lastTape] = ["", ""];
     return this.#fs ? this.#path(this.#freeNumber(1)) : traceName(this.#number + 1);
   }

@@ -618,14 +618,15 @@ class Recorder:
 		_game = game
 
 	# Begins a new trace, and ends the one before; returns the path of its file, which the first sample
-	# makes.  A tape says which scene, variant and seed were played.
-	func begin(scene = null, variant: String = "v0", seed_ = null) -> String:
+	# makes.  A tape says which scene, variant and seed were played; without a
+	# variant it is `v0`.
+	func begin(scene = null, variant = null, seed_ = null) -> String:
 		end()
 		_samples = 0
 		_has_tape = false
 		_low = 1
 		_high = 0
-		_played = {"scene": scene, "variant": variant, "seed": seed_}
+		_played = {"scene": scene, "variant": "v0" if variant == null else variant, "seed": seed_}
 		return _free_path()
 
 	# Writes the values of all signals at one moment to the file at once; begins a trace if there is

@@ -76,7 +76,7 @@ def test_a_tape_without_steps_is_neither_written_nor_read(tmp_path: Path) -> Non
 def test_a_tape_that_is_too_large_can_be_judged_once_it_is_unpacked(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    tltlc: Callable[..., Outcome],
+    tltlc: Callable[..., Outcome],  # noqa: F811
 ) -> None:
     monkeypatch.setattr(fileio.limits, "TAPE", replace(fileio.limits.TAPE, size=1000))
     monkeypatch.setattr("tltlc.monitor.packed.TAPE", replace(fileio.limits.TAPE, unpacked=1000))

@@ -37,8 +37,10 @@ for step in range(1, 131):
 recorder.begin()
 recorder.sample({"near(a, b)": 1, "size": 2, "seen": false})
 print(recorder.sample({"near(a, b)": 1, "size": 2, "seen": false}, 1), recorder.problem)
+recorder.begin("crypt", null, 7)
+recorder.sample({"near(a, b)": 1, "size": 2, "seen": false}, 1)
 recorder.end()"""
-"""The body of a function that records the play in Godot, and then an episode without actions.
+"""The body of a function that records the play in Godot, then an episode without actions, and one without a variant.
 
 The recorder refuses the first two samples, and yet the tape says what `begin` was given. In some steps, a number has
 a bool as its value, and a bool a number.
@@ -73,6 +75,14 @@ def check_tape(path: Path, tmp_path: Path, *, game: str = "walk") -> Tape:
     assert digests(path) == DIGESTS
     _check_verdicts(path, tmp_path)
     return tape
+
+
+def check_tape_without_a_variant(path: Path) -> None:
+    """Check the tape of an episode that ``begin`` was given null as the variant of: it is that of no variant."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        SCHEMA.validate(json.loads(line))
+    header = read_tape(path).header
+    assert (header.scene, header.variant, header.seed) == ("crypt", "v0", 7)
 
 
 def digests(path: Path) -> dict[int, str]:

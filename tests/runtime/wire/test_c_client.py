@@ -296,12 +296,13 @@ def test_a_recorder_writes_the_tape_of_a_play(language: str, build: Build, tmp_p
     assert result.returncode == 0, result.stderr
     assert result.stdout.splitlines() == [
         "give the action of each sample of an episode, or of none",
-        str(tmp_path / "trace-0004.csv"),
+        str(tmp_path / "trace-0005.csv"),
     ]
     recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
-    assert not (tmp_path / "trace-0004.csv").exists()
+    recorded_tapes.check_tape_without_a_variant(tmp_path / "trace-0004.tape.jsonl")
+    assert not (tmp_path / "trace-0005.csv").exists()
 
 
 @with_compilers

@@ -148,6 +148,8 @@ internal sealed class Driver
             recorder.Sample(signals);
             try { recorder.Sample(signals, 1); return 4; }
             catch (System.InvalidOperationException error) { System.Console.Out.Write(error.Message + "\\n"); }
+            recorder.Begin("crypt", null, 7);
+            recorder.Sample(signals, 1);
         }
         return 0;
     }
@@ -495,6 +497,7 @@ def test_a_recorder_writes_the_tape_of_a_play(driver: str, tmp_path: Path) -> No
     assert "csharp" in tape.header.versions
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
+    recorded_tapes.check_tape_without_a_variant(tmp_path / "trace-0004.tape.jsonl")
 
 
 def cells(row: str) -> list[float | str]:

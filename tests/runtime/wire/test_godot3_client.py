@@ -274,3 +274,4 @@ def test_a_recorder_writes_the_tape_of_a_play(project: Path, tmp_path: Path) -> 
     assert tape.header.versions["godot"].startswith("3.")
     assert (folder / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (folder / "trace-0003.tape.jsonl").exists()
+    recorded_tapes.check_tape_without_a_variant(folder / "trace-0004.tape.jsonl")

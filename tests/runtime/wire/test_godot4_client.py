@@ -349,3 +349,4 @@ def test_a_recorder_writes_the_tape_of_a_play(project: Path, tmp_path: Path) -> 
     recorded_tapes.check_tape(folder / "trace-0002.tape.jsonl", tmp_path)
     assert (folder / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (folder / "trace-0003.tape.jsonl").exists()
+    recorded_tapes.check_tape_without_a_variant(folder / "trace-0004.tape.jsonl")

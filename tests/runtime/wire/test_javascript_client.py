@@ -302,6 +302,8 @@ const signals = { "near(a, b)": 1, size: 2, seen: false };
 recorder.sample(signals);
 try { recorder.sample(signals, 1); } catch (error) { console.log(error.message); }
 try { recorder.sample(signals, [0 / 0]); } catch (error) { console.log(error.message); }
+recorder.begin("crypt", null, 7);
+recorder.sample(signals, 1);
 recorder.end();
 """
     )
@@ -315,6 +317,7 @@ recorder.end();
     assert tape.header.versions["node"].startswith("v")
     assert (folder / "traces" / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (folder / "traces" / "trace-0003.tape.jsonl").exists()
+    recorded_tapes.check_tape_without_a_variant(folder / "traces" / "trace-0004.tape.jsonl")
 
 
 @needs_browser

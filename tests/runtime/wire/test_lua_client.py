@@ -185,6 +185,7 @@ def test_a_recorder_writes_the_tape_of_a_play(lua: str, tmp_path: Path) -> None:
     assert tape.header.versions["lua"].startswith("Lua 5.")
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
+    recorded_tapes.check_tape_without_a_variant(tmp_path / "trace-0004.tape.jsonl")
 
 
 @with_lua

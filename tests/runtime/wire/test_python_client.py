@@ -166,13 +166,18 @@ def test_a_recorder_writes_the_tape_of_a_play(tmp_path: Path) -> None:
         recorder.sample({**recorded_tapes.signals(step), **mixed}, recorded_tapes.action(step))
     recorder.begin()
     recorder.sample({"near(a, b)": 1, "size": 2, "seen": False})
+    recorder.begin("crypt", None, seed=7)
+    recorder.sample({"near(a, b)": 1, "size": 2, "seen": False}, 1)
     recorder.end()
+    recorded_tapes.check_tape_without_a_variant(folder / "trace-0003.tape.jsonl")
     tape = recorded_tapes.check_tape(folder / "trace-0001.tape.jsonl", tmp_path)
     assert tape.header.versions["python"] == sys.version.split()[0]
     assert sorted(path.name for path in folder.iterdir()) == [
         "trace-0001.csv",
         "trace-0001.tape.jsonl",
         "trace-0002.csv",
+        "trace-0003.csv",
+        "trace-0003.tape.jsonl",
     ]
 
 

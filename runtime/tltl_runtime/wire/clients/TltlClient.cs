@@ -725,12 +725,12 @@ namespace Tltl
 
         /// <summary>
         /// Begins a new trace, and ends the one before; returns the path of its file, which the first sample makes. A
-        /// tape says which scene, variant and seed were played.
+        /// tape says which scene, variant and seed were played; without a variant it is `v0`.
         /// </summary>
-        public string Begin(string scene = null, string variant = "v0", long? seed = null)
+        public string Begin(string scene = null, string variant = null, long? seed = null)
         {
             End();
-            _played = new Message {{"scene", scene}, {"variant", variant}, {"seed", seed}};
+            _played = new Message {{"scene", scene}, {"variant", variant ?? "v0"}, {"seed", seed}};
             _samples = 0;
             _low = 1;
             _high = 0;

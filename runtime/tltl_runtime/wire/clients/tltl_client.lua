@@ -726,7 +726,7 @@ function tltl_client.Recorder(folder, signals, clock_hz, game)
 end
 
 --- Begin a new trace, and end the one before; return the path of its file, which the first sample makes. A tape says
---- which scene, variant and seed were played.
+--- which scene, variant and seed were played; without a variant it is `v0`.
 function Recorder:begin(scene, variant, seed)
   self:finish()
   self._samples, self._low, self._high = 0, 1, 0

@@ -341,13 +341,13 @@ class Recorder:
         self._tape: TextIO | None = None
         self._played: dict[str, Any] = {}
 
-    def begin(self, scene: str | None = None, variant: str = "v0", seed: int | None = None) -> Path:
+    def begin(self, scene: str | None = None, variant: str | None = None, seed: int | None = None) -> Path:
         """Begin a new trace, and end the one before; return the path of its file, which the first sample makes.
 
-        A tape says which scene, variant and seed were played.
+        A tape says which scene, variant and seed were played; without a variant it is ``v0``.
         """
         self.end()
-        self._played = {"scene": scene, "variant": variant, "seed": seed}
+        self._played = {"scene": scene, "variant": "v0" if variant is None else variant, "seed": seed}
         self._samples, self._digest = 0, 1
         return next(self._free_paths())
 

@@ -579,13 +579,14 @@ class Recorder:
 		_game = game
 
 	## Begins a new trace, and ends the one before; returns the path of its file, which the first sample
-	## makes.  A tape says which scene, variant and seed were played.
-	func begin(scene: Variant = null, variant: String = "v0", seed_: Variant = null) -> String:
+	## makes.  A tape says which scene, variant and seed were played; without a
+	## variant it is `v0`.
+	func begin(scene: Variant = null, variant: Variant = null, seed_: Variant = null) -> String:
 		end()
 		_samples = 0
 		_low = 1
 		_high = 0
-		_played = {"scene": scene, "variant": variant, "seed": seed_}
+		_played = {"scene": scene, "variant": "v0" if variant == null else variant, "seed": seed_}
 		return _path(_free_number())
 
 	## Writes the values of all signals at one moment to the file at once; begins a trace if there is

@@ -30,6 +30,8 @@ static int record_tape(const char *folder) {
     tltl_recorder_begin(&recorder);
     if (!tltl_recorder_sample(&recorder, values) || tltl_recorder_step(&recorder, "1", values)) return 1;
     puts(recorder.error);
+    tltl_recorder_begin_scene(&recorder, "crypt", NULL, 7);
+    if (!tltl_recorder_step(&recorder, "1", values)) return 1;
     tltl_recorder_begin(&recorder);
     puts(recorder.path);
     return !tltl_recorder_end(&recorder);

@@ -20,6 +20,8 @@ if arg[2] == "tape" then
   recorder:begin()
   recorder:sample({["near(a, b)"] = 1, size = 2, seen = false})
   print(select(2, pcall(recorder.sample, recorder, {["near(a, b)"] = 1, size = 2, seen = false}, 1)))
+  recorder:begin("crypt", nil, 7)
+  recorder:sample({["near(a, b)"] = 1, size = 2, seen = false}, 1)
   recorder:finish()
 elseif arg[2] then
   local numbers = {nan = 0 / 0, inf = math.huge, ["-inf"] = -math.huge}
