@@ -41,6 +41,7 @@
 #     # Optional methods:
 #     # func snapshot():      keep the state of the game, return an id
 #     # func restore(id):     return to it, return the state
+#     # func release_snapshot(id):  forget it: there will be no return to it
 #     # func screenshot():    return a picture, see `array`
 #     # func outline():       return what maps of the current scene and variant show, such as
 #     #     {"boxes": {"wall": [AABB(…), AABB(…)]}, "regions": {"hall": AABB(…)}}
@@ -68,7 +69,7 @@ extends Reference
 
 const PROTOCOL = 1
 const LONGEST_LINE = 33554432
-const KINDS = ["step", "reset", "snapshot", "restore", "screenshot", "outline", "close"]
+const KINDS = ["step", "reset", "snapshot", "restore", "release", "screenshot", "outline", "close"]
 
 # Why the connection has ended or could not be made; empty if tltlc has closed it.
 var problem = ""
@@ -207,6 +208,8 @@ func _say_hello(game, token: String) -> bool:
 	var words = hello.get("capabilities", []).duplicate()
 	if game.has_method("snapshot") and game.has_method("restore") and not words.has("snapshot"):
 		words.append("snapshot")
+	if game.has_method("release_snapshot") and not words.has("release"):
+		words.append("release")
 	if game.has_method("screenshot") and not words.has("screenshot"):
 		words.append("screenshot")
 	if game.has_method("outline") and not words.has("outline"):
@@ -268,15 +271,25 @@ func _serve(kind: String) -> void:
 			_game.reset(_body.get("scene"), _body.get("variant", "v0"), null if seed_ == null else int(seed_))
 		)
 	elif kind == "snapshot" and _game.has_method("snapshot"):
-		_send(_text({"snapshot": {"id": _game.snapshot()}}))
+		var id = _game.snapshot()
+		_send(_text(id if id is Dictionary else {"snapshot": {"id": id}}))
 	elif kind == "restore" and _game.has_method("restore"):
 		_answer_result(_game.restore(_whole(_body["id"])))
+	elif kind == "release" and _game.has_method("release_snapshot"):
+		var id = _whole(_body["id"])
+		var result = _game.release_snapshot(id)
+		_send(_text(result if result is Dictionary else {"release": {"id": id}}))
 	elif kind == "screenshot" and _game.has_method("screenshot"):
-		_send(_text({"screenshot": _game.screenshot()}))
+		_answer_part(kind, _game.screenshot())
 	elif kind == "outline" and _game.has_method("outline"):
-		_send(_text({"outline": _game.outline()}))
+		_answer_part(kind, _game.outline())
 	else:
 		_send(_text(refusal("this game does not know the request `%s`" % kind)))
+
+
+# Sends a picture or an outline, or the refusal of it.
+func _answer_part(kind: String, result: Dictionary) -> void:
+	_send(_text(result if result.has("error") else {kind: result}))
 
 
 func _answer_result(result: Dictionary) -> void:

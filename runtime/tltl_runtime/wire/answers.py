@@ -20,13 +20,14 @@ from tltlc.api import record
 
 STATE: Final = "state"
 SNAPSHOT: Final = "snapshot"
+RELEASE: Final = "release"
 SCREENSHOT: Final = "screenshot"
 OUTLINE: Final = "outline"
 ERROR: Final = "error"
 _INFINITE: Final = (inf, -inf)
 _NUMBERS: Final = (float, int)
 _LARGEST: Final = sys.float_info.max
-_KINDS: Final = ("hello", STATE, SNAPSHOT, SCREENSHOT, OUTLINE, ERROR)
+_KINDS: Final = ("hello", STATE, SNAPSHOT, RELEASE, SCREENSHOT, OUTLINE, ERROR)
 
 Position = tuple[float, ...]
 
@@ -137,9 +138,18 @@ def snapshot_id(message: Any) -> int | str:
 
     Raises the errors of :func:`body_of`, and MalformedMessageError if the id is no whole number or text.
     """
-    value = an_object(body_of(message, SNAPSHOT), SNAPSHOT).get("id")
+    return _id_in(message, SNAPSHOT)
+
+
+def released_id(message: Any) -> int | str:
+    """Return the id in a message ``release``; raises as :func:`snapshot_id`."""
+    return _id_in(message, RELEASE)
+
+
+def _id_in(message: Any, kind: str) -> int | str:
+    value = an_object(body_of(message, kind), kind).get("id")
     if type(value) is not int and not (isinstance(value, str) and value):
-        raise wrong("snapshot.id", "a whole number or a text", value)
+        raise wrong(f"{kind}.id", "a whole number or a text", value)
     return value
 
 

@@ -18,6 +18,7 @@ from tltl_runtime.wire.hello import Hello
 from tltl_runtime.wire.outline import outline_from
 from tltl_runtime.wire.requests import (
     OutlineRequest,
+    ReleaseRequest,
     ResetRequest,
     RestoreRequest,
     ScreenshotRequest,
@@ -37,6 +38,7 @@ _METHODS: Final = {
     "tltl_outline": (hello.OUTLINE, "_outline"),
     "tltl_snapshot": (hello.SNAPSHOT, "_snapshot"),
     "tltl_restore": (hello.SNAPSHOT, "_restore"),
+    "tltl_release": (hello.RELEASE, "_release"),
 }
 """For each optional method, the capability that it needs, and the method that does the work."""
 
@@ -69,7 +71,8 @@ class WireEnv(gymnasium.Env[Any, Any]):
     - ``tltl_positions``: returns the positions of the entities, in metres, by name;
     - ``tltl_outline``: asks the game what maps of the current scene and variant are drawn on, and returns it;
     - ``tltl_snapshot`` and ``tltl_restore``: keep the state of the game, and return to it. A snapshot is
-      the id of a state that the game keeps, as bytes; it is valid until the game ends.
+      the id of a state that the game keeps, as bytes; it is valid until it is released, or the game ends;
+    - ``tltl_release``: lets a snapshot go, so that the game need not keep it.
 
     With ``render_mode="rgb_array"``, which the capability ``screenshot`` allows, :meth:`render`
     returns a picture, (height, width, 3).
@@ -92,6 +95,7 @@ class WireEnv(gymnasium.Env[Any, Any]):
     tltl_outline: Callable[[], dict[str, Any]]
     tltl_snapshot: Callable[[], bytes]
     tltl_restore: Callable[[bytes], None]
+    tltl_release: Callable[[bytes], None]
 
     def __init__(
         self,
@@ -238,6 +242,15 @@ class WireEnv(gymnasium.Env[Any, Any]):
         self._state = None
         request = RestoreRequest(document["id"]).message()
         self._state = self._session.ask("restore", request, self._reader.read)
+
+    def _release(self, snapshot: bytes) -> None:
+        """Let a snapshot go; do nothing if the game that took it has ended. Raises WireError if the game is lost."""
+        document = json.loads(snapshot)
+        if self._session.is_over or document["session"] != self._session_name:
+            return
+        state, self._state = self._state, None
+        self._session.ask("release", ReleaseRequest(document["id"]).message(), answers.released_id)
+        self._state = state
 
     def _ask_beside(self, kind: str, message: dict[str, Any], read: Callable[[Any], Answer]) -> Answer:
         """Send a request that does not change the state, and return what ``read`` makes of the answer.

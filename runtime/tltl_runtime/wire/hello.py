@@ -18,6 +18,7 @@ VERSION: Final = 1
 
 SEED: Final = "seed"
 SNAPSHOT: Final = "snapshot"
+RELEASE: Final = "release"
 POSITIONS: Final = "positions"
 SCREENSHOT: Final = "screenshot"
 OUTLINE: Final = "outline"

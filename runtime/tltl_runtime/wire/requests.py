@@ -59,6 +59,17 @@ class RestoreRequest:
 
 
 @record
+class ReleaseRequest:
+    """Let a snapshot go, to which no restore will return; the answer is a ``release`` with its id."""
+
+    id: int | str
+
+    def message(self) -> dict[str, Any]:
+        """Return the request as a value of JSON."""
+        return {"release": {"id": self.id}}
+
+
+@record
 class ScreenshotRequest:
     """Draw the game; the answer is a ``screenshot`` with an array."""
 

@@ -13,7 +13,7 @@ the row. A tick is a tenth of a second.
 - ``hello``: ``name`` is ``counter``, ``clock_hz`` 10, ``actions`` ``{"type": "discrete", "n": 3}``,
   ``observation`` ``{"type": "box", "low": 0, "high": 10, "shape": [1], "dtype": "float32"}``, ``params``
   ``{"goal": 10}``, ``scenes`` ``["short", "long"]``, ``capabilities`` ``seed``, ``positions``, ``snapshot``,
-  ``screenshot`` and ``outline`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves`` with the
+  ``release``, ``screenshot`` and ``outline`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves`` with the
   range [0, null], ``at_goal`` of the type ``bool``.
 - ``reset``: the player begins at 1 + seed mod 4, or at 1 without a seed, and ``moves`` is 0. The goal is
   5 in the scene ``short``, which is the default, and 10 in ``long``. The variant ``trap``
@@ -24,12 +24,14 @@ the row. A tick is a tenth of a second.
 - ``state``: the three signals, ``at_goal`` as a bool; the observation is ``[position]``; the positions are
   ``{"player": [position, 0]}``.
 - ``snapshot``: the ids are 1, 2, 3 and so on. ``restore`` returns to the scene, variant, position and
-  moves of a snapshot, and answers with the state; it can be repeated. Another id is answered by an ``error``.
+  moves of a snapshot, and answers with the state; it can be repeated. ``release`` forgets a snapshot; its id
+  is not given again. Another id, or one that was released, is answered by an ``error``.
 - ``screenshot``: one row of 11 pixels, black, that of the player white, as ``uint8`` in base64.
 - ``outline``: the bounds are from [-1, -2] to [11, 3]. Two boxes ``edge`` lie from [-1, -1] to [-0.5, 2] and from
-  [10.5, -1] to [11, 2]. The region ``goal`` lies from [the goal - 0.5, -1] to [10.5, 2]. In the variant ``trap``,
-  there is the polygon ``trap`` with the corners [-0.5, -1], [0.5, -1] and [0, 2]. The image, from [-0.5, -1] to
-  [10.5, 2], has one white pixel, as ``uint8`` in base64.
+  [10.5, -1] to [11, 2]. The region ``goal`` lies from [the goal - 0.5, -1] to [10.5, 2]. In the variant ``trap``
+  of the scene ``long``, there is the polygon ``trap`` with the corners [-0.5, -1], [0.5, -1] and [0, 2]. The image,
+  from [-0.5, -1] to [10.5, 2], has one white pixel, as ``uint8`` in base64. In the variant ``trap`` of the scene
+  ``short``, the answer is an ``error``.
 - ``close``, or the end of the connection: the game ends with exit status 0.
 - An ``error`` from tltlc: the game ends with another status, and writes the message to standard error.
 - Unknown keys are ignored; an unknown request is answered by an ``error``.
@@ -63,7 +65,7 @@ HELLO: dict[str, Any] = {
     "actions": {"type": "discrete", "n": 3},
     "observation": {"type": "box", "low": 0, "high": 10, "shape": [1], "dtype": "float32"},
     "scenes": ["short", "long"],
-    "capabilities": ["outline", "positions", "screenshot", "seed", "snapshot"],
+    "capabilities": ["outline", "positions", "release", "screenshot", "seed", "snapshot"],
 }
 
 
@@ -125,10 +127,18 @@ EXCHANGES: tuple[tuple[str, dict[str, Any], dict[str, Any]], ...] = (
     ("unknown keys are ignored", {"reset": {"seed": 3, "later": [1]}, "also": {"x": None}}, state(4, 0)),
     ("an unknown key of a step is ignored", {"step": {"action": 1, "hint": {"a": 1}}}, state(4, 1)),
     ("a large seed is exact", {"reset": {"seed": 2**53 - 1}}, state(4, 0)),
+    ("a snapshot is released", {"release": {"id": 1}}, {"release": {"id": 1}}),
+    ("the episode goes on after that", {"step": {"action": 0}}, state(3, 1)),
+    ("the id of the next snapshot is new", {"snapshot": {}}, {"snapshot": {"id": 3}}),
+    ("the other snapshots are kept", {"restore": {"id": 2}}, state(1, 5)),
+    ("a variant without an outline", {"reset": {"scene": "short", "variant": "trap", "seed": 0}}, state(1, 0)),
 )
 """What is sent, and what the game must answer, in order."""
 
 REFUSALS: tuple[tuple[str, dict[str, Any], str], ...] = (
+    ("an outline is refused", {"outline": {}}, "trap"),
+    ("a snapshot that was released is not restored", {"restore": {"id": 1}}, "1"),
+    ("and not released again", {"release": {"id": 1}}, "1"),
     ("an unknown scene is refused", {"reset": {"scene": "crypt"}}, "crypt"),
     ("an unknown variant is refused", {"reset": {"variant": "v9"}}, "v9"),
     ("an unknown snapshot is refused", {"restore": {"id": 77}}, "77"),

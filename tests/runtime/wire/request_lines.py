@@ -21,14 +21,14 @@ PIECES: tuple[bytes, ...] = (
 def request(chance: random.Random) -> dict[str, Any]:
     """Return a request, or something like one."""
     kind = chance.choice(
-        ("reset", "step", "step", "restore", "snapshot", "screenshot", "outline", "close", "telepathy")
+        ("reset", "step", "step", "restore", "release", "snapshot", "screenshot", "outline", "close", "telepathy")
     )
     body: dict[str, Any] = {}
     if kind == "reset":
         body = {"scene": chance.choice(TEXTS), "variant": chance.choice(TEXTS), "seed": chance.randrange(1 << 53)}
     elif kind == "step":
         body = {"action": _value(chance, 0), "repeat": chance.randrange(1, 9)}
-    elif kind == "restore":
+    elif kind in ("restore", "release"):
         body = {"id": chance.choice((1, -3, 2**40, "three", 1.5, None))}
     if chance.random() < 0.3:
         body[chance.choice(("later", "seed", "action", "id"))] = _value(chance, 0)

@@ -139,7 +139,7 @@ def _wanted(line: bytes) -> dict[str, Any] | None:
 
 def _compare(row: str, message: dict[str, Any], line: bytes) -> None:
     _, name, scene, variant, has_seed, seed, repeat, id_, numbers, is_right = row.split("\t")
-    kinds = ("reset", "step", "snapshot", "restore", "screenshot", "outline", "close")
+    kinds = ("reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close")
     kind = next((word for word in kinds if word in message), None)
     body = message.get(kind) if kind else None
     body = body if isinstance(body, dict) else {}

@@ -35,8 +35,8 @@ def messages() -> list[dict[str, Any]]:
 
 
 def test_each_message_has_an_example_that_is_read() -> None:
-    (hello, reset, step, state, snapshot, restore, answer, screenshot, picture, *others) = messages()
-    (outline, walls, close, error, agreement) = others
+    (hello, reset, step, state, snapshot, restore, answer, release, released, *others) = messages()
+    (screenshot, picture, outline, walls, close, error, agreement) = others
     declared = hello_from(hello)
     read = StateReader(declared).read(state)
     assert read.positions["guard_1"] == (0, 2) and declared.params == {"key_count": 3}
@@ -44,6 +44,7 @@ def test_each_message_has_an_example_that_is_read() -> None:
     assert step == requests.StepRequest(2, 4).message()
     assert snapshot == requests.SnapshotRequest().message() and restore == requests.RestoreRequest(3).message()
     assert answers.snapshot_id(answer) == 3
+    assert release == requests.ReleaseRequest(3).message() and answers.released_id(released) == 3
     assert screenshot == requests.ScreenshotRequest().message()
     assert answers.screenshot(picture).tolist() == [[[255, 0, 0], [0, 255, 0], [0, 0, 255]]]
     assert outline == requests.OutlineRequest().message()

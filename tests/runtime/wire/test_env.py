@@ -120,6 +120,21 @@ def test_a_snapshot_is_bytes_that_lead_back(env: WireEnv) -> None:
         env.tltl_restore(kept)
 
 
+def test_a_snapshot_that_was_released_leads_nowhere(env: WireEnv) -> None:
+    env.reset(seed=0)
+    first, second = env.tltl_snapshot(), env.tltl_snapshot()
+    env.tltl_release(first)
+    assert env.step(RIGHT)[0].tolist() == [2]
+    env.tltl_restore(second)
+    assert env.tltl_signals()["position"] == 1
+    with pytest.raises(WireError, match="there is no snapshot 1"):
+        env.tltl_restore(first)
+    env.tltl_release(second)  # The game that took it has ended.
+    env.reset()
+    env.tltl_release(second)
+    assert env.step(RIGHT)[0].tolist()
+
+
 def test_a_game_that_is_lost_at_a_snapshot_needs_a_reset() -> None:
     env = WireEnv(faulty("none"))
     env.reset()

@@ -223,6 +223,14 @@ def test_a_screenshot_has_three_colours() -> None:
             answers.screenshot({"screenshot": wrong})
 
 
+def test_a_release_has_the_id_of_the_snapshot() -> None:
+    assert answers.released_id({"release": {"id": "x"}}) == "x"
+    with pytest.raises(MalformedMessageError, match=r"`release.id` as null"):
+        answers.released_id({"release": {}})
+    with pytest.raises(MalformedMessageError, match="sent a message `release` instead of `snapshot`"):
+        answers.snapshot_id({"release": {"id": 1}})
+
+
 def test_a_snapshot_has_an_id() -> None:
     assert answers.snapshot_id({"snapshot": {"id": 3}}) == 3
     with pytest.raises(MalformedMessageError, match=r"`snapshot.id` as true"):

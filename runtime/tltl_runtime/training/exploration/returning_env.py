@@ -16,7 +16,7 @@ from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.cells import CellGrid, cell_of
 from tltl_runtime.training.exploration.replayed_starts import OTHER_SEED, UNREPEATED
-from tltl_runtime.training.exploration.snapshots import SnapshotStore, restore, save
+from tltl_runtime.training.exploration.snapshots import SnapshotStore, release_of, restore, save
 from tltl_runtime.wire.errors import REPORTED, WireError
 
 _SNAPSHOT_INTERVAL: Final = 16
@@ -47,7 +47,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
         super().__init__(self._play)
         self._game, self._grid = game, grid
         self._encoding = ActionEncoding(self._play.action_space)
-        self._store = SnapshotStore() if snapshots else None
+        self._store = SnapshotStore(release_of(self._play)) if snapshots else None
         self._next_start: tuple[int, NDArray[Any]] | None = None
         self._seed, self._actions, self._unsaved = 0, b"", 0
         self._has_begun = self._is_elsewhere = False
@@ -152,6 +152,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             if problem is None:
                 self._unsaved = 0
                 return moment.observation, moment.info, moment.spec.monitor.steps
+            self._store.clear()
             self._store = None
             warnings.warn(
                 f"TLT0784: the game did not return to a snapshot ({problem}): actions are replayed from now on",
@@ -178,7 +179,7 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
     def _forget_snapshots(self) -> None:
         """Forget the snapshots of a game that was lost: the next reset starts it again."""
         if self._store is not None:
-            self._store = SnapshotStore()
+            self._store = SnapshotStore(release_of(self._play))
 
     def _bytes(self, action: Any) -> bytes:
         return flat_action(self._encoding.layout, action).tobytes()

@@ -20,7 +20,7 @@ from tltl_runtime.game.geometry import Point
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.support.same_values import copied, is_same, other_name
 from tltl_runtime.training.exploration.cells import CellGrid, position_grid, signal_grid
-from tltl_runtime.training.exploration.snapshots import has_snapshots, restore, save
+from tltl_runtime.training.exploration.snapshots import has_snapshots, release_of, restore, save
 from tltl_runtime.wire.errors import WireError
 from tltlc.api import record
 
@@ -249,6 +249,8 @@ def _restore_obstacle(env: TltlEnv, game: Game[Any, Any]) -> SearchObstacle | No
             return SearchObstacle("restore", name, moment.spec.sample.get(name), env.sample.get(name))
         if obstacle := _difference("restore", expected, _go_on(env, game, later)):
             return obstacle
+        if release := release_of(env):
+            release(moment.data)
     return None
 
 

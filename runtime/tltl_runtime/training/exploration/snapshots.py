@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 import gymnasium
@@ -15,12 +15,13 @@ from tltlc.api import record
 
 _SNAPSHOT: Final = "tltl_snapshot"
 _RESTORE: Final = "tltl_restore"
+_RELEASE: Final = "tltl_release"
 _MOST_MOMENTS: Final = 256
 """At most this many moments are kept for each environment: those that were used last."""
 _MOST_BYTES: Final = 16 << 20
 """The snapshots of an environment take at most this many bytes."""
 _MOST_TAKEN: Final = 4096
-"""An environment saves at most this many moments: a game in another process keeps them all."""
+"""An environment saves at most this many moments if it cannot release them: a game in another process keeps them all."""
 
 
 @record
@@ -69,26 +70,43 @@ def restore(env: TltlEnv, moment: SavedMoment) -> str | None:
     return other_name(dict(env.sample), moment.spec.sample)
 
 
-class SnapshotStore:
-    """The saved moments of one environment, by the seed and the actions that lead to them."""
+def release_of(env: TltlEnv) -> Callable[[bytes], None] | None:
+    """Return the game's method that lets a snapshot go; None if it has none."""
+    return env.get_wrapper_attr(_RELEASE) if env.has_wrapper_attr(_RELEASE) else None
 
-    def __init__(self) -> None:
+
+class SnapshotStore:
+    """The saved moments of one environment, by the seed and the actions that lead to them.
+
+    ``release`` gets the snapshot of each moment that is forgotten, once no other moment has the same one; it may
+    raise any exception.
+    """
+
+    def __init__(self, release: Callable[[bytes], None] | None = None) -> None:
+        self._release = release
         self._moments: OrderedDict[tuple[int, bytes], SavedMoment] = OrderedDict()
         self._bytes = self._taken = 0
 
     @property
     def is_used_up(self) -> bool:
         """Whether the environment has saved as many moments as it may."""
-        return self._taken >= _MOST_TAKEN
+        return self._release is None and self._taken >= _MOST_TAKEN
 
     def add(self, seed: int, actions: bytes, moment: SavedMoment) -> None:
         """Keep a moment; forget those that were not used for the longest time if there are too many."""
         self._taken += 1
-        self._drop((seed, actions))
+        before = self._moments.pop((seed, actions), None)
         self._moments[seed, actions] = moment
         self._bytes += len(moment.data)
+        if before is not None:
+            self._let_go(before)
         while len(self._moments) > _MOST_MOMENTS or (self._bytes > _MOST_BYTES and self._moments):
-            self._drop(next(iter(self._moments)))
+            self._let_go(self._moments.popitem(last=False)[1])
+
+    def clear(self) -> None:
+        """Forget all moments."""
+        while self._moments:
+            self._let_go(self._moments.popitem()[1])
 
     def nearest(self, seed: int, actions: bytes) -> tuple[bytes, SavedMoment] | None:
         """Return the last known moment on the way that ``actions`` lead, and the actions up to it."""
@@ -99,9 +117,11 @@ class SnapshotStore:
         self._moments.move_to_end(key)
         return key[1], self._moments[key]
 
-    def _drop(self, key: tuple[int, bytes]) -> None:
-        moment = self._moments.pop(key, None)
-        self._bytes -= len(moment.data) if moment else 0
+    def _let_go(self, moment: SavedMoment) -> None:
+        """Release the snapshot of a moment that is no longer kept, unless another moment has the same one."""
+        self._bytes -= len(moment.data)
+        if self._release is not None and all(other.data != moment.data for other in self._moments.values()):
+            self._release(moment.data)
 
 
 def _limits(env: gymnasium.Env[Any, Any]) -> Iterator[TimeLimit[Any, Any]]:

@@ -198,8 +198,8 @@ namespace Tltl
         }
 
         /// <summary>
-        /// The kind of the request: `reset`, `step`, `snapshot`, `restore`, `screenshot`, `outline`, `close`, or
-        /// another word.
+        /// The kind of the request: `reset`, `step`, `snapshot`, `restore`, `release`, `screenshot`, `outline`,
+        /// `close`, or another word.
         /// </summary>
         public string Kind { get; private set; }
 
@@ -221,7 +221,7 @@ namespace Tltl
         /// <summary>How many ticks a step has, by default 1.</summary>
         public int Repeat { get { return Optional("repeat") == null ? 1 : TltlClient.Int(Body["repeat"]); } }
 
-        /// <summary>The id of the snapshot to return to: a long or a string.</summary>
+        /// <summary>The id of the snapshot to return to, or to let go: a long or a string.</summary>
         public object Id { get { return Needed("id"); } }
 
         private object Optional(string key)
@@ -262,6 +262,13 @@ namespace Tltl
 
         /// <summary>Returns to a snapshot, and returns the state. The id is a long or a string.</summary>
         State Restore(object id);
+    }
+
+    /// <summary>A game that can let its snapshots go.</summary>
+    public interface IReleases : ISnapshots
+    {
+        /// <summary>Forgets a snapshot: there will be no return to it. The id is a long or a string.</summary>
+        void Release(object id);
     }
 
     /// <summary>A game that can draw itself.</summary>
@@ -344,8 +351,8 @@ namespace Tltl
         }
 
         /// <summary>
-        /// Returns the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the
-        /// methods.
+        /// Returns the `hello` of a game, with the capabilities `snapshot`, `release`, `screenshot` and `outline` if it
+        /// has the methods.
         /// </summary>
         public static Message GameHello(IGame game)
         {
@@ -358,6 +365,7 @@ namespace Tltl
                 foreach (object word in (IEnumerable)declared) words.Add((string)word);
             }
             if (game is ISnapshots) words.Add("snapshot");
+            if (game is IReleases) words.Add("release");
             if (game is IScreenshots) words.Add("screenshot");
             if (game is IOutlines) words.Add("outline");
             hello["capabilities"] = words;
@@ -438,6 +446,7 @@ namespace Tltl
         private static Message AnswerOf(IGame game, Request request)
         {
             var snapshots = game as ISnapshots;
+            var releases = game as IReleases;
             var screenshots = game as IScreenshots;
             var outlines = game as IOutlines;
             if (request.Kind == "reset")
@@ -456,6 +465,11 @@ namespace Tltl
                 return new Message {{"snapshot", new Message {{"id", snapshots.Snapshot()}}}};
             }
             if (request.Kind == "restore" && snapshots != null) return StateMessage(snapshots.Restore(request.Id));
+            if (request.Kind == "release" && releases != null)
+            {
+                releases.Release(request.Id);
+                return new Message {{"release", new Message {{"id", request.Id}}}};
+            }
             if (request.Kind == "screenshot" && screenshots != null)
             {
                 return new Message {{"screenshot", screenshots.Screenshot()}};
@@ -525,7 +539,7 @@ namespace Tltl
     {
         private static readonly string[] Kinds =
         {
-            "reset", "step", "snapshot", "restore", "screenshot", "outline", "close"
+            "reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close"
         };
         private readonly LineConnection _line;
 

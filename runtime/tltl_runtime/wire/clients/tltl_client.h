@@ -142,7 +142,9 @@ typedef struct {
 } tltl_param;
 
 // Capabilities, to be added with |.
-enum { TLTL_SEED = 1, TLTL_SNAPSHOTS = 2, TLTL_POSITIONS = 4, TLTL_SCREENSHOTS = 8, TLTL_OUTLINES = 16 };
+enum {
+    TLTL_SEED = 1, TLTL_SNAPSHOTS = 2, TLTL_POSITIONS = 4, TLTL_SCREENSHOTS = 8, TLTL_OUTLINES = 16, TLTL_RELEASES = 32
+};
 
 // The declaration of a game.  All but `signals` and `actions` may be empty.
 typedef struct {
@@ -171,7 +173,8 @@ typedef struct {
 } tltl_node;
 
 typedef enum {
-    TLTL_RESET, TLTL_STEP, TLTL_SNAPSHOT, TLTL_RESTORE, TLTL_SCREENSHOT, TLTL_OUTLINE, TLTL_CLOSE, TLTL_UNKNOWN
+    TLTL_RESET, TLTL_STEP, TLTL_SNAPSHOT, TLTL_RESTORE, TLTL_RELEASE, TLTL_SCREENSHOT, TLTL_OUTLINE, TLTL_CLOSE,
+    TLTL_UNKNOWN
 } tltl_kind;
 
 // A request, valid until the next one is read.
@@ -185,7 +188,7 @@ typedef struct {
     uint64_t seed;            // 0 if none was sent
     const tltl_node *action;  // NULL if none was sent
     int repeat;               // ticks to play, at least 1
-    long long id;             // of the snapshot to restore; -1 if it is no whole number
+    long long id;             // of the snapshot to restore or to release; -1 if it is no whole number
 } tltl_request;
 
 // Return a member of an object, or a value of a list; NULL if there is none, or `value` is NULL or something else.
@@ -246,8 +249,9 @@ int tltl_observe_array(
     tltl_client *client, const void *data, size_t bytes, const char *dtype, const size_t *shape, size_t rank);
 int tltl_observe_json(tltl_client *client, const char *json);
 
-// Answer a `snapshot`, a `screenshot` (3 or 4 bytes for each pixel, row by row), or that a request cannot be met.
+// Answer a `snapshot`, a `release`, a `screenshot` (3 or 4 bytes for each pixel, row by row), or that a request cannot be met.
 int tltl_send_snapshot(tltl_client *client, long long id);
+int tltl_send_release(tltl_client *client, long long id);
 int tltl_send_picture(tltl_client *client, const void *pixels, size_t height, size_t width, size_t channels);
 typedef enum { TLTL_REFUSED, TLTL_GOES_ON, TLTL_ENDED } tltl_outcome;
 tltl_outcome tltl_refuse(tltl_client *client, const char *format, ...) TLTL_PRINTF_;
@@ -270,9 +274,10 @@ int tltl_send_outline(tltl_client *client);
 
 // `reset`, `step` (one tick) and `restore` return whether the episode has ended now, or the result of tltl_refuse.
 // `describe` gives the state: what is between tltl_begin_state and tltl_send_state.  Optional: `snapshot` keeps the
-// state of the game and returns an id of at least 0, or -1 if it cannot; `screenshot` calls tltl_send_picture;
-// `outline` gives what is between tltl_begin_outline and tltl_send_outline; `close` is called at the end.  `self` is
-// passed to each function.
+// state of the game and returns an id of at least 0, or -1 if it cannot; `release` forgets the snapshot with this id,
+// because there will be no return to it, and returns 1, or 0 if there is none; `screenshot` calls tltl_send_picture;
+// `outline` gives what is between tltl_begin_outline and tltl_send_outline; `close` is called at the end.  `describe`,
+// `screenshot` and `outline` may call tltl_refuse instead; nothing else is sent then.  `self` is passed to each function.
 typedef struct {
     tltl_hello hello;
     void *self;
@@ -281,12 +286,14 @@ typedef struct {
     void (*describe)(void *self, tltl_client *client);
     long long (*snapshot)(void *self);
     tltl_outcome (*restore)(void *self, tltl_client *client, const tltl_request *request);
+    int (*release)(void *self, long long id);
     int (*screenshot)(void *self, tltl_client *client);
     void (*outline)(void *self, tltl_client *client);
     void (*close)(void *self);
 } tltl_game;
 
-// Return the declaration of a game, with the capabilities for snapshots, screenshots and outlines if it has the functions.
+// Return the declaration of a game, with the capabilities for snapshots, their release, screenshots and outlines if it
+// has the functions.
 tltl_hello tltl_game_hello(const tltl_game *game);
 // Answer requests until tltlc closes the connection, and close the client.  Return the exit status of the process; if
 // it is 1, the reason is on standard error.
@@ -1048,10 +1055,11 @@ static int tltl_add_words_(tltl_client *client, const char *const *words, size_t
 }
 
 static int tltl_add_capabilities_(tltl_client *client, int capabilities) {
-    const char *words[5];
+    const char *words[6];
     size_t count = 0;
     if (capabilities & TLTL_SEED) words[count++] = "seed";
     if (capabilities & TLTL_SNAPSHOTS) words[count++] = "snapshot";
+    if (capabilities & TLTL_RELEASES) words[count++] = "release";
     if (capabilities & TLTL_POSITIONS) words[count++] = "positions";
     if (capabilities & TLTL_SCREENSHOTS) words[count++] = "screenshot";
     if (capabilities & TLTL_OUTLINES) words[count++] = "outline";
@@ -1212,7 +1220,8 @@ static void tltl_fill_(tltl_request *request) {
 }
 
 int tltl_next_request(tltl_client *client, tltl_request *request) {
-    static const char *const names[] = {"reset", "step", "snapshot", "restore", "screenshot", "outline", "close"};
+    static const char *const names[] = {
+        "reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close"};
     const tltl_node *error;
     size_t length;
     int kind;
@@ -1320,11 +1329,19 @@ int tltl_send_state(tltl_client *client, int has_ended) {
     return tltl_add_(client, text, "}}") && tltl_send_message_(client);
 }
 
-int tltl_send_snapshot(tltl_client *client, long long id) {
+static int tltl_send_id_(tltl_client *client, const char *start, long long id) {
     char number[32];
     snprintf(number, sizeof number, "%lld", id);
-    return tltl_begin_message_(client, "{\"snapshot\":{\"id\":") && tltl_add_(client, &client->message, number)
+    return tltl_begin_message_(client, start) && tltl_add_(client, &client->message, number)
            && tltl_add_(client, &client->message, "}}") && tltl_send_message_(client);
+}
+
+int tltl_send_snapshot(tltl_client *client, long long id) {
+    return tltl_send_id_(client, "{\"snapshot\":{\"id\":", id);
+}
+
+int tltl_send_release(tltl_client *client, long long id) {
+    return tltl_send_id_(client, "{\"release\":{\"id\":", id);
 }
 
 static int tltl_add_picture_(
@@ -1423,6 +1440,7 @@ tltl_outcome tltl_refuse(tltl_client *client, const char *format, ...) {
 tltl_hello tltl_game_hello(const tltl_game *game) {
     tltl_hello hello = game->hello;
     if (game->snapshot && game->restore) hello.capabilities |= TLTL_SNAPSHOTS;
+    if (game->release) hello.capabilities |= TLTL_RELEASES;
     if (game->screenshot) hello.capabilities |= TLTL_SCREENSHOTS;
     if (game->outline) hello.capabilities |= TLTL_OUTLINES;
     return hello;
@@ -1435,7 +1453,7 @@ static void tltl_answer_outcome_(const tltl_game *game, tltl_client *client, tlt
     }
     tltl_begin_state(client);
     if (game->describe) game->describe(game->self, client);
-    tltl_send_state(client, outcome == TLTL_ENDED);
+    if (!client->has_answered) tltl_send_state(client, outcome == TLTL_ENDED);
 }
 
 static void tltl_answer_(const tltl_game *game, tltl_client *client, const tltl_request *request) {
@@ -1453,13 +1471,16 @@ static void tltl_answer_(const tltl_game *game, tltl_client *client, const tltl_
         else tltl_send_snapshot(client, id);
     } else if (request->kind == TLTL_RESTORE && game->restore) {
         tltl_answer_outcome_(game, client, game->restore(game->self, client, request));
+    } else if (request->kind == TLTL_RELEASE && game->release) {
+        if (game->release(game->self, request->id)) tltl_send_release(client, request->id);
+        else tltl_refuse(client, "there is no snapshot %lld", request->id);
     } else if (request->kind == TLTL_SCREENSHOT && game->screenshot) {
         if (!game->screenshot(game->self, client) && !client->has_answered)
             tltl_refuse(client, "there is no picture now");
     } else if (request->kind == TLTL_OUTLINE && game->outline) {
         tltl_begin_outline(client);
         game->outline(game->self, client);
-        tltl_send_outline(client);
+        if (!client->has_answered) tltl_send_outline(client);
     } else {
         tltl_refuse(client, "this game does not know the request `%s`", request->name);
     }

@@ -41,7 +41,8 @@
 //       }
 //
 //       // Optional: `snapshot()` keeps the state of the game and returns an id, `restore(id)` returns to it and returns
-//       // the state, `screenshot()` returns a picture (see `array`), and `close()` is called at the end.
+//       // the state, `releaseSnapshot(id)` forgets it, because there will be no return to it, `screenshot()` returns a
+//       // picture (see `array`), and `close()` is called at the end.
 //       // `outline()` returns what maps of the current scene and variant show, in metres, for example
 //       // { boxes: { wall: [[[0, 0], [8, 1]], [[8, 0], [9, 6]]] }, regions: { hall: [[0, 1], [8, 6]] } }
 //     }
@@ -69,7 +70,7 @@
 
 const PROTOCOL = 1;
 const LONGEST_LINE = 1 << 25;
-const KINDS = ["reset", "step", "snapshot", "restore", "screenshot", "outline", "close"];
+const KINDS = ["reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close"];
 const IS_NODE = typeof process === "object" && Boolean(process.versions?.node) && typeof window === "undefined";
 
 /** Throw this in a method of the game if a request cannot be met. tltlc shows the message, which says why. */
@@ -147,10 +148,14 @@ export async function play(game, client = null) {
   }
 }
 
-/** Return the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the methods. */
+/**
+ * Return the `hello` of a game, with the capabilities `snapshot`, `release`, `screenshot` and `outline` if it has the
+ * methods.
+ */
 export function gameHello(game) {
   const words = new Set(game.hello.capabilities ?? []);
   if (game.snapshot && game.restore) words.add("snapshot");
+  if (game.releaseSnapshot) words.add("release");
   if (game.screenshot) words.add("screenshot");
   if (game.outline) words.add("outline");
   return { ...game.hello, capabilities: [...words].sort() };
@@ -167,6 +172,9 @@ async function answer(game, client, kind, body) {
     client.answer({ snapshot: { id: await game.snapshot() } });
   } else if (kind === "restore" && game.restore) {
     client.answerState(await game.restore(body.id));
+  } else if (kind === "release" && game.releaseSnapshot) {
+    await game.releaseSnapshot(body.id);
+    client.answer({ release: { id: body.id } });
   } else if (kind === "screenshot" && game.screenshot) {
     client.answer({ screenshot: await game.screenshot() });
   } else if (kind === "outline" && game.outline) {

@@ -41,7 +41,8 @@
 --     end
 --
 --     -- Optional: game:snapshot() keeps the state of the game and returns an id, game:restore(id) returns to it and
---     -- returns the state, game:screenshot() returns a picture (see `array`), game:close() is called at the end.
+--     -- returns the state, game:release_snapshot(id) forgets it, because there will be no return to it,
+--     -- game:screenshot() returns a picture (see `array`), game:close() is called at the end.
 --     -- game:outline() returns what maps of the current scene and variant show, in metres, for example
 --     -- {boxes = {wall = {{{0, 0}, {8, 1}}, {{8, 0}, {9, 6}}}}, regions = {hall = {{0, 1}, {8, 6}}}}
 --
@@ -71,7 +72,7 @@
 local PROTOCOL = 1
 local LONGEST_FIRST_LINE = 65536
 local DEEPEST = 100
-local KINDS = {"reset", "step", "snapshot", "restore", "screenshot", "outline", "close"}
+local KINDS = {"reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close"}
 
 local byte, char, find, format, gsub, match, sub =
   string.byte, string.char, string.find, string.format, string.gsub, string.match, string.sub
@@ -417,11 +418,13 @@ function tltl_client.array(data, dtype, shape)
   return {base64 = base64(data), dtype = dtype, shape = list(shape)}
 end
 
---- Return the `hello` of a game, with the capabilities `snapshot`, `screenshot` and `outline` if it has the methods.
+--- Return the `hello` of a game, with the capabilities `snapshot`, `release`, `screenshot` and `outline` if it has the
+--- methods.
 function tltl_client.game_hello(game)
   local hello, has = copy(game.hello), {}
   for _, word in ipairs(hello.capabilities or {}) do has[word] = true end
   if game.snapshot and game.restore then has.snapshot = true end
+  if game.release_snapshot then has.release = true end
   if game.screenshot then has.screenshot = true end
   if game.outline then has.outline = true end
   hello.capabilities = {}
@@ -593,6 +596,9 @@ local function answer(game, client, kind, body)
     client:answer({snapshot = {id = game:snapshot()}})
   elseif kind == "restore" and game.restore then
     client:answer_state(game:restore(body.id))
+  elseif kind == "release" and game.release_snapshot then
+    game:release_snapshot(body.id)
+    client:answer({release = {id = body.id}})
   elseif kind == "screenshot" and game.screenshot then
     client:answer({screenshot = game:screenshot()})
   elseif kind == "outline" and game.outline then

@@ -21,6 +21,7 @@ some methods::
 
         def snapshot(self): ...                        # optional: keep the state of the game, return an id
         def restore(self, id): ...                     # optional: return to it, return the state
+        def release_snapshot(self, id): ...            # optional: forget it: there will be no return to it
         def screenshot(self): ...                      # optional: return a picture, see `array`
         def outline(self): ...                         # optional: return what maps of the scene show, see below
         def close(self): ...                           # optional: called at the end
@@ -62,7 +63,7 @@ from zlib import adler32
 
 PROTOCOL = 1
 LONGEST_LINE = 1 << 25
-KINDS = ("reset", "step", "snapshot", "restore", "screenshot", "outline", "close")
+KINDS = ("reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close")
 
 
 class Refusal(Exception):
@@ -136,11 +137,13 @@ def play(game: Any, client: Client | None = None) -> None:
 def game_hello(game: Any) -> dict[str, Any]:
     """Return the ``hello`` of a game.
 
-    It has the capabilities ``snapshot``, ``screenshot`` and ``outline`` if the game has the methods.
+    It has the capabilities ``snapshot``, ``release``, ``screenshot`` and ``outline`` if the game has the methods.
     """
     words = set(game.hello.get("capabilities", []))
     if hasattr(game, "snapshot") and hasattr(game, "restore"):
         words.add("snapshot")
+    if hasattr(game, "release_snapshot"):
+        words.add("release")
     if hasattr(game, "screenshot"):
         words.add("screenshot")
     if hasattr(game, "outline"):
@@ -162,6 +165,9 @@ def _answer(game: Any, client: Client, kind: str, body: Any) -> None:
         client.answer({"snapshot": {"id": game.snapshot()}})
     elif kind == "restore" and hasattr(game, "restore"):
         client.answer_state(game.restore(body["id"]))
+    elif kind == "release" and hasattr(game, "release_snapshot"):
+        game.release_snapshot(body["id"])
+        client.answer({"release": {"id": body["id"]}})
     elif kind == "screenshot" and hasattr(game, "screenshot"):
         client.answer({"screenshot": game.screenshot()})
     elif kind == "outline" and hasattr(game, "outline"):

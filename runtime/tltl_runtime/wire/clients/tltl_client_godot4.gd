@@ -46,6 +46,7 @@
 #     # Optional methods:
 #     # func snapshot() -> Variant:              keep the state of the game, return an id
 #     # func restore(id: Variant) -> Dictionary: return to it, return the state
+#     # func release_snapshot(id: Variant) -> Variant: forget it: there will be no return to it
 #     # func screenshot() -> Dictionary:         return a picture, see `array`
 #     # func outline() -> Dictionary:            return what maps of the current scene and variant show, such as
 #     #     {"boxes": {"wall": [AABB(…), AABB(…)]}, "regions": {"hall": AABB(…)}}
@@ -72,7 +73,7 @@ extends RefCounted
 
 const PROTOCOL := 1
 const LONGEST_LINE := 33554432
-const KINDS: Array[String] = ["reset", "step", "snapshot", "restore", "screenshot", "outline", "close"]
+const KINDS: Array[String] = ["reset", "step", "snapshot", "restore", "release", "screenshot", "outline", "close"]
 
 ## Why the connection has ended or could not be made; empty if tltlc has closed it.
 var problem: String = ""
@@ -215,6 +216,8 @@ func _say_hello(game: Object, token: String) -> bool:
 	var words: Array = hello.get("capabilities", [])
 	if game.has_method("snapshot") and game.has_method("restore") and not words.has("snapshot"):
 		words.append("snapshot")
+	if game.has_method("release_snapshot") and not words.has("release"):
+		words.append("release")
 	if game.has_method("screenshot") and not words.has("screenshot"):
 		words.append("screenshot")
 	if game.has_method("outline") and not words.has("outline"):
@@ -281,15 +284,34 @@ func _serve(kind: String) -> void:
 		var chosen: Variant = _whole(_body.get("seed"))
 		_answer_result(_game.call("reset", _body.get("scene"), _body.get("variant", "v0"), chosen))
 	elif kind == "snapshot" and _game.has_method("snapshot"):
-		_send(_text({"snapshot": {"id": _game.call("snapshot")}}))
+		var kept: Variant = _game.call("snapshot")
+		var answer: Dictionary = {"snapshot": {"id": kept}}
+		if kept is Dictionary:
+			answer = kept
+		_send(_text(answer))
 	elif kind == "restore" and _game.has_method("restore"):
 		_answer_result(_game.call("restore", _whole(_body["id"])))
+	elif kind == "release" and _game.has_method("release_snapshot"):
+		var id: Variant = _whole(_body["id"])
+		var result: Variant = _game.call("release_snapshot", id)
+		var released: Dictionary = {"release": {"id": id}}
+		if result is Dictionary:
+			released = result
+		_send(_text(released))
 	elif kind == "screenshot" and _game.has_method("screenshot"):
-		_send(_text({"screenshot": _game.call("screenshot")}))
+		_answer_part(kind, _game.call("screenshot"))
 	elif kind == "outline" and _game.has_method("outline"):
-		_send(_text({"outline": _game.call("outline")}))
+		_answer_part(kind, _game.call("outline"))
 	else:
 		_send(_text(refusal("this game does not know the request `%s`" % kind)))
+
+
+# Sends a picture or an outline, or the refusal of it.
+func _answer_part(kind: String, result: Dictionary) -> void:
+	var answer: Dictionary = {kind: result}
+	if result.has("error"):
+		answer = result
+	_send(_text(answer))
 
 
 func _answer_result(result: Dictionary) -> void:

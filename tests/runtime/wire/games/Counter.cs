@@ -7,7 +7,7 @@ using System.Collections.Generic;
 using Tltl;
 
 /// <summary>Counts up to the goal, and in the variant `trap` never down to 0.</summary>
-internal sealed class Counter : IGame, ISnapshots, IScreenshots, IOutlines
+internal sealed class Counter : IGame, IReleases, IScreenshots, IOutlines
 {
     private struct Place
     {
@@ -15,7 +15,7 @@ internal sealed class Counter : IGame, ISnapshots, IScreenshots, IOutlines
         public bool HasTrap;
     }
 
-    private readonly List<Place> _snapshots = new List<Place>();
+    private readonly List<Place?> _snapshots = new List<Place?>();
     private Place _now = new Place {Goal = 5, Position = 1};
 
     public Message Hello
@@ -76,10 +76,21 @@ internal sealed class Counter : IGame, ISnapshots, IScreenshots, IOutlines
 
     public State Restore(object id)
     {
-        int number = TltlClient.Int(id);
-        if (number < 1 || number > _snapshots.Count) throw new Refusal("there is no snapshot " + number);
-        _now = _snapshots[number - 1];
+        _now = Kept(TltlClient.Int(id));
         return Now();
+    }
+
+    public void Release(object id)
+    {
+        Kept(TltlClient.Int(id));
+        _snapshots[TltlClient.Int(id) - 1] = null;
+    }
+
+    private Place Kept(int number)
+    {
+        Place? kept = number < 1 || number > _snapshots.Count ? null : _snapshots[number - 1];
+        if (kept == null) throw new Refusal("there is no snapshot " + number);
+        return kept.Value;
     }
 
     /// <summary>Draws a row of 11 black pixels; that of the player is white.</summary>
@@ -93,6 +104,7 @@ internal sealed class Counter : IGame, ISnapshots, IScreenshots, IOutlines
     /// <summary>Says what maps show: the edges of the row, the goal, and the trap if there is one.</summary>
     public object Outline()
     {
+        if (_now.HasTrap && _now.Goal == 5) throw new Refusal("there is no outline of the trap in `short`");
         var edges = new[] {Corners(-1, -1, -0.5, 2), Corners(10.5, -1, 11, 2)};
         var polygons = new Message();
         if (_now.HasTrap) polygons["trap"] = new[] {new[] {-0.5, -1}, new[] {0.5, -1}, new[] {0.0, 2}};

@@ -11,7 +11,7 @@
 enum { MOST_SNAPSHOTS = 100 };
 
 typedef struct {
-    int goal, has_trap, position, moves;
+    int goal, has_trap, position, moves;  // a goal of 0 stands for a snapshot that was released
 } counter_state;
 
 typedef struct {
@@ -75,9 +75,20 @@ static long long snapshot(void *self) {
     return ++game->snapshot_count;
 }
 
+static int is_kept(const counter *game, long long id) {
+    return id >= 1 && id <= game->snapshot_count && game->snapshots[id - 1].goal > 0;
+}
+
+static int release(void *self, long long id) {
+    counter *game = (counter *)self;
+    if (!is_kept(game, id)) return 0;
+    game->snapshots[id - 1].goal = 0;
+    return 1;
+}
+
 static tltl_outcome restore(void *self, tltl_client *client, const tltl_request *request) {
     counter *game = (counter *)self;
-    if (request->id < 1 || request->id > game->snapshot_count)
+    if (!is_kept(game, request->id))
         return tltl_refuse(client, "there is no snapshot %lld", request->id);
     game->now = game->snapshots[request->id - 1];
     return outcome(&game->now);
@@ -97,6 +108,10 @@ static void outline(void *self, tltl_client *client) {
     static const unsigned char white[] = {255, 255, 255};
     const counter_state *now = &((counter *)self)->now;
     double goal[] = {0, -1, 10.5, 2};
+    if (now->has_trap && now->goal == 5) {
+        tltl_refuse(client, "there is no outline of the trap in `short`");
+        return;
+    }
     goal[0] = now->goal - 0.5;
     tltl_bounds(client, bounds, 2);
     tltl_boxes(client, "edge", edges, 2, 2);
@@ -129,6 +144,7 @@ int main(int argc, char **argv) {
     game.describe = describe;
     game.snapshot = snapshot;
     game.restore = restore;
+    game.release = release;
     game.screenshot = screenshot;
     game.outline = outline;
     self.now.goal = 5;

@@ -15,6 +15,7 @@ local game = {
   position = 1,
   moves = 0,
   snapshots = {},
+  taken = 0,
   hello = {
     name = "counter",
     clock_hz = 10,
@@ -47,16 +48,25 @@ end
 
 -- Keep the state; the ids are 1, 2, 3 and so on.
 function game:snapshot()
-  self.snapshots[#self.snapshots + 1] =
+  self.taken = self.taken + 1
+  self.snapshots[self.taken] =
     {goal = self.goal, has_trap = self.has_trap, position = self.position, moves = self.moves}
-  return #self.snapshots
+  return self.taken
+end
+
+local function kept(id)
+  return game.snapshots[id] or error(tltl_client.Refusal("there is no snapshot " .. tostring(id)))
+end
+
+-- Forget a snapshot.
+function game:release_snapshot(id)
+  kept(id)
+  self.snapshots[id] = nil
 end
 
 -- Return to a snapshot.
 function game:restore(id)
-  local kept = self.snapshots[id]
-  if not kept then error(tltl_client.Refusal("there is no snapshot " .. tostring(id))) end
-  for name, value in pairs(kept) do self[name] = value end
+  for name, value in pairs(kept(id)) do self[name] = value end
   return self:state()
 end
 
@@ -68,6 +78,9 @@ end
 
 -- What maps show: the edges of the row, the goal, and the trap if there is one.
 function game:outline()
+  if self.has_trap and self.goal == GOALS.short then
+    error(tltl_client.Refusal("there is no outline of the trap in `short`"))
+  end
   return {
     bounds = {{-1, -2}, {11, 3}},
     boxes = {edge = {{{-1, -1}, {-0.5, 2}}, {{10.5, -1}, {11, 2}}}},

@@ -32,7 +32,7 @@ class Counter:
 
     def __init__(self) -> None:
         self.goal, self.has_trap, self.position, self.moves = 5, False, 1, 0
-        self.snapshots: list[tuple[int, bool, int, int]] = []
+        self.snapshots: list[tuple[int, bool, int, int] | None] = []
 
     def reset(self, scene: str | None, variant: str, seed: int | None) -> dict[str, Any]:
         """Begin at 1 + seed mod 4."""
@@ -57,10 +57,19 @@ class Counter:
 
     def restore(self, id: int) -> dict[str, Any]:  # noqa: A002
         """Return to a snapshot."""
-        if not isinstance(id, int) or not 1 <= id <= len(self.snapshots):
-            raise tltl_client.Refusal(f"there is no snapshot {id}")
-        self.goal, self.has_trap, self.position, self.moves = self.snapshots[id - 1]
+        self.goal, self.has_trap, self.position, self.moves = self._kept(id)
         return self.state()
+
+    def release_snapshot(self, id: int) -> None:  # noqa: A002
+        """Forget a snapshot."""
+        self._kept(id)
+        self.snapshots[id - 1] = None
+
+    def _kept(self, id: int) -> tuple[int, bool, int, int]:  # noqa: A002
+        kept = self.snapshots[id - 1] if isinstance(id, int) and 1 <= id <= len(self.snapshots) else None
+        if kept is None:
+            raise tltl_client.Refusal(f"there is no snapshot {id}")
+        return kept
 
     def screenshot(self) -> dict[str, Any]:
         """Draw a row of 11 black pixels; that of the player is white."""
@@ -71,6 +80,8 @@ class Counter:
 
     def outline(self) -> dict[str, Any]:
         """Say what maps show: the edges of the row, the goal, and the trap if there is one."""
+        if self.has_trap and self.goal == GOALS["short"]:
+            raise tltl_client.Refusal("there is no outline of the trap in `short`")
         return {
             "bounds": [[-1, -2], [11, 3]],
             "boxes": {"edge": [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]]},

@@ -73,7 +73,7 @@ func snapshot() -> int:
 
 
 func restore(id) -> Dictionary:
-	if not (id is int) or id < 1 or id > snapshots.size():
+	if not (id is int) or id < 1 or id > snapshots.size() or snapshots[id - 1] == null:
 		return Tltl.refusal("there is no snapshot %s" % id)
 	var kept = snapshots[id - 1]
 	goal = kept[0]
@@ -81,6 +81,13 @@ func restore(id) -> Dictionary:
 	position = kept[2]
 	moves = kept[3]
 	return state()
+
+
+func release_snapshot(id):
+	if not (id is int) or id < 1 or id > snapshots.size() or snapshots[id - 1] == null:
+		return Tltl.refusal("there is no snapshot %s" % id)
+	snapshots[id - 1] = null
+	return null
 
 
 func screenshot() -> Dictionary:
@@ -93,6 +100,8 @@ func screenshot() -> Dictionary:
 
 # What maps show: the edges of the row, the goal, and the trap if there is one.
 func outline() -> Dictionary:
+	if has_trap and goal == GOALS["short"]:
+		return Tltl.refusal("there is no outline of the trap in `short`")
 	var trap = {"trap": PoolVector2Array([Vector2(-0.5, 1), Vector2(0.5, 1), Vector2(0, -2)])}
 	return {
 		"bounds": Rect2(-1, -3, 12, 5),

@@ -79,7 +79,7 @@ func snapshot() -> int:
 
 
 func restore(id: Variant) -> Dictionary:
-	if not (id is int) or id < 1 or id > snapshots.size():
+	if not (id is int) or id < 1 or id > snapshots.size() or snapshots[id - 1] == null:
 		return Tltl.refusal("there is no snapshot %s" % id)
 	var kept: Array = snapshots[id - 1]
 	goal = kept[0]
@@ -87,6 +87,13 @@ func restore(id: Variant) -> Dictionary:
 	place = kept[2]
 	moves = kept[3]
 	return state()
+
+
+func release_snapshot(id: Variant) -> Variant:
+	if not (id is int) or id < 1 or id > snapshots.size() or snapshots[id - 1] == null:
+		return Tltl.refusal("there is no snapshot %s" % id)
+	snapshots[id - 1] = null
+	return null
 
 
 func screenshot() -> Dictionary:
@@ -99,6 +106,8 @@ func screenshot() -> Dictionary:
 
 # What maps show: the edges of the row, the goal, and the trap if there is one.
 func outline() -> Dictionary:
+	if has_trap and goal == GOALS["short"]:
+		return Tltl.refusal("there is no outline of the trap in `short`")
 	var trap: Dictionary = {}
 	if has_trap:
 		trap["trap"] = [Vector2(-0.5, 1), Vector2(0.5, 1), Vector2(0, -2)]

@@ -44,10 +44,20 @@ class Counter {
 
   /** Return to a snapshot. */
   restore(id) {
+    this.#now = { ...this.#kept(id) };
+    return this.#state();
+  }
+
+  /** Forget a snapshot. */
+  releaseSnapshot(id) {
+    this.#kept(id);
+    this.#snapshots[id - 1] = null;
+  }
+
+  #kept(id) {
     const kept = this.#snapshots[id - 1];
     if (!kept) throw new Refusal(`there is no snapshot ${id}`);
-    this.#now = { ...kept };
-    return this.#state();
+    return kept;
   }
 
   /** Draw a row of 11 black pixels; that of the player is white. */
@@ -60,6 +70,7 @@ class Counter {
   /** Say what maps show: the edges of the row, the goal, and the trap if there is one. */
   outline() {
     const { goal, hasTrap } = this.#now;
+    if (hasTrap && goal === GOALS.short) throw new Refusal("there is no outline of the trap in `short`");
     return {
       bounds: [[-1, -2], [11, 3]],
       boxes: { edge: [[[-1, -1], [-0.5, 2]], [[10.5, -1], [11, 2]]] },
