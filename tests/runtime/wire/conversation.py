@@ -13,8 +13,8 @@ the row. A tick is a tenth of a second.
 - ``hello``: ``name`` is ``counter``, ``clock_hz`` 10, ``actions`` ``{"type": "discrete", "n": 3}``,
   ``observation`` ``{"type": "box", "low": 0, "high": 10, "shape": [1], "dtype": "float32"}``, ``params``
   ``{"goal": 10}``, ``scenes`` ``["short", "long"]``, ``capabilities`` ``seed``, ``positions``, ``snapshot``,
-  ``release``, ``screenshot`` and ``outline`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves`` with the
-  range [0, null], ``at_goal`` of the type ``bool``.
+  ``release``, ``screenshot`` and ``outline`` in any order. ``signals``: ``position`` with the range [0, 10], ``moves``
+  with the range [0, null], ``at_goal`` of the type ``bool``.
 - ``reset``: the player begins at 1 + seed mod 4, or at 1 without a seed, and ``moves`` is 0. The goal is
   5 in the scene ``short``, which is the default, and 10 in ``long``. The variant ``trap``
   has a trap at 0; ``v0`` has none. Another scene or variant is answered by an ``error`` that names it.

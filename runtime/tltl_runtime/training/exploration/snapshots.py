@@ -21,7 +21,7 @@ _MOST_MOMENTS: Final = 256
 _MOST_BYTES: Final = 16 << 20
 """The snapshots of an environment take at most this many bytes."""
 _MOST_TAKEN: Final = 4096
-"""An environment saves at most this many moments if it cannot release them: a game in another process keeps them all."""
+"""An environment that cannot release moments saves at most this many: a game in another process keeps them all."""
 
 
 @record
