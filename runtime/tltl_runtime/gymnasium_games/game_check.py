@@ -88,11 +88,14 @@ def check_scene(game: GameFile, scene: str, variant: str) -> SceneReport:
     env = make_base_env(game, scene, variant)
     try:
         report = _report(game, env, scene, variant)
+        is_lost = isinstance(env.unwrapped, WireEnv) and env.unwrapped.is_lost
     finally:
         env.close()
     # A game that has been closed has written all that it has to say.
     lines = env.unwrapped.last_lines() if isinstance(env.unwrapped, WireEnv) else []
-    faults = silent_faults(f"{scene}:{variant}", game.labels["game"], report.play, lines)
+    # A game that was lost has not gone on after an error in a script: the error about the loss has these lines.
+    went_on = [] if is_lost else lines
+    faults = silent_faults(f"{scene}:{variant}", game.labels["game"], report.play, went_on)
     return replace(report, last_lines=tuple(lines), diagnostics=(*report.diagnostics, *faults))
 
 

@@ -209,6 +209,11 @@ class WireEnv(gymnasium.Env[Any, Any]):
         return state.cause if state.ended else None
 
     @property
+    def is_lost(self) -> bool:
+        """Whether the game has ended, and no reset has started it again."""
+        return self._session.is_over
+
+    @property
     def process_id(self) -> int | None:
         """The id of the process that supervises the game; None for a game that was already running."""
         return self._session.process_id

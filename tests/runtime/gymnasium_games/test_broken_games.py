@@ -68,6 +68,24 @@ def test_a_game_that_is_lost_while_it_restores_is_reported_beside_the_rest(tltlc
     assert (scene["reproducible"], scene["restores"]) == (True, None)
 
 
+def test_a_game_that_ends_by_an_error_in_a_script_has_not_gone_on(tltlc: Run, folder: Path) -> None:  # noqa: F811
+    (folder / "dies.py").write_text(
+        f"import os, sys\nsys.path.insert(0, {str(GAMES)!r})\n"
+        "from counter import Counter, tltl_client\n\n\n"
+        "class Dying(Counter):\n"
+        "    def snapshot(self):\n"
+        "        print('SCRIPT ERROR: snapshot: Invalid call.', file=sys.stderr, flush=True)\n"
+        "        os._exit(3)\n\n\n"
+        "tltl_client.play(Dying())\n"
+    )
+    write(folder, sys.executable, "dies.py")
+    result = tltlc("check", "--game", "counter.game.toml:short:v0")
+    assert result.status == 1
+    assert "error[TLT0791]: " in result.err and "instead of answering `snapshot`" in result.err
+    assert "SCRIPT ERROR: snapshot: Invalid call." in result.err
+    assert "TLT0787" not in result.err
+
+
 def test_a_game_that_is_lost_in_each_reset_is_an_error_alone(tltlc: Run, folder: Path) -> None:  # noqa: F811
     mortal(folder, "reset", "all")
     result = tltlc("check", "--game", "counter.game.toml:short:v0")
