@@ -152,12 +152,13 @@ class ReturningEnv(gymnasium.Wrapper[Any, Any, Any, Any]):
             if problem is None:
                 self._unsaved = 0
                 return moment.observation, moment.info, moment.spec.monitor.steps
-            self._store.clear()
-            self._store = None
+            store, self._store = self._store, None
             warnings.warn(
                 f"TLT0784: the game did not return to a snapshot ({problem}): actions are replayed from now on",
                 stacklevel=2,
             )
+            if store is not None:
+                store.clear()
         observation, info = self._play.reset(seed=self._seed)
         self._actions, self._unsaved, self._has_begun = b"", 0, True
         return observation, info, 0
