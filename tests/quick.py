@@ -39,6 +39,7 @@ LARGE = (
     "grammar/test_english.py",
     "grammar/test_fuzz.py",
     "grammar/test_one_reading.py",
+    "grammar/test_random_readings.py",
     "interfaces/cli/test_fuzz.py",
     "interfaces/lsp/test_actions.py",
     "interfaces/lsp/test_fuzz.py",
@@ -57,7 +58,7 @@ LARGE = (
 """Files without quick tests, because they compute for seconds: large formulas, whole corpora."""
 
 STARTS_PROCESSES = re.compile(
-    r"\b(subprocess|multiprocessing|os\.fork|chromium|docs\.sessions|lsp\.client|playground\.test_server)\b"
+    r"\b(subprocess|multiprocessing|os\.fork|chromium|diff\.repository|docs\.sessions|lsp\.client|playground\.(browser_page|test_server))\b"
 )
 """Words in files that start processes. A file with such a word has no quick tests."""
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.tools.diff.test_breaking import needs_git, repository  # noqa: F401
+from tests.tools.diff.repository import _repository, needs_git  # noqa: F401
 from tests.waiting import HANG_S
 from tltlc.io.child_interrupts import raise_if_interrupted
 
@@ -41,7 +41,7 @@ def test_importing_the_layout_process_changes_no_signal() -> None:
 @needs_git
 @pytest.mark.parametrize("word", ["rev-parse", "ls-tree", "--batch-check", "--batch"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_git_is_an_interrupt(repository: Path, word: str, number: signal.Signals) -> None:  # noqa: F811
+def test_an_interrupted_git_is_an_interrupt(repository: Path, word: str, number: signal.Signals) -> None:
     """Ctrl-C goes to all processes of a terminal, and git may end first."""
     tools, temporary = repository / "tools", repository / "temporary"
     tools.mkdir()

@@ -15,7 +15,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from tests.interfaces.cli.conftest import tltlc  # noqa: F401
-from tests.runtime.cli.test_regress import ONE, Run
+from tests.runtime.cli.regressions import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, Played, edit, with_few_environments
 from tests.runtime.regression.handmade import summaries

@@ -6,103 +6,36 @@ import json
 import os
 import pty
 import re
-import shutil
-import signal
-import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
-from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from tests.docs.blocks import DOCS
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
-from tests.runtime.cli.signals import interrupted, signal_at_call, with_signals  # noqa: F401
+from tests.runtime.cli.signals import interrupted  # noqa: F401
+from tests.runtime.cli.small_training import (  # noqa: F401
+    SMALL,
+    SOON,
+    TltlcFunction,
+    _here,
+    _run,
+    _second,
+    _trainings,
+    train_arguments,
+)
 from tests.runtime.training.test_settings import GOLDEN
-from tests.shared import made_once
-from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.files.metrics import METRICS, read_metrics
 from tltl_runtime.training.files.settings import default_text, read_settings
-from tltl_runtime.training.runner import Iteration, Runner
 from tltlc.core.record import replace
 from tltlc.interfaces.cli.main import main
 
-TltlcFunction = Callable[..., Outcome]
-
-SMALL = """
-[rollout]
-envs = 4
-steps = 16
-workers = 1
-
-[exploration]
-ways = 0
-
-[ppo]
-epochs = 1
-minibatches = 1
-
-[network]
-hidden = [8]
-
-[stop]
-windows = 1
-episodes = 2
-confirmation = 2
-steps = 128
-"""
-
-SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
-"""A spec that any player meets after eight steps."""
-
 END = "\0"
 """What a test writes after the output of a command; a terminal may stay open in a process that the command started."""
-
-
-@pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder, which contains only small settings and a spec."""
-    _write_inputs(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def _write_inputs(folder: Path) -> None:
-    (folder / "small.toml").write_text(SMALL)
-    (folder / "soon.tltl").write_text(SOON)
-
-
-@pytest.fixture(scope="module")
-def trainings(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two finished trainings: ``run``, ended by its limit of steps, and ``second``, whose spec is met."""
-    return made_once(tmp_path_factory, "cli-trainings", _train_twice)
-
-
-def _train_twice(folder: Path) -> None:
-    _write_inputs(folder)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)
-        for spec, name, status in ((str(EXAMPLE), "run", 1), ("soon.tltl", "second", 0)):
-            with pytest.raises(SystemExit) as ended:
-                main(["train", spec, "--config", "small.toml", "--out", name])
-            assert ended.value.code == status
-
-
-@pytest.fixture
-def run(trainings: Path, here: Path) -> Path:
-    """A copy of the training that was ended by its limit, as ``run`` in the current folder."""
-    return shutil.copytree(trainings / "run", here / "run")
-
-
-@pytest.fixture
-def second(trainings: Path, here: Path) -> Path:
-    """A copy of the training whose spec is met, as ``second`` in the current folder."""
-    return shutil.copytree(trainings / "second", here / "second")
 
 
 def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -129,27 +62,6 @@ def test_a_training_ends_at_its_limit_and_resumes(tltlc: TltlcFunction, here: Pa
     assert resumed.status == 1, resumed.err
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192]
     assert json.loads((folder / "record.json").read_text())["iterations"] == 3
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("run")
-def test_a_training_killed_at_its_limit_is_finished_when_it_resumes(tltlc: TltlcFunction) -> None:  # noqa: F811
-    folder = Path("run")
-    before, description = (folder / "checkpoint.pt").read_bytes(), (folder / "run.json").read_bytes()
-    tltlc("train", "--resume", "run", "--steps", "256")
-    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192, 256]
-    # The same files as if it had been killed after its second iteration, in which it reached its limit.
-    (folder / "checkpoint.pt").write_bytes(before)
-    (folder / "run.json").write_bytes(description)
-    (folder / "record.json").unlink()
-    result = tltlc("train", "--resume", "run")
-    assert result.status == 1
-    assert "steps/s" not in result.err
-    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
-    assert [point["steps"] for point in json.loads((folder / "record.json").read_text())["curve"]] == [64, 128]
-    events = EventAccumulator("run")
-    events.Reload()
-    assert [event.step for event in events.Scalars("time/episodes")] == [64, 128]
 
 
 @pytest.mark.usefixtures("run")
@@ -457,91 +369,6 @@ def test_the_effective_settings_are_printed(tltlc: TltlcFunction, here: Path) ->
     assert len(result.out.splitlines()) == len(default_text().splitlines())
 
 
-SIGNALS = pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
-
-
-@SIGNALS
-def test_a_training_ended_by_a_signal_resumes(
-    with_signals: TltlcFunction,  # noqa: F811
-    tltlc: TltlcFunction,  # noqa: F811
-    here: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    name: str,
-    status: int,
-) -> None:
-    with monkeypatch.context() as patch:
-        # An iteration steps 16 times; the signal arrives in the middle of the second one.
-        signal_at_call(patch, Runner, "_step", getattr(signal, name), call=16 + 8)
-        stopped = with_signals(*_arguments("--steps", "100000000"))
-    assert stopped.err.splitlines()[4].startswith("iteration 1: 64 steps in "), stopped.err
-    _check_stopped(stopped.status, status, stopped.err)
-    _check_resumed(tltlc, here / "run", done=1)
-
-
-@pytest.mark.slow
-@SIGNALS
-def test_a_process_that_trains_ends_by_a_signal(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
-    with _training(here, "--steps", "100000000") as process:
-        assert process.stderr is not None
-        first = [process.stderr.readline() for _ in range(5)][-1]
-        assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
-        process.send_signal(getattr(signal, name))
-        _, err = process.communicate(timeout=HANG_S)
-    _check_stopped(process.returncode, status, err)
-    _check_resumed(tltlc, here / "run", done=len(read_metrics(here / "run" / METRICS)))
-
-
-def _check_stopped(status: int, expected: int, err: str) -> None:
-    assert status == expected
-    assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
-
-
-def _check_resumed(tltlc: TltlcFunction, run: Path, done: int) -> None:  # noqa: F811
-    """Resume a training for one iteration more than it has done."""
-    resumed = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
-    assert resumed.status == 1, resumed.err
-    assert [line["iteration"] for line in read_metrics(run / METRICS)] == list(range(1, done + 2))
-
-
-def test_a_killed_worker_is_reported(
-    tltlc: TltlcFunction,  # noqa: F811
-    here: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    iterations = Runner.iterations
-
-    def with_a_kill(runner: Runner) -> Iterator[Iteration]:
-        for iteration in iterations(runner):
-            yield iteration
-            (worker,) = active_children()
-            worker.kill()
-
-    monkeypatch.setattr(Runner, "iterations", with_a_kill)
-    result = tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run", "--steps", "100000000")
-    assert result.status == 1
-    assert result.err.splitlines()[4].startswith("iteration 1: ")
-    assert "error[TLT0871]: the training was interrupted: worker 0 was killed by SIGKILL\n" in result.err
-    assert "to go on from the last checkpoint: tltlc train --resume run" in result.err
-    assert (here / "run" / "checkpoint.pt").is_file()
-
-
-def test_a_worker_that_is_killed_in_the_search_is_reported(
-    tltlc: TltlcFunction,  # noqa: F811
-    here: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def with_a_kill(*_: object) -> None:
-        for worker in active_children():
-            worker.kill()
-
-    monkeypatch.setattr("tltl_runtime.cli.support.training_display._LineDisplay.show_search", with_a_kill)
-    Path("search.toml").write_text(SMALL.replace("ways = 0", "ways = 2\nsteps = 6400"))
-    result = tltlc("train", EXAMPLE, "--config", "search.toml", "--out", "run")
-    assert "error[TLT0871]: the training was interrupted: worker 0 was killed by SIGKILL\n" in result.err
-    assert "to start again: tltlc train --resume run" in result.err
-    assert not (here / "run" / "checkpoint.pt").exists()
-
-
 def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in {"TERM": "xterm", "COLUMNS": "110", "LINES": "40"}.items():
         monkeypatch.setenv(name, value)
@@ -551,7 +378,7 @@ def test_a_terminal_shows_the_live_display(here: Path, monkeypatch: pytest.Monke
         with monkeypatch.context() as patch, pytest.raises(SystemExit) as ended:
             patch.setattr(sys, "stderr", terminal)
             try:
-                main(_arguments("--steps", "128"))
+                main(train_arguments("--steps", "128"))
             finally:
                 print(END, file=terminal, flush=True)
     os.close(ours)
@@ -574,15 +401,6 @@ def test_the_page_lists_the_keys_of_the_record() -> None:
     (search,) = re.findall(r"^\| `search` \| (.*) \|$", section, re.MULTILINE)
     # The explanations of some keys follow after the list, and start with their names.
     assert tuple(dict.fromkeys(re.findall(r"`(\w+)`", search))) == SearchProgress.__match_args__
-
-
-def _arguments(*options: str) -> list[str]:
-    return ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
-
-
-def _training(folder: Path, *options: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "tltlc", *_arguments(*options)]
-    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
 
 
 def _output(terminal: int) -> Iterator[bytes]:

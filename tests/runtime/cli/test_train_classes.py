@@ -10,7 +10,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
-from tests.runtime.cli.test_train import SMALL
+from tests.runtime.cli.small_training import SMALL
 
 
 def test_the_runner_on_the_page_prints_its_lines(

@@ -11,7 +11,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.signals import interrupted  # noqa: F401
-from tests.runtime.cli.test_train import SMALL, SOON
+from tests.runtime.cli.small_training import SMALL, SOON
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.shipped import shipped_policy

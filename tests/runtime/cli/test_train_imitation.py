@@ -14,7 +14,7 @@ import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.cli.signals import interrupted  # noqa: F401
-from tests.runtime.cli.test_train import SMALL
+from tests.runtime.cli.small_training import SMALL
 from tests.runtime.training.imitating import SOON, recorded_episode, write_recordings
 from tests.waiting import until
 from tltl_runtime.training.files.checkpoint import read_checkpoint

@@ -13,6 +13,7 @@ from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.suite import Case, Suite, baseline_path, read_suite
 from tltl_runtime.regression.verdict.baseline import write_baseline
 from tltl_runtime.regression.verdict.baseline_run import record_baseline
+from tltl_runtime.stealth.levels.default_spec import LEVELS
 from tltl_runtime.training.files.settings import read_settings
 from tltlc.core.record import replace
 
@@ -41,6 +42,9 @@ policy = "soon.safetensors"
 name = "hopeless"
 """
 """The text of a suite: two cases that pass, and one whose policy never meets its spec."""
+
+GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
+"""The asset `guard` that comes with tltlc."""
 
 VARIANTS = '[variants]\nv0 = []\nv1 = ["guard_alert"]\n'
 

@@ -16,16 +16,17 @@ from typing import Any
 import pytest
 
 from tests.runtime.evaluation.untrained import SOON, untrained
-from tests.runtime.regression.game import EASY, SUITE, Played, edit, with_baseline
+from tests.runtime.regression.game import EASY, GUARD, SUITE, Played, edit, with_baseline
 from tests.runtime.regression.handmade import ROOM, changed
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tests.runtime.regression.runs import run, running
 from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.suite.dependencies import dependencies
-from tltl_runtime.regression.suite.suite import Case, Suite, read_suite
+from tltl_runtime.regression.suite.suite import Case, read_suite
 from tltl_runtime.regression.suite_run import (
     CASES,
     FinishedCase,
@@ -37,26 +38,11 @@ from tltl_runtime.regression.suite_run import (
 )
 from tltl_runtime.regression.verdict.baseline import baseline_of
 from tltl_runtime.regression.verdict.play import PreparedCase, play_episodes, prepare_case
-from tltl_runtime.stealth.levels.default_spec import LEVELS
-from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.levels.identity import level_hash
 from tltl_runtime.stealth.recordings.file import read_episode
 from tltl_runtime.stealth.recordings.versions import versions
 from tltlc.automaton.fspa import Text
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-
-GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
-
-
-def running(suite: Suite, folder: str = "run", callback: Played | None = None) -> Iterator[FinishedCase]:
-    return regress(suite, suite.cases, baseline_of(suite), Path(folder), 1, callback or Played())
-
-
-def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[FinishedCase], dict[str, int]]:
-    """Run the suite; return the results, and the number of episodes played per case."""
-    played = Played()
-    return list(running(suite or read_suite(Path("game.toml")), folder, played)), played.counts
 
 
 @pytest.fixture(scope="module")
@@ -176,91 +162,6 @@ def test_names_in_reasons_are_part_of_the_cache_key(game: Path) -> None:
     assert _inputs(ready_case, reference, 0.01) == _inputs(prepare_case(suite.cases[0], suite.seed), reference, 0.01)
 
 
-def test_a_level_edited_between_cases_is_played_as_edited(game: Path) -> None:
-    suite, before = read_suite(Path("game.toml")), Path("room.toml").read_text(encoding="utf-8")
-
-    cases = running(suite, "new")
-    results = [next(cases)]
-    edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-    results += cases
-    assert [done.is_cached for done in results] == [False] * 3
-    hashes = [done.report.played.level_hash for done in results if done.report.played]
-    assert hashes[0] != hashes[1] and hashes[1:] == [
-        level_hash(load_level("room.toml", variant)) for variant in ("v1", "v0")
-    ]
-    Path("room.toml").write_text(before, encoding="utf-8")
-    # Results of the edited level are not used for the original level.
-    assert list(run("new")[1]) == ["room:v1", "hopeless"]
-
-
-def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Call ``edit`` after a case has been prepared, right before it is played."""
-
-    def then(case: Case, seed: int) -> PreparedCase:
-        ready_case = prepare_case(case, seed)
-        if case.name == name:
-            edit()
-        return ready_case
-
-    monkeypatch.setattr("tltl_runtime.regression.suite_run.prepare_case", then)
-
-
-def test_a_level_edited_while_it_is_played_is_reviewed_and_not_cached(
-    game: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    text = Path("room.toml").read_text(encoding="utf-8")
-    _edited_after("room:v1", lambda: edit("room.toml", "8.0, 8.0", "8.0, 7.5"), monkeypatch)
-    results, played = run("new")
-    report = results[1].report
-    assert (report.verdict, report.certain, report.figures) == ("review", False, None)
-    assert report.reasons == ("TLT0905, `room.toml` changed while `room:v1` was played (run the same command again)",)
-    assert list(played) == ["room:v0", "hopeless"] and not (Path("new") / CASES / "room-v1").exists()
-    monkeypatch.undo()
-    monkeypatch.chdir(game)
-    Path("room.toml").write_text(text, encoding="utf-8")
-    assert list(run("new")[1]) == ["room:v1", "hopeless"]
-
-
-@pytest.mark.parametrize("name", ["room.toml", "assets/guard.toml"])
-def test_a_level_edited_after_the_workers_loaded_it_is_reviewed(game: Path, name: str) -> None:
-    class Edits(Played):
-        def __call__(self, case: Case, count: int, last: ExplainedEpisode) -> None:
-            super().__call__(case, count, last)
-            if (case.name, count) == ("room:v0", 25):
-                Path(name).parent.mkdir(exist_ok=True)
-                text = Path(name).read_text(encoding="utf-8") if Path(name).exists() else GUARD
-                Path(name).write_text(text + "# later\n", encoding="utf-8")
-
-    first, second, _ = running(read_suite(Path("game.toml")), "new", Edits())
-    assert (first.report.verdict, first.report.certain, first.is_cached) == ("review", False, False)
-    assert first.report.reasons == (
-        f"TLT0905, `{name}` changed while `room:v0` was played (run the same command again)",
-    )
-    assert second.report.verdict == "pass"
-    assert list(run("new")[1]) == ["room:v0"], "nothing of it is kept"
-
-
-def test_a_level_edited_before_the_last_episode_of_a_baseline_is_reported(game: Path) -> None:
-    ready_case = prepare_case(read_suite(Path("game.toml")).cases[0], 3)
-    with pytest.raises(TltlError, match=r"TLT0905: `room\.toml` changed while `room:v0` was played"):
-        for recorded in play_episodes(ready_case, 1):
-            if recorded.explained.summary.index == ready_case.case.episodes - 1:
-                edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-
-
-def test_a_level_that_breaks_during_a_run_fails_and_other_levels_are_played(
-    game: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    Path("hall.toml").write_text(ROOM, encoding="utf-8")
-    edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
-    suite = with_baseline(Path("game.toml"))
-    _edited_after("room:v1", lambda: edit("room.toml", "size = [10.0", "siez = [10.0"), monkeypatch)
-    results, played = run("new", suite)
-    assert [done.report.verdict for done in results] == ["pass", "fail", "fail", "pass"]
-    assert "TLT0802" in results[1].report.reasons[2]
-    assert list(played) == ["room:v0", "hall:v0"]
-
-
 class Deadly:
     """A stand-in for a policy that ends the playing process."""
 
@@ -305,15 +206,6 @@ def test_episodes_after_a_gap_are_not_judged(game: Path, monkeypatch: pytest.Mon
             for recorded in play_episodes(prepare_case(read_suite(Path("game.toml")).cases[0], 3), 1)
         )
     assert (error.value, judged_indices) == (lost, [0, 1])
-
-
-def test_a_level_edited_before_its_baseline_is_recorded_is_reported(game: Path) -> None:
-    ready_case = prepare_case(read_suite(Path("game.toml")).cases[0], 3)
-    edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-    with pytest.raises(TltlError, match="TLT0905") as error:
-        next(play_episodes(ready_case, 1))
-    (diagnostic,) = error.value.diagnostics
-    assert diagnostic.title == "`room.toml` changed while `room:v0` was played"
 
 
 def test_a_spec_changed_since_the_training_is_reviewed(game: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.tools.diff.test_breaking import git, needs_git, repository  # noqa: F401
+from tests.tools.diff.repository import _repository, git, needs_git  # noqa: F401
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import Limit
 from tltlc.tools.diff import git as revisions
@@ -42,7 +42,7 @@ def revision(name: str, top: bytes) -> str:
 
 
 @pytest.fixture
-def inside(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:  # noqa: F811
+def inside(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Make temporary folders in a folder with a file of the user, and return that folder."""
     place = tmp_path / "temporary"
     (place / "deep").mkdir(parents=True)

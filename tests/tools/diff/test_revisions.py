@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.interfaces.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.tools.diff.test_breaking import LIBRARY, SPEC, commit, git, needs_git, repository, write  # noqa: F401
+from tests.tools.diff.repository import LIBRARY, SPEC, _repository, commit, git, needs_git, write  # noqa: F401
 
 Run = Callable[..., Outcome]
 
@@ -81,7 +81,7 @@ def test_a_branch_named_like_a_file_is_a_revision(repository: Path, tltlc: Run) 
     ],
 )
 def test_an_object_that_is_no_commit_is_reported(
-    repository: Path,  # noqa: F811
+    repository: Path,
     tltlc: Run,  # noqa: F811
     name: str,
     title: str,
@@ -125,7 +125,7 @@ def test_the_git_folder_itself_is_reported(repository: Path, tltlc: Run, monkeyp
 
 
 def test_a_repository_whose_name_ends_in_a_line_break_works(
-    repository: Path,  # noqa: F811
+    repository: Path,
     tltlc: Run,  # noqa: F811
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -159,7 +159,7 @@ def test_links_are_followed_within_the_revision(repository: Path, tltlc: Run) ->
 
 
 def test_a_link_from_outside_leads_to_the_file_in_the_repository(
-    repository: Path,  # noqa: F811
+    repository: Path,
     tltlc: Run,  # noqa: F811
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
