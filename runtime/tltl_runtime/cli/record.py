@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from shlex import quote
@@ -31,11 +32,11 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc record cover_and_hide
-  tltlc record branching:v1 --by keyboard --episodes 10 -o mine
-  tltlc record --spec my_plan.tltl:careful
-  tltlc record lake.game.toml:small --by keyboard
-  tltlc train --method imitation --demonstrations mine --level branching:v1
+  tltlc record hall.game.toml:small
+  tltlc record lake.game.toml:small --by keyboard --episodes 10 -o mine
+  tltlc record lake.game.toml:small --tape traces/trace-0001.tape.jsonl -o mine
+  tltlc record my_level.toml --spec my_plan.tltl:careful
+  tltlc train --method imitation --demonstrations mine --game lake.game.toml:small
 """
 )
 @click.argument("level", metavar="[LEVEL[:VARIANT]]", required=False)
@@ -62,6 +63,13 @@ Examples:
     help="The seed of the first episode (default: 0; with the keyboard a new seed each time). Try another seed if the "
     "expert fails again and again.",
 )
+@click.option(
+    "--tape",
+    "tapes",
+    metavar="FILE",
+    multiple=True,
+    help="Play this tape of a person again instead, from its own seed. May be given several times.",
+)
 @output_folder("The folder for the recordings (default: demonstrations/LEVEL-VARIANT-SPEC).")
 @keyboard_options
 @level_faults()
@@ -72,41 +80,54 @@ def command(
     spec: str | None,
     episodes: int,
     seed: int | None,
+    tapes: tuple[str, ...],
     folder: Path | None,
     view: str,
     crouch: Crouch,
 ) -> int:
     """Record demonstrations: episodes of an expert or of a person that meet the spec.
 
-    LEVEL may also be a scene, `FILE.game.toml:SCENE`. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz.
-    An episode that fails is not kept; the command says why. If a game in another process is lost, the command goes on
-    with the next episode. Demonstrations that are already in the folder count, so the same command continues where it
-    stopped. Other recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the
-    spec names it.
+    LEVEL is a scene of your game, `FILE.game.toml:SCENE`, or a level of the stealth game that comes with tltlc: its
+    name (`tltlc list levels`) or its file. Each demonstration is a recording LEVEL-VARIANT-SEED.episode.npz. An episode
+    that fails is not kept; the command says why. If a game in another process is lost, the command goes on with the
+    next episode. Demonstrations that are already in the folder count, so the same command continues where it stopped.
+    Other recordings in the folder, and files that cannot be read, stay as they are. You may omit LEVEL if the spec
+    names it.
 
-    The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier.
+    With --tape, each tape that meets the spec becomes a demonstration.
+
+    The exit status is 0 if there are N demonstrations, and 1 if the player stopped earlier. With --tape, it is 0 if all
+    tapes are demonstrations.
     """
     with cli.Report() as report, ignore_closed_pipe():
         from tltl_runtime.game.capability_error import no_expert_error
         from tltl_runtime.game.recorder import closing_on_error
         from tltl_runtime.game.registry import game_of
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
+        from tltl_runtime.training.imitation.tape_episode import PLAYER as TAPE_PLAYER
 
+        if tapes and (by == "keyboard" or seed is not None):
+            raise click.UsageError("a tape has its own player and seed: leave out --by and --seed")
         file, variant = _level_and_variant(level, spec)
         game = game_of(file)
         loaded = game.load_level(file, variant)
+        player = TAPE_PLAYER if tapes else by
         mode = keyboard_of(loaded).render_mode if by == "keyboard" else None
-        env = closing_on_error(game.make_env(file, variant, spec, render_mode=mode), partial(game.recorder, player=by))
+        env = closing_on_error(
+            game.make_env(file, variant, spec, render_mode=mode), partial(game.recorder, player=player)
+        )
         demonstrations: Demonstrations | None = None
         try:
-            if by == "expert" and not game.has_expert(env):
+            if player == "expert" and not game.has_expert(env):
                 raise no_expert_error(loaded)
             task = env.get_wrapper_attr("task")
             folder = folder or Path("demonstrations") / f"{loaded.name}-{loaded.variant}-{task.fspa.name}"
             demonstrations = Demonstrations(folder, loaded, task)
-            for line in _existing_lines(demonstrations, episodes):
+            for line in _existing_lines(demonstrations, 0 if tapes else episodes):
                 click.echo(line, err=True)
-            if demonstrations.count < episodes and by == "keyboard":
+            if tapes:
+                episodes = _record_tapes(env, demonstrations, tapes, report)
+            elif demonstrations.count < episodes and by == "keyboard":
                 _record_person(env, loaded, demonstrations, episodes, seed, view, crouch)
             elif demonstrations.count < episodes:
                 report.add(game.play_warnings(loaded, task.fspa))
@@ -122,7 +143,7 @@ def command(
             env.close()
         click.echo(_count_text(demonstrations, episodes))
         if demonstrations.count < episodes:
-            return cli.exits.FINDINGS
+            return report.status or cli.exits.FINDINGS
         place = f"{level_option(file)} {loaded.name if file == loaded.name else quote(file)}:{quote(variant)}"
         arguments = f"{quote(spec)} {place}" if spec else place
         click.echo(f"to imitate them: tltlc train {arguments} --method imitation --demonstrations {quote(str(folder))}")
@@ -171,6 +192,27 @@ def _record_expert(
     finally:
         if lost := lost_episodes(faults):
             report.add([lost.warning])
+
+
+def _record_tapes(
+    env: EpisodeRecorder[Any], demonstrations: Demonstrations, tapes: Sequence[str], report: cli.Report
+) -> int:
+    """Play tapes again and write those that meet the spec. Return how many demonstrations there are if all do."""
+    from tltl_runtime.cli.support.episode_text import episode_line
+    from tltl_runtime.game.tape import read_tape
+    from tltl_runtime.training.imitation.tape_episode import tape_episode
+
+    failed = 0
+    for name in tapes:
+        try:
+            attempt = demonstrations.add(tape_episode(env, read_tape(name), name))
+        except TltlError as error:
+            report.add(error.diagnostics)
+            failed += 1
+            continue
+        failed += attempt.path is None
+        click.echo(episode_line(attempt.episode, str(attempt.path or f"not kept ({name})")))
+    return demonstrations.count + failed
 
 
 def _record_person(

@@ -16,5 +16,8 @@ def capability_error(level: Level, lack: str, advice: str) -> TltlError:
 
 def no_expert_error(level: Level) -> TltlError:
     """Return the error TLT0731, which says that the game of a level has no scripted expert."""
-    advice = "let a trained policy play and be recorded: `tltlc evaluate POLICY --record all --out DIR`"
+    advice = (
+        "let a trained policy play and be recorded: `tltlc evaluate POLICY --record all --out DIR`, "
+        "or play the tape of a person again: `tltlc record LEVEL --tape FILE`"
+    )
     return capability_error(level, "has no scripted expert", advice)

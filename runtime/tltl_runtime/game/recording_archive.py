@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.game.numpy_archive import ArchiveError, read_array, read_members
 from tltl_runtime.support.load_errors import LoadErrors
-from tltlc.api import Fspa, SourceFile, TltlError, compiler, fileio, record
+from tltlc.api import Diagnostic, Fspa, SourceFile, TltlError, compiler, fileio, record
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -34,6 +34,9 @@ ERRORS: Final = LoadErrors("an", "episode", "TLT0820", "TLT0821", "TLT0822", aga
 STEALTH_FORMAT: Final = "tltl-episode"
 SCENE_FORMAT: Final = "tltl-scene-episode"
 """The formats of recordings. They tell to which game a recording belongs."""
+
+_TAPES: Final = (".tape.jsonl", ".tape.jsonl.gz")
+"""The endings of the names of tapes, which are other files than recordings."""
 
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that contain the bytes of a UTF-8 text."""
@@ -98,6 +101,9 @@ class RecordingArchive:
         try:
             self._members = read_members(data, [*_TEXTS, *arrays], MAX_BYTES)
         except ArchiveError as error:
+            if name.endswith(_TAPES):
+                help_ = "`tltlc record LEVEL --tape FILE` plays a tape again and records the episode"
+                raise TltlError([Diagnostic("TLT0820", f"`{name}` is a tape, not an episode", help=help_)]) from None
             raise ERRORS.unreadable_error(name, str(error)) from None
         if "meta" not in self._members:
             raise ERRORS.unreadable_error(name, "it is another kind of archive")

@@ -26,7 +26,8 @@ from tltlc.api import TltlError
 Run = Callable[..., Outcome]
 NO_EXPERT = (
     "error[TLT0731]: the game of `corridor` has no scripted expert\n"
-    "  help: let a trained policy play and be recorded: `tltlc evaluate POLICY --record all --out DIR`\n"
+    "  help: let a trained policy play and be recorded: `tltlc evaluate POLICY --record all --out DIR`, "
+    "or play the tape of a person again: `tltlc record LEVEL --tape FILE`\n"
 )
 NO_WINDOW = (
     "error[TLT0731]: the game of `corridor` has no window in which a person can play\n"

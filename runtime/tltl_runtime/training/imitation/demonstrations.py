@@ -92,15 +92,17 @@ class Demonstrations:
     def add(self, episode: RecordedEpisode) -> Attempt:
         """Write an episode to the folder if it is a demonstration; otherwise keep nothing.
 
-        The ``path`` of the returned attempt is the new file, or None if nothing was kept. Raises
-        TltlError, TLT0005, if the file cannot be written.
+        The ``path`` of the returned attempt is its file, or None if nothing was kept. A demonstration
+        that the folder already has counts once. Raises TltlError, TLT0005, if the file cannot be written.
         """
         path = None
         if not self._rejection(episode):
             recording = self._game.episode_bytes(episode)
             path = new_path(self.folder, file_stem(episode), recording)
+            is_new = not path.exists()
             fileio.write_files(self.folder, {path.name: recording})
-            self._players_and_seeds.append((episode.player, episode.seed))
+            if is_new:
+                self._players_and_seeds.append((episode.player, episode.seed))
         return Attempt(episode, path, self.count)
 
     def _read(self, path: Path) -> None:

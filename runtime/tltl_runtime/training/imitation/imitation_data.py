@@ -147,6 +147,9 @@ def nothing_to_imitate(folder: Path, left_out: list[str]) -> TltlError:
     help_ = (
         "record demonstrations with `tltlc record`; without --demonstrations, those of the expert are recorded first"
     )
+    if not left_out and any(folder.glob("*.tape.jsonl*")):
+        title += ", only tapes"
+        help_ = "play the tapes again, so that they become demonstrations: `tltlc record LEVEL --tape FILE --out DIR`"
     return TltlError([Diagnostic("TLT0921", title, help=help_)])
 
 
