@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc demonstrate cover_and_hide
-  tltlc demonstrate branching:v1 --episodes 20 -o branching_runs
+  tltlc demonstrate hall.game.toml:small
+  tltlc demonstrate hall.game.toml:small:dark --episodes 20 -o runs
   tltlc demonstrate my_level.toml --spec my_plan.tltl:careful --film gif
 """
 )
@@ -44,7 +44,7 @@ Examples:
 @output_folder("The folder for recordings and plans. It is created if it is missing.", default=Path("demonstrations"))
 @click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Write a film of each episode, too.")
 @notation_option
-@click.option("--careless", is_flag=True, help="Play as if no guard could see the player.")
+@click.option("--careless", is_flag=True, help="In the stealth game: play as if no guard could see the player.")
 @level_faults()
 @slow_starts_shown()
 def command(
@@ -57,12 +57,14 @@ def command(
     notation: Notation,
     careless: bool,
 ) -> int:
-    """Let the expert of a game play a level, or a scene `FILE.game.toml:SCENE`.
+    """Let the expert of a game play, and record it.
 
-    A game of your own has an expert if its environment has a method `tltl_expert()`. For each episode, the command
-    writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the path (.png), and says why an episode failed.
-    Existing files are kept: a different episode with the same name becomes LEVEL-VARIANT-SEED-2, and so on. The exit
-    status is 1 if an episode fails. An episode that is lost with its game is neither a success nor a failure.
+    LEVEL is a scene of your game, `FILE.game.toml:SCENE`, or a level of the stealth game that comes with tltlc: its
+    name (`tltlc list levels`) or its file. A game of your own has an expert if its environment has a method
+    `tltl_expert()`. For each episode, the command writes the recording LEVEL-VARIANT-SEED.episode.npz and a plan of the
+    path (.png), and says why an episode failed. Existing files are kept: a different episode with the same name becomes
+    LEVEL-VARIANT-SEED-2, and so on. The exit status is 1 if an episode fails. An episode that is lost with its game is
+    neither a success nor a failure.
     """
     from tltl_runtime.cli.support.episode_text import episode_line
     from tltl_runtime.game.capability_error import no_expert_error

@@ -39,9 +39,9 @@ _MOST_NAMED: Final = 6
 Examples:
   tltlc evaluate lake_agent
   tltlc evaluate lake_agent --game lake.game.toml:small:slippery --episodes 500 --seed 7 --workers 0
-  tltlc evaluate --level cover_and_hide
-  tltlc evaluate --level branching:v1 --json - > branching.json
-  tltlc evaluate --level branching:v1 --out evaluation --record all
+  tltlc evaluate lake_agent --json - > lake.json
+  tltlc evaluate lake_agent --out evaluation --record all
+  tltlc evaluate --level cover_and_hide           a policy that comes with tltlc, in its level of the stealth game
 """
 )
 @click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc inspect training/cover_and_hide-v0-cover_and_hide-0
+  tltlc inspect lake_agent
   tltlc inspect bots/*.safetensors --format json
   tltlc inspect bot.safetensors -o bot.onnx      the policy for another engine
   tltlc inspect bot.safetensors -o bot.onnx --for ml-agents

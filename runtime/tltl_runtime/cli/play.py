@@ -30,18 +30,21 @@ def _keys() -> str:
 
 @click.command(
     epilog=f"""\b
-Keys:
-{_keys()}
+Keys in a scene:
+  those that `keys` in the game file names, one for each action
+  else those of the environment's `get_keys_to_action()`
+  else 1 to 9
+  R starts again; Escape stops
 
-In a scene of a game file, `FILE.game.toml:SCENE`, the keys are those that `keys` in the game file names, one for each
-action; else those of the environment's `get_keys_to_action()`; else 1 to 9. R starts again; Escape stops.
+\b
+Keys in the stealth game:
+{_keys()}
 
 \b
 Examples:
-  tltlc play cover_and_hide
-  tltlc play branching:v1 --seed 7 -o mine.episode.npz
-  tltlc play my_level.toml --spec my_plan.tltl:careful --view top_down
   tltlc play lake.game.toml:small
+  tltlc play lake.game.toml:small:slippery --seed 7 -o mine.episode.npz
+  tltlc play my_level.toml --spec my_plan.tltl:careful --view top_down
 """
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
@@ -62,7 +65,10 @@ Examples:
 @level_faults()
 @slow_starts_shown()
 def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: str, crouch: Crouch) -> None:
-    """Play a level, or a scene `FILE.game.toml:SCENE`, with the keyboard, in a window.
+    """Play a game with the keyboard, in a window.
+
+    LEVEL is a scene of your game, `FILE.game.toml:SCENE`, or a level of the stealth game that comes with tltlc: its
+    name (`tltlc list levels`) or its file.
 
     The spec judges you while you play: the screen shows what remains to be done. Each episode is recorded to a file,
     also if you stop it. `tltlc replay FILE` shows a recording.

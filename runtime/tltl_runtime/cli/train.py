@@ -52,7 +52,7 @@ Examples:
   tltlc train --game lake.game.toml:small --config settings.toml
   tltlc train --from lake_agent --game lake.game.toml:small:slippery
   tltlc train plans.tltl:careful --level my_level.toml:v1
-  tltlc train cover_and_hide --method imitation --demonstrations mine
+  tltlc train --game lake.game.toml:small --method imitation --demonstrations mine
 
 \b
 Watching, from another terminal:
@@ -60,7 +60,9 @@ Watching, from another terminal:
 """
 )
 @click.argument("spec", metavar="[SPEC[:NAME]]", required=False)
-@level_options("The level (default: the level that the spec names; VARIANT: v0).")
+@level_options(
+    "A level of the stealth game that comes with tltlc (default: the level that the spec names; VARIANT: v0)."
+)
 @output_folder(
     "The folder for the policy and the measurements (default: training/LEVEL-VARIANT-SPEC-SEED; imitation appends "
     "-imitation, --from appends -tuned)."
@@ -132,11 +134,11 @@ def command(
 ) -> int:
     """Train an agent until it meets a spec.
 
-    The agent plays a scene of your game (--game) or a level (--level). SPEC judges and rewards it; the default is the
-    spec that the scene or the level names. The training ends when 100 episodes in a row met the spec and then 300 new
-    episodes of the unchanged policy met it, or at a limit. The folder then contains the policy (policy.safetensors),
-    the record of the training (record.json, curve.png) and the measurements (metrics.jsonl, and event files for
-    TensorBoard). After Ctrl-C, --resume continues.
+    The agent plays a scene of your game (--game), or a level (--level) of the stealth game that comes with tltlc. SPEC
+    judges and rewards it; the default is the spec that the scene or the level names. The training ends when 100
+    episodes in a row met the spec and then 300 new episodes of the unchanged policy met it, or at a limit. The folder
+    then contains the policy (policy.safetensors), the record of the training (record.json, curve.png) and the
+    measurements (metrics.jsonl, and event files for TensorBoard). After Ctrl-C, --resume continues.
 
     The exit status is 0 if the spec was met, and 1 if a limit ended the training.
     """

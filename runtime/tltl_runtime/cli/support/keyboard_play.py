@@ -31,14 +31,14 @@ def keyboard_options(function: Function) -> Function:
         type=click.Choice(_CROUCHES),
         default="hold",
         show_default=True,
-        help="Whether the key C must be held to crouch, or toggles it.",
+        help="In the stealth game: whether the key C must be held to crouch, or toggles it.",
     )
     view = click.option(
         "--view",
         type=click.Choice(_VIEWS),
         default="third_person",
         show_default=True,
-        help="Where the camera is when the window opens.",
+        help="In the stealth game: where the camera is when the window opens.",
     )
     return view(crouch(function))
 

@@ -126,23 +126,23 @@ _OPTIONS = (
         "--entities",
         metavar="A,B",
         type=_Names(),
-        help="The agent observes the positions of these entities, e.g. `s1,exit`.",
+        help="In a level: the agent observes the positions of these entities, e.g. `door,exit`.",
     ),
-    click.option("--no-entities", is_flag=True, help="The agent observes no entity."),
+    click.option("--no-entities", is_flag=True, help="In a level: the agent observes no entity."),
     click.option(
         "--variables",
         metavar="A,B",
         type=_Names(),
-        help="The agent observes these signals, e.g. `health,distance(exit)`.",
+        help="In a level: the agent observes these signals, e.g. `health,distance(exit)`.",
     ),
-    click.option("--no-variables", is_flag=True, help="The agent observes no signal."),
+    click.option("--no-variables", is_flag=True, help="In a level: the agent observes no signal."),
     click.option(
         "--map",
         "map_",
         metavar="KEY=VALUE,…",
         type=_Map(),
-        help="The agent observes a map around itself, e.g. `cell=0.5,extent=15,types=wall,low`. Missing keys keep the "
-        "values of the level.",
+        help="In a level: the agent observes a map around itself, e.g. `cell=0.5,extent=15,types=wall,low`. Missing "
+        "keys keep the values of the level.",
     ),
-    click.option("--no-map", is_flag=True, help="The agent observes no map."),
+    click.option("--no-map", is_flag=True, help="In a level: the agent observes no map."),
 )

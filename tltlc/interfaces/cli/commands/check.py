@@ -44,15 +44,14 @@ class CheckCommand(click.Command):
     epilog="""\b
 Examples:
   tltlc check                                    all .tltl files in this folder and its subfolders
-  tltlc check cover_and_hide.tltl
+  tltlc check leave.tltl
   tltlc check levels                             another folder
   tltlc check --format github levels             annotations on a pull request
   tltlc check --format sarif levels > tltlc.sarif
-  tltlc check cover_and_hide.tltl --level vault.toml
-  tltlc check --level navigation:v1              a level against its own spec
-  tltlc check --level all --help                 more options for levels
-  tltlc check --game doorkey.game.toml           all scenes of a game, each against its own spec
-  tltlc check fetch.tltl --game doorkey.game.toml:small
+  tltlc check --game lake.game.toml              all scenes of a game, each against its own spec
+  tltlc check lake.tltl --game lake.game.toml:small
+  tltlc check vault.tltl --level vault.toml      a level of the stealth game that comes with tltlc
+  tltlc check --level all --help                 more options for such levels
 """,
 )
 @click.argument("specs", metavar="[SPEC_OR_FOLDER]...", nargs=-1)
@@ -61,8 +60,8 @@ Examples:
     "levels",
     metavar="LEVEL[:VARIANT]",
     multiple=True,
-    help="Check that this level has everything the specs use (repeatable). LEVEL is a .toml file, the name of a level "
-    "that comes with tltlc, or `all` for all of these. Without VARIANT, all variants are checked.",
+    help="Check that this level of the stealth game has everything the specs use (repeatable). LEVEL is a .toml file, "
+    "the name of a level that comes with tltlc, or `all` for all of these. Without VARIANT, all variants are checked.",
 )
 @click.option(
     "--game",
@@ -84,10 +83,10 @@ def command(
     """Report all errors and warnings of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
     In a folder, all .tltl files are checked, also those in subfolders. The default is the current folder.
-    With --level, the command also reports what a spec needs and the level lacks, and what nobody can reach there;
-    without SPEC, it uses the spec of the level. With --game, it also plays each scene twice, and reports what the game
-    offers, how fast it is, and whether equal seeds and actions give equal plays. The exit status is 1 if there is an
-    error, and 0 otherwise.
+    With --game, the command also plays each scene of a game twice, and reports what the game offers, how fast it is,
+    and whether equal seeds and actions give equal plays. With --level, it also reports what a spec needs and a level of
+    the stealth game lacks, and what nobody can reach there. Without SPEC, both use the specs of the scenes or levels.
+    The exit status is 1 if there is an error, and 0 otherwise.
     """
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.interfaces.cli.folders import every_source

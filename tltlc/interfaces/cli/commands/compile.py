@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc compile cover_and_hide.tltl                  three files in the current folder
-  tltlc compile cover_and_hide.tltl -o build -t json,svg
+  tltlc compile leave.tltl                           three files in the current folder
+  tltlc compile leave.tltl -o build -t json,svg
   tltlc compile levels.tltl --spec level_1 --spec level_2
   tltlc compile build/level_1.fspa.json -t python    from an artefact
   tltlc compile levels -o Assets/Specs -t csharp --watch    all .tltl files in the folder and its subfolders

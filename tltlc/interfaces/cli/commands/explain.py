@@ -21,7 +21,7 @@ _CODE_LIKE: Final = re.compile(r"(?i)\A\s*tlt[0-9a-z]*\s*\Z")
 @click.command(
     epilog="""\b
 Examples:
-  tltlc explain cover_and_hide.tltl
+  tltlc explain leave.tltl
   tltlc explain levels.tltl:level_1 --format markdown
   tltlc explain levels --format markdown > levels.md    every spec of a folder
   tltlc explain TLT0201

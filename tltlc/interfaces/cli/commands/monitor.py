@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc monitor cover_and_hide.tltl run.csv
+  tltlc monitor leave.tltl run.csv
   tltlc monitor levels.tltl:level_1 run.jsonl --json
   my_game --log | tltlc monitor level_1.tltl -       while the game runs
   tltlc monitor level_1.tltl traces/ more/*.csv      a line for each trace, and a summary

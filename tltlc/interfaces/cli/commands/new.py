@@ -28,8 +28,8 @@ Examples:
 @click.option(
     "--level",
     metavar="LEVEL",
-    help="Copy a level of the stealth game, with its spec, assets and overlays: the small level `vault`, or one from "
-    "`tltlc list levels`.",
+    help="Copy a level of the stealth game that comes with tltlc, with its spec, assets and overlays: the small level "
+    "`vault`, or one from `tltlc list levels`.",
 )
 @click.option(
     "--game",

@@ -27,9 +27,9 @@ _TARGET_OF_ENDING = {
 @click.command(
     epilog="""\b
 Examples:
-  tltlc render cover_and_hide.tltl -o cover_and_hide.svg
+  tltlc render leave.tltl -o leave.svg
   tltlc render levels.tltl:level_1 -t png -o level_1.png
-  tltlc render cover_and_hide.tltl -t mermaid        on standard output
+  tltlc render leave.tltl -t mermaid                 on standard output
 """
 )
 @click.argument("spec", metavar="SPEC[:NAME]")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   tltlc test                         all .tltl files in this folder and its subfolders
-  tltlc test cover_and_hide.tltl
+  tltlc test leave.tltl
   tltlc test levels.tltl:level_1     only the tests of that spec
   tltlc test levels                  another folder
 """

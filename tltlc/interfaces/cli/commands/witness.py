@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc witness cover_and_hide.tltl                                    two test blocks to paste into the file
+  tltlc witness leave.tltl                                             two test blocks to paste into the file
   tltlc witness levels.tltl:level_1 --rejecting --as csv > broken.csv
-  tltlc witness cover_and_hide.tltl --cover --as csv -o traces         every edge of the automaton
+  tltlc witness leave.tltl --cover --as csv -o traces                  every edge of the automaton
 """
 )
 @click.argument("spec", metavar="SPEC[:NAME]")
