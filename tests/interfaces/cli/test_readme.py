@@ -25,8 +25,8 @@ def test_specs_of_the_readme_compile_and_pass(tltlc, inside: Path) -> None:  # t
 def test_the_error_message_of_the_readme_is_current(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     example = re.search(r"```\n(error.*?)```", README, re.DOTALL)
     assert example
-    before = "import stealth\nentity s1\n\n\n\n\n\nspec near_it {\n"
-    Path("sneak.tltl").write_text(before + "    keep near(s1, close = 3 s)\n}\n")
+    before = "import stealth\nentity chest\n\n\n\n\n\nspec near_it {\n"
+    Path("sneak.tltl").write_text(before + "    keep near(chest, close = 3 s)\n}\n")
     assert tltlc("check", "sneak.tltl").err == example[1]
 
 
