@@ -26,3 +26,8 @@ def check_traces(folder: Path, tmp_path: Path, number: int) -> None:
     words = [sys.executable, "-m", "tltlc", "monitor", str(spec), *traces]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert "1 of 2 accepted" in result.stdout, result.stderr
+
+
+def cells(row: str) -> list[float | str]:
+    """Return the cells of a row, with numbers as floats."""
+    return [cell if cell in ("true", "false") else float(cell) for cell in row.split(",")]

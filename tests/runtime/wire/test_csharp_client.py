@@ -19,6 +19,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.runtime.wire import conversation, recorded_tapes
+from tests.runtime.wire.recorded_traces import cells
 from tests.runtime.wire.test_env import connected, free_port
 from tests.runtime.wire.test_faults import GAMES
 from tests.waiting import HANG_S
@@ -498,8 +499,3 @@ def test_a_recorder_writes_the_tape_of_a_play(driver: str, tmp_path: Path) -> No
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"
     assert not (tmp_path / "trace-0003.tape.jsonl").exists()
     recorded_tapes.check_tape_without_a_variant(tmp_path / "trace-0004.tape.jsonl")
-
-
-def cells(row: str) -> list[float | str]:
-    """Return the cells of a row, with numbers as floats."""
-    return [cell if cell in ("true", "false") else float(cell) for cell in row.split(",")]
