@@ -169,6 +169,9 @@ POLICY: Final = Limit(size=1 << 26)
 CHECKPOINT: Final = Limit(size=1 << 30, depth=32, values=1_000_000)
 """A checkpoint of a training run."""
 
+FOUND_WAYS: Final = Limit(size=1 << 28, depth=8, values=20_000_000)
+"""The ways that a search before a training has found; ``values`` counts mostly numbers of actions."""
+
 MEASUREMENTS: Final = Limit(size=1 << 30)
 """The measurements of a training run, one line per iteration; :data:`TRACE_LINE` limits each line."""
 

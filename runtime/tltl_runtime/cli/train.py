@@ -214,7 +214,8 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     If the training is resumed without a checkpoint, it starts again. Then the last line says what
     happens to its files.
     """
-    from tltl_runtime.cli.support.training_text import limits_line
+    from tltl_runtime.cli.support.training_text import kept_ways_text, limits_line
+    from tltl_runtime.training.files.found_ways import WaysFile
     from tltl_runtime.training.files.metrics import METRICS
     from tltl_runtime.training.files.run_file import CHECKPOINT, POLICY, RECORD
 
@@ -229,6 +230,10 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
         yield f"it begins with the weights of {run.initial.path}{critic_note}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or (run.folder / CHECKPOINT).exists():
+        return
+    found = WaysFile(run).read() if run.settings.searches else None
+    if found and not files:
+        yield f"it was stopped during its search, which goes on {kept_ways_text(len(found.demonstrations))}"
         return
     if not files:
         yield f"it was interrupted before it learned anything: with no {CHECKPOINT}, it starts from its beginning"

@@ -181,7 +181,7 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
         "searching first for ways to meet the spec, with random actions. "
         "The search ends when 2 ways are found, at the latest after 640 steps."
     )
-    assert lost == "Ctrl-C stops it; when you continue, an unfinished search starts again."
+    assert lost == "Ctrl-C stops it and keeps the ways found; when you continue, it looks for the others."
     assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume second" in lines
 
 

@@ -13,8 +13,8 @@ from rich.live import Live
 
 from tltl_runtime.cli.support.training_picture import TrainingDisplay
 from tltl_runtime.cli.support.training_text import (
-    SEARCH_IS_LOST,
     SEARCHED_AGAIN,
+    WAYS_ARE_KEPT,
     demonstrations_line,
     dropped_line,
     environments_line,
@@ -124,7 +124,7 @@ class _LineDisplay:
             method = "the policy, then with random actions" if begins else "random actions"
             end = search_end(self._run.settings.exploration)
             self._print(f"searching first for ways to meet the spec, with {method}. {end}", always=True)
-            self._print(SEARCH_IS_LOST, always=True)
+            self._print(WAYS_ARE_KEPT, always=True)
             self._next = 0.0
         self._has_searched = True
         self._print(

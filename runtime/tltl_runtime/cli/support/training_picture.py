@@ -13,7 +13,7 @@ from rich.text import Text
 
 from tltl_runtime.cli.support.place_title import place_title
 from tltl_runtime.cli.support.training_text import (
-    SEARCH_IS_LOST,
+    WAYS_ARE_KEPT,
     confirmation_line,
     demonstrations_line,
     dropped_line,
@@ -125,7 +125,7 @@ class TrainingDisplay:
         fraction = min(1.0, searched.steps / exploration.steps)
         most = f"of at most {exploration.steps:,} steps"
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
-        lines = filter(None, (self._plan, search_line(searched, exploration), search_end(exploration), SEARCH_IS_LOST))
+        lines = filter(None, (self._plan, search_line(searched, exploration), search_end(exploration), WAYS_ARE_KEPT))
         return Group(table, Text("\n" + "\n\n".join(lines)))
 
     def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 
 from tltl_runtime.cli.support.training_display import display
+from tltl_runtime.cli.support.training_text import kept_ways_text
+from tltl_runtime.training.files.found_ways import WaysFile
 from tltl_runtime.training.files.report import TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, RUN, TrainingRun
 from tltl_runtime.training.run.train import train
@@ -41,8 +43,15 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
     """Say that Ctrl-C has stopped a training, and how to go on; None if the training had not started."""
     if not (run.folder / RUN).exists():
         return None
-    before = "during the search, which will start again" if run.settings.searches else "before the first iteration"
-    return f"stopped{'' if (run.folder / CHECKPOINT).exists() else f' {before}'}; to go on: {again}"
+    if (run.folder / CHECKPOINT).exists():
+        before = ""
+    elif not run.settings.searches:
+        before = " before the first iteration"
+    elif found := WaysFile(run).read():
+        before = f" during the search, which will go on {kept_ways_text(len(found.demonstrations))}"
+    else:
+        before = " during the search, which will start again"
+    return f"stopped{before}; to go on: {again}"
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.settings import Stop, TrainingSettings
 from tltl_runtime.training.imitation.demonstrations import Attempt, ImitationSummary
 
-SEARCH_IS_LOST: Final = "Ctrl-C stops it; when you continue, an unfinished search starts again."
+WAYS_ARE_KEPT: Final = "Ctrl-C stops it and keeps the ways found; when you continue, it looks for the others."
 SEARCHED_AGAIN: Final = "the pass rate no longer rises: a random search for ways starts from where episodes failed"
 
 
@@ -111,6 +111,11 @@ def search_line(progress: SearchProgress, exploration: SearchSettings) -> str:
         left_s = progress.seconds / progress.steps * (exploration.steps - progress.steps)
         left = f", at most {duration(left_s)} left" if left_s > 0 else ""
     return f"searching: {spent}, {progress.places:,} places, {ways}{left}"
+
+
+def kept_ways_text(count: int) -> str:
+    """Say in a clause how many ways a search that was stopped has found and kept."""
+    return f"with the {count} ways that it has found" if count > 1 else "with the way that it has found"
 
 
 def search_end(exploration: SearchSettings) -> str:

@@ -38,6 +38,7 @@ from tltl_runtime.training.files.run_file import (
     POLICY,
     RECORD,
     RUN,
+    WAYS,
     TrainingRun,
     identity,
     read_level_hash,
@@ -104,7 +105,7 @@ def is_stored(run: TrainingRun) -> bool:
     except TltlError:
         # The training is damaged or has another version.
         return False
-    # A training that was stopped during its search has no checkpoint yet; the search starts again.
+    # A training that was stopped during its search has no checkpoint yet; the search goes on with the ways found.
     is_finished = (run.folder / RECORD).exists()
     return not is_finished or (checkpoint is not None and (run.folder / POLICY).exists())
 
@@ -147,7 +148,7 @@ def make_room(suite: Suite, folder: Path) -> Path | None:
         TltlError: TLT0005, a file cannot be removed, or the folder cannot be moved; TLT0865,
             another process trains there.
     """
-    names = (RUN, CHECKPOINT, POLICY, CURVE, METRICS, EPISODE, _RESULT)
+    names = (RUN, CHECKPOINT, WAYS, POLICY, CURVE, METRICS, EPISODE, _RESULT)
     with lock_training(folder):
         if not (folder / RECORD).exists():
             for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):

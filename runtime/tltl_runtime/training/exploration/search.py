@@ -131,6 +131,14 @@ def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchPr
 
 
 @record
+class FoundWays:
+    """The demonstrations that a search had found when it was stopped, and its progress then."""
+
+    progress: SearchProgress
+    demonstrations: tuple[SuccessfulEpisode, ...]
+
+
+@record
 class FailedEpisode:
     """A failed episode from the level's start: its seed and all actions.
 
@@ -153,6 +161,10 @@ class TrajectorySearch:
     which they failed. Without ``failures``, it starts at the level's start. If there is a
     ``policy``, it plays the first episode of each environment; random actions then continue from
     the cells that it reached. What happens to games that are lost is added to ``faults``.
+
+    With ``found``, the search goes on after an earlier one that was stopped: it begins with the
+    demonstrations of that search, and with its steps and seconds. The places that it had reached are
+    lost.
     """
 
     def __init__(
@@ -163,27 +175,35 @@ class TrajectorySearch:
         failures: Sequence[FailedEpisode] = (),
         policy: PolicyFunction | None = None,
         faults: list[Diagnostic] | None = None,
+        found: FoundWays | None = None,
     ) -> None:
         self._env = env
         self._policy = policy
         self._faults = faults
         self._exploration = exploration
-        self._failures = list(failures)
+        self._before = found.progress if found else SearchProgress(0, 0, 0.0, 0, (), complete=False)
+        self.demonstrations: list[SuccessfulEpisode] = list(found.demonstrations) if found else []
+        known_seeds = {demonstration.seed for demonstration in self.demonstrations}
+        self._failures = [failure for failure in failures if failure.seed not in known_seeds]
         self._states = {failure.state for failure in failures}
         self._random = np.random.default_rng(seed)
         self._archive = _CellArchive(self._random)
         self._cells: set[tuple[int, int]] = set()
         self._dropped_starts = self._dropped_cells = 0
-        self.demonstrations: list[SuccessfulEpisode] = []
 
     def run(self) -> Iterator[SearchProgress]:
-        """Search until the settings' limits; yield the progress from time to time, and once at the end."""
-        began = reported = time.perf_counter()
+        """Search until the settings' limits.
+
+        Yield the progress from time to time, after each demonstration, and once at the end.
+        """
+        reported = time.perf_counter()
+        began = reported - self._before.seconds
         episodes = EpisodesInProgress(self._env, self._draw, self._faults)
         action = self._random_actions()
         decisions_left = np.full(self._env.num_envs, _RANDOM_DECISIONS)
         by_policy = np.full(self._env.num_envs, self._policy is not None)
-        observation, steps = episodes.observation, 0
+        observation, steps = episodes.observation, self._before.steps
+        reported_ways = len(self.demonstrations)
         while steps < self._exploration.steps and len(self.demonstrations) < self._exploration.ways:
             repeated = self._random.random(action.shape) < _REPEAT_PROBABILITY
             action = np.where(repeated, action, self._random_actions())
@@ -211,8 +231,8 @@ class TrajectorySearch:
                 episodes.cut_off(used_up)
             decisions_left[over | used_up] = _RANDOM_DECISIONS
             self._drop(episodes.unrepeated)
-            if time.perf_counter() - reported > _REPORT_INTERVAL_S:
-                reported = time.perf_counter()
+            if len(self.demonstrations) > reported_ways or time.perf_counter() - reported > _REPORT_INTERVAL_S:
+                reported_ways, reported = len(self.demonstrations), time.perf_counter()
                 yield self._progress(steps, episodes, reported - began, complete=False)
         yield self._progress(steps, episodes, time.perf_counter() - began, complete=True)
 
@@ -271,9 +291,8 @@ class TrajectorySearch:
 
     def _progress(self, steps: int, episodes: EpisodesInProgress, seconds: float, *, complete: bool) -> SearchProgress:
         lengths = tuple(sorted(len(demonstration.actions) for demonstration in self.demonstrations))
-        return SearchProgress(
-            steps, episodes.replayed, seconds, len(self._cells), lengths, complete, self._dropped_cells
-        )
+        replayed, dropped = self._before.replayed + episodes.replayed, self._before.dropped + self._dropped_cells
+        return SearchProgress(steps, replayed, seconds, len(self._cells), lengths, complete, dropped)
 
 
 class _CellArchive:

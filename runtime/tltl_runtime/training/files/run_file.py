@@ -28,6 +28,7 @@ CHECKPOINT: Final = "checkpoint.pt"
 POLICY: Final = "policy.safetensors"
 RECORD: Final = "record.json"
 CURVE: Final = "curve.png"
+WAYS: Final = "ways.json"
 DEMONSTRATIONS: Final = "demonstrations"
 
 MAY_CHANGE: Final = frozenset(

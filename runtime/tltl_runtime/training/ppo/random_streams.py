@@ -24,10 +24,14 @@ class Purpose(IntEnum):
     INITIAL = 5
 
 
-def stream(run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:
-    """Return the seed of a random stream, one for each process, purpose and iteration.
+def stream(
+    run: TrainingRun, group: ProcessGroup, purpose: Purpose, iteration: int = 0, part: int = 0
+) -> np.random.SeedSequence:
+    """Return the seed of a random stream, one for each process, purpose, iteration and part.
 
-    ``iteration`` is the iteration after which the stream begins. So a training that is resumed does
-    not repeat the random numbers that it used before.
+    ``iteration`` is the iteration after which the stream begins, and ``part``, from 0, is the part of
+    a search that was stopped and goes on. So a training that is resumed does not repeat the random
+    numbers that it used before.
     """
-    return np.random.SeedSequence(run.seed, spawn_key=(group.rank, int(purpose), iteration))
+    key = (group.rank, int(purpose), iteration)
+    return np.random.SeedSequence(run.seed, spawn_key=(*key, part) if part else key)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
-from tltl_runtime.training.exploration.search import PolicyFunction, SearchProgress, TrajectorySearch
+from tltl_runtime.training.exploration.search import FoundWays, PolicyFunction, SearchProgress, TrajectorySearch
 from tltl_runtime.training.files.checkpoint import Checkpoint
+from tltl_runtime.training.files.found_ways import WaysFile
 from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.ppo.environment import TrainingEnv
@@ -34,16 +36,19 @@ def search_before_training(
     episodes. What happens to games that are lost is added to ``faults``. Return the progress of the
     search, or None if no search is needed. With a ``checkpoint``, a search is needed only if the
     earlier search was interrupted, for example by the limit of minutes, before it found a
-    demonstration, and if time is left now.
+    demonstration, and if time is left now. If an earlier search was stopped, the search goes on with
+    the demonstrations that the earlier one stored.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
         if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(seconds):
             return None
-    seed = stream(run, group, Purpose.SEARCH, iteration)
-    search = TrajectorySearch(env, run.settings.exploration, seed, policy=policy, faults=faults)
-    return _run_search(run, search, curriculum, seconds, on_search)
+    file = _ways_file(run, group, checkpoint)
+    found = file.read(ActionEncoding(env.single_action_space))
+    seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
+    search = TrajectorySearch(env, run.settings.exploration, seed, policy=policy, faults=faults, found=found)
+    return _run_search(run, search, curriculum, seconds, on_search, file)
 
 
 def search_after_standstill(
@@ -53,14 +58,24 @@ def search_after_standstill(
 
     ``state`` is the state of the training. All environments begin new episodes after the search.
     Return the progress of the search. If no failed episodes are known, do nothing and return None.
+    If an earlier search of this standstill was stopped, the search goes on with the demonstrations
+    that the earlier one stored.
     """
     if env.curriculum is None or not env.curriculum.failures:
         return None
+    file = _ways_file(run, group, state)
+    found = file.read(ActionEncoding(env.env.single_action_space))
     seed = stream(run, group, Purpose.SEARCH, state.iteration)
-    search = TrajectorySearch(env.env, run.settings.exploration, seed, env.curriculum.failures, faults=env.faults)
-    progress = _run_search(run, search, env.curriculum, state.seconds, on_search)
+    failures = env.curriculum.failures
+    search = TrajectorySearch(env.env, run.settings.exploration, seed, failures, faults=env.faults, found=found)
+    progress = _run_search(run, search, env.curriculum, state.seconds, on_search, file)
     env.restart_episodes()
     return progress
+
+
+def _ways_file(run: TrainingRun, group: ProcessGroup, state: Checkpoint | None) -> WaysFile:
+    """Return the file for the demonstrations of the next search of this process, which begins in ``state``."""
+    return WaysFile(run, group.rank, state.searched.steps if state and state.searched else 0)
 
 
 def _run_search(
@@ -69,13 +84,19 @@ def _run_search(
     curriculum: ReverseCurriculum,
     seconds_before: float,
     on_search: SearchCallback,
+    file: WaysFile,
 ) -> SearchProgress:
     """Run a search, add its demonstrations to the curriculum, and return its progress.
 
     The search ends early at the training's limit of minutes. ``seconds_before`` is the time that
-    the training has taken before the search.
+    the training has taken before the search. The demonstrations found so far are in ``file``, so
+    that a search that is stopped does not lose them.
     """
+    stored = len(search.demonstrations)
     for progress in search.run():
+        if len(search.demonstrations) > stored:
+            file.write(FoundWays(progress, tuple(search.demonstrations)))
+            stored = len(search.demonstrations)
         on_search(progress)
         if run.settings.stop.is_out_of_time(seconds_before + progress.seconds):
             break

@@ -16,6 +16,7 @@ from tltl_runtime.support.record_json import RecordJsonError
 from tltl_runtime.training.exploration.search import SearchProgress, combined_progress
 from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
+from tltl_runtime.training.files.found_ways import remove_ways
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
 from tltl_runtime.training.files.settings import algorithm_name, rsl_config
@@ -194,6 +195,7 @@ class _Training:
         self._seconds_before, self._started = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
         self._standstill, self._is_standstill = Standstill(*self._state.standstill), False
+        self._may_have_ways = True
         self._files = TrainingFiles(run, self._card, checkpoint) if group.rank == 0 else None
         self._update_gail_time()
 
@@ -219,6 +221,10 @@ class _Training:
     def _finish_iteration(self, iteration: Iteration) -> TrainingReport:
         """Update the state after an iteration; write its metrics and, if due, a checkpoint."""
         exchange = gather_iteration(self._group, iteration, self._runner)
+        if self._may_have_ways:
+            # All processes have begun to learn, so the ways of the last search are in a checkpoint.
+            remove_ways(self._run.folder, self._group.rank)
+            self._may_have_ways = False
         iteration = exchange.iteration
         self._episodes.add(iteration.finished)
         self._lost = together((self._lost, iteration.lost))
@@ -275,6 +281,7 @@ class _Training:
             if self._files:
                 # Save now, so that a process that is killed soon need not repeat the search.
                 self._files.save(self._state)
+            self._may_have_ways = True
 
     def _seconds(self) -> float:
         """Return the training time so far, in seconds.
