@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import weakref
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
 
 import gymnasium
@@ -80,6 +80,9 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     waits for a command, until the method returns False. So the environment can prepare the next reset
     in small steps.
 
+    While the environments are made, ``on_made`` is called from time to time with the number of those
+    that are made; not on a Ray cluster.
+
     Functions that cannot be imported, such as lambdas, are pickled by value. A process starts by
     importing the main module, so a script needs ``if __name__ == "__main__"`` around its own work.
 
@@ -100,6 +103,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         info: Mapping[str, DTypeLike] | None = None,
         on_death: Literal["stop", "replace"] = "stop",
         timeout: float = TIMEOUT_S,
+        on_made: Callable[[int], None] | None = None,
     ) -> None:
         autoreset = AutoresetMode(autoreset)
         check_arguments(functions, workers, names, autoreset, on_death)
@@ -132,7 +136,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             shares = list(split_evenly(self.num_envs, min(workers or cores(), self.num_envs)))
             self._workers = Workers(context, functions, shares, self._rows, autoreset, timeout)
         self._finalizer = weakref.finalize(self, self._workers.close)
-        for loss in self._workers.start(range(len(self._workers.shares))):
+        for loss in self._workers.start(range(len(self._workers.shares)), on_made):
             self._stop(loss)
 
     def reset(

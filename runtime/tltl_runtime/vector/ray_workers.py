@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from typing import Any
 
@@ -64,9 +64,10 @@ class RayWorkers:
         """Return None: an actor's process may be on another machine."""
         return None
 
-    def start(self, workers: Sequence[int]) -> list[Loss]:
+    def start(self, workers: Sequence[int], on_made: Callable[[int], None] | None = None) -> list[Loss]:
         """Start the workers with these indices, and wait until they have made their environments.
 
+        ``on_made`` is not called, because a cluster does not share memory with this process.
         Return a :class:`Loss` for each worker that was lost while it started.
 
         Raises:

@@ -36,6 +36,7 @@ class Rows:
     - ``step`` counts the steps of the episode, including a step in progress; ``total`` is the sum of
       the episode's rewards.
     - ``busy`` says whether the environment is in a reset or a step.
+    - ``made`` says whether the worker has made the environment.
     - ``info`` are further columns, by name.
     - ``table`` is the structured array with all columns of all rows.
 
@@ -64,6 +65,7 @@ class Rows:
                 ("step", np.int64),
                 ("total", np.float64),
                 ("busy", np.bool_),
+                ("made", np.bool_),
                 ("info", np.dtype(list(info.items()), align=True)),
             ],
             align=True,
@@ -85,6 +87,7 @@ class Rows:
         self.action = _columns(self.spaces["action_space"], rows["action"])
         self.reward, self.terminated, self.truncated = rows["reward"], rows["terminated"], rows["truncated"]
         self.episode, self.step, self.total, self.busy = rows["episode"], rows["step"], rows["total"], rows["busy"]
+        self.made = rows["made"]
         self.info: dict[str, NDArray[Any]] = {name: rows["info"][name] for name in rows.dtype["info"].names or ()}
 
 

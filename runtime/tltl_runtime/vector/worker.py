@@ -70,7 +70,10 @@ class Share:
         self._rows = rows
         self._first = first
         self._same_step = autoreset == AutoresetMode.SAME_STEP
-        self._envs = [make() for make in functions]
+        self._envs: list[gymnasium.Env[Any, Any]] = []
+        for row, make in enumerate(functions, first):
+            self._envs.append(make())
+            rows.made[row] = True
         self._preparing = [env.prepare for env in self._envs if hasattr(env, "prepare")]
         self._is_over = [False] * len(self._envs)
         for row, env in enumerate(self._envs, first):

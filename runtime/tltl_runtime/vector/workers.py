@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import selectors
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkServerContext, ForkServerProcess, SpawnContext, SpawnProcess
 from typing import Any, Final
@@ -25,6 +25,9 @@ If the ``timeout`` of the workers is longer, that time counts instead.
 """
 _TO_END_S: Final = 5.0
 """The seconds that a worker may take to end after a command to close, or after it was killed."""
+
+_REPORT_S: Final = 1.0
+"""The seconds between two looks at how many environments are made."""
 
 
 class Workers:
@@ -65,10 +68,12 @@ class Workers:
         """Return the process id of a worker."""
         return self._processes[worker].pid
 
-    def start(self, workers: Sequence[int]) -> list[Loss]:
+    def start(self, workers: Sequence[int], on_made: Callable[[int], None] | None = None) -> list[Loss]:
         """Start the workers with these indices, and wait until they have made their environments.
 
-        Return a :class:`Loss` for each worker that was lost while it started.
+        While some are still made, ``on_made`` is called with the number of environments that are made,
+        each time that it has grown, about once a second. Return a :class:`Loss` for each worker that was
+        lost while it started.
         """
         for worker in workers:
             ours, theirs = self._context.Pipe()
@@ -86,7 +91,9 @@ class Workers:
             self._processes[worker], self._connections[worker] = process, ours
             self._watch(worker)
         patience = max(self._timeout, TO_START_S)
-        return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
+        return [
+            replace(answer, starting=True) for answer in self.answers(patience, on_made) if isinstance(answer, Loss)
+        ]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Send a command to all workers, each with its own arguments; return their answers in order.
@@ -104,17 +111,23 @@ class Workers:
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self._connections[worker].send((command, arguments))
 
-    def answers(self, patience: float | None = None) -> list[Any]:
+    def answers(self, patience: float | None = None, on_made: Callable[[int], None] | None = None) -> list[Any]:
         """Wait for the pending answers, and return them in the order of the workers.
 
         A worker that does not answer within ``patience`` seconds, by default ``timeout``, is killed.
-        The answer of a lost worker is a :class:`Loss`.
+        The answer of a lost worker is a :class:`Loss`. ``on_made`` is that of :meth:`start`.
         """
         patience = self._timeout if patience is None else patience
         deadline = time.monotonic() + patience
         answers: dict[int, Any] = {}
+        made = 0
         while self._pending:
-            ready = self._ready(deadline)
+            ready = self._ready(deadline if on_made is None else min(deadline, time.monotonic() + _REPORT_S))
+            if on_made and (count := int(self._rows.made.sum())) > made:
+                made = count
+                on_made(made)
+            if not ready and time.monotonic() < deadline:
+                continue
             for worker in ready or tuple(self._pending):
                 answers[worker] = self._answer(worker) if ready else self._end_lost(worker, silent=patience)
         return [answers[worker] for worker in sorted(answers)]
