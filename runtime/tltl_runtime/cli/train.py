@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from shlex import quote
@@ -112,7 +113,9 @@ Watching, from another terminal:
     metavar="M",
     type=float,
     callback=_setting("stop", "minutes"),
-    help="Stop after this many minutes of training (0: no limit, as in new trainings).",
+    help="Stop when the command has run for this many minutes, the starts of the games and the search included, but "
+    "after the first iteration at the earliest (0: no limit, as in new trainings). Earlier runs of a resumed training "
+    "count.",
 )
 @click.option(
     "--workers",
@@ -142,6 +145,7 @@ def command(
 
     The exit status is 0 if the spec was met, and 1 if a limit ended the training.
     """
+    began = time.perf_counter()
     if resume is not None and folder is not None:
         raise click.UsageError(
             "--resume continues in the folder of the training: leave out --out", click.get_current_context()
@@ -190,7 +194,7 @@ def command(
             game = game_of(run.level)
             report.add(game.play_warnings(game.load_level(run.level, run.variant), run.fspa))
         try:
-            last = train_with_display(run, resume=resume is not None, again=again)
+            last = train_with_display(run, resume=resume is not None, again=again, began=began)
         except KeyboardInterrupt:
             if is_first and (stopped := stopped_line(run, again)):
                 click.echo(stopped, err=True)
@@ -269,6 +273,11 @@ def _end_lines(run: TrainingRun, last: TrainingReport, again: str) -> Iterator[s
             from tltl_runtime.cli.support.training_text import no_search_line
 
             yield no_search_line(last.plan)
+        elif last.searched:
+            from tltl_runtime.cli.support.training_text import search_advice
+
+            if advice := search_advice(last.plan, last.searched):
+                yield f"the search found no way: {advice}"
         yield f"to go on with a higher limit: {again} --{last.stop} N"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import redirect_stdout
 from typing import Any
 
@@ -37,10 +37,13 @@ class Runner(OnPolicyRunner):
     """
 
     env: TrainingEnv
+    is_out_of_time: Callable[[], bool]
+    """Says whether the limit of minutes has passed; by default, there is none."""
 
     def __init__(
         self, env: TrainingEnv, train_cfg: dict[str, Any], log_dir: str | None = None, device: str = "cpu"
     ) -> None:
+        self.is_out_of_time = lambda: False
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
         if not self.is_distributed:
@@ -86,7 +89,11 @@ class Runner(OnPolicyRunner):
                 parameter.mul_(factor)
 
     def iterations(self) -> Iterator[Iteration]:
-        """Run iterations without end; yield the result of each."""
+        """Run iterations; yield the result of each.
+
+        Before each step, ask :attr:`is_out_of_time`. If it says so after the first iteration, drop the
+        steps of the current iteration, and end.
+        """
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
@@ -95,6 +102,8 @@ class Runner(OnPolicyRunner):
             observation = self.env.get_observations().to(self.device)
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):
+                    if self.current_learning_iteration and self.is_out_of_time():
+                        return
                     observation = self._step(observation)
                 self.alg.compute_returns(observation)
             collected = time.perf_counter()

@@ -13,12 +13,14 @@ from tltl_runtime.cli.support.training_text import (
     measuring_line,
     minutes,
     report_line,
+    search_advice,
     search_end,
     search_line,
     search_result_line,
     seconds_left,
 )
 from tltl_runtime.training.exploration.search import SearchProgress
+from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.report import Confirmation
 from tltl_runtime.training.files.settings import Stop, read_settings
 from tltlc.core.record import replace
@@ -110,3 +112,15 @@ def test_durations_have_fitting_units(seconds: float, text: str) -> None:
 
 def test_a_limit_in_minutes_is_in_words() -> None:
     assert [minutes(limit) for limit in (0.5, 1.0, 30.0)] == ["0.5 minutes", "1 minute", "30 minutes"]
+
+
+def test_a_search_without_success_is_told_to_name_what_matters() -> None:
+    none = SearchProgress(640, 20, 1.5, 12, (), complete=True)
+    advice = search_advice(SearchPlan("positions"), none)
+    assert advice is not None
+    assert advice.startswith(
+        "its places were where the player stands, and the state of the spec: if the way needs more"
+    )
+    assert "values of signals" in str(search_advice(SearchPlan("signals"), none))
+    assert search_advice(SearchPlan("own"), none) is None and search_advice(None, none) is None
+    assert search_advice(SearchPlan("positions"), replace(none, lengths=(9,))) is None

@@ -144,7 +144,7 @@ def _training_with_search(tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     env = make_environments(run, training_spaces(run))
     close, env.close = env.close, lambda: None  # type: ignore[method-assign]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(training, "make_environments", lambda run, spaces: env)
+        patch.setattr(training, "make_environments", lambda run, spaces, on_made: env)
         assert list(training.train(run))
         yield (
             replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=10**9))),

@@ -25,6 +25,7 @@ from tltl_runtime.training.ppo.distributed import process_group
 from tltl_runtime.training.run.preparation import load_imitation_data, make_environments, prepare_environment
 from tltl_runtime.training.run.spaces import TrainingSpaces
 from tltl_runtime.training.run.train import train
+from tltl_runtime.training.run.training_clock import TrainingClock
 from tltl_runtime.training.runner import Runner
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import TltlError
@@ -64,9 +65,8 @@ def algorithm_of(run: TrainingRun) -> Gail:
     processes = process_group()
     vector_env = make_environments(run, spaces := TrainingSpaces(None, searches=False))
     torch.manual_seed(0)
-    env, _ = prepare_environment(
-        run, processes, "cpu", spaces, vector_env, None, print, load_imitation_data(run, processes, spaces, print), None
-    )
+    data, clock = load_imitation_data(run, processes, spaces, print), TrainingClock(0.0)
+    env, _ = prepare_environment(run, processes, "cpu", spaces, vector_env, None, print, data, None, clock)
     algorithm = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     vector_env.close()
     assert isinstance(algorithm, Gail)

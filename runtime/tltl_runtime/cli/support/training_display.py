@@ -18,10 +18,12 @@ from tltl_runtime.cli.support.training_text import (
     demonstrations_line,
     dropped_line,
     environments_line,
+    made_line,
     measuring_line,
     plan_line,
     recording_line,
     report_line,
+    search_advice,
     search_end,
     search_line,
     search_result_line,
@@ -44,6 +46,9 @@ class Display(Protocol):
 
     def show_start(self) -> None:
         """Show that the environments are started."""
+
+    def show_made(self, count: int) -> None:
+        """Show how many environments have started."""
 
     def show_plan(self, plan: SearchPlan) -> None:
         """Show how the game is searched for ways to meet the spec, or why it is not."""
@@ -85,6 +90,9 @@ class _NoDisplay:
     def show_start(self) -> None:
         pass
 
+    def show_made(self, count: int) -> None:
+        pass
+
     def show_plan(self, plan: SearchPlan) -> None:
         pass
 
@@ -111,6 +119,10 @@ class _LineDisplay:
 
     def show_start(self) -> None:
         print(environments_line(self._run.settings), file=sys.stderr, flush=True)
+        self._next = time.monotonic() + _SECONDS_BETWEEN_LINES
+
+    def show_made(self, count: int) -> None:
+        self._print(made_line(count, self._run.settings))
 
     def show_plan(self, plan: SearchPlan) -> None:
         if text := plan_line(plan):
@@ -141,6 +153,8 @@ class _LineDisplay:
             self._print(demonstrations_line(report.imitated), always=True)
         if first and report.searched:
             self._print(search_result_line(report.searched), always=True)
+            if advice := search_advice(report.plan, report.searched):
+                self._print(advice, always=True)
             if dropped := dropped_line(report.searched):
                 self._print(dropped, always=True)
         if first:

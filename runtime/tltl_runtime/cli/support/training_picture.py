@@ -18,6 +18,7 @@ from tltl_runtime.cli.support.training_text import (
     demonstrations_line,
     dropped_line,
     environments_line,
+    made_line,
     measuring_line,
     plan_line,
     rate,
@@ -74,6 +75,10 @@ class TrainingDisplay:
     def show_start(self) -> None:
         """Store that the environments are started."""
         self._stage = environments_line(self._run.settings)
+
+    def show_made(self, count: int) -> None:
+        """Store how many environments have started."""
+        self._stage = f"{environments_line(self._run.settings)}\n{made_line(count, self._run.settings)}"
 
     def show_plan(self, plan: SearchPlan) -> None:
         """Store how the game is searched, or why it is not."""

@@ -15,10 +15,11 @@ from tltl_runtime.vector.errors import WorkerError
 from tltlc.api import Diagnostic, TltlError
 
 
-def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> TrainingReport:
+def train_with_display(run: TrainingRun, *, resume: bool, again: str, began: float | None = None) -> TrainingReport:
     """Train to the end, show the progress, and return the last report.
 
-    ``again`` is the command that resumes a stopped training.
+    ``again`` is the command that resumes a stopped training. The limit of minutes counts from
+    ``began``, a time of ``time.perf_counter``; by default, from now.
 
     Raises:
         TltlError: TLT0871, a worker was lost; errors from training.
@@ -30,8 +31,10 @@ def train_with_display(run: TrainingRun, *, resume: bool, again: str) -> Trainin
             on_measuring=progress.show_measuring,
             on_plan=progress.show_plan,
             on_start=progress.show_start,
+            on_made=progress.show_made,
             on_search=progress.show_search,
             on_attempt=progress.show_attempt,
+            began=began,
         )
         with closing(training) as reports:
             for last in reports:

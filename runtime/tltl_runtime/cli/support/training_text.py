@@ -62,6 +62,11 @@ def environments_line(settings: TrainingSettings) -> str:
     return f"starting {games} in {count} process{'es' * (count != 1)}"
 
 
+def made_line(count: int, settings: TrainingSettings) -> str:
+    """Say in one line how many environments of a training have started."""
+    return f"{count:,} of {settings.rollout.envs:,} environments started"
+
+
 def recording_line(attempt: Attempt, requested: int) -> str:
     """Say in one line whether the expert's last episode is kept, and how many demonstrations there are."""
     seed, fate = attempt.episode.seed, "is kept" if attempt.path else "fails and is not kept"
@@ -132,6 +137,18 @@ def search_result_line(progress: SearchProgress) -> str:
     return f"search: {count} way{'s' * (count > 1)} found in {spent}, the shortest of {min(progress.lengths)} steps"
 
 
+def search_advice(plan: SearchPlan | None, progress: SearchProgress) -> str | None:
+    """Say in one line how to help a search that has found no way.
+
+    None if it has found one, or if the game names its places itself.
+    """
+    if progress.lengths or plan is None or plan.cells == "own":
+        return None
+    places = "where the player stands" if plan.cells == "positions" else "values of signals"
+    advice = "if the way needs more, such as a key, name it with `then` in the spec, or in the `cell` of the game"
+    return f"its places were {places}, and the state of the spec: {advice} (docs/games.md)"
+
+
 def dropped_line(progress: SearchProgress) -> str | None:
     """Say, in at most 72 characters, how many places the search has left out; None if it left out none."""
     count = progress.dropped
@@ -153,10 +170,10 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
 def seconds_left(report: TrainingReport, stop: Stop) -> float:
     """Estimate the seconds until a limit ends the training.
 
-    The estimate uses the mean speed so far. If the training began with a search for ways to meet the
-    spec, the time of that search does not count.
+    The estimate uses the mean speed so far. The time before the first iteration does not count, in
+    which the games started and ways to meet the spec were searched.
     """
-    trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
+    trained_s = max(0.0, report.seconds - report.setup_s - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
 

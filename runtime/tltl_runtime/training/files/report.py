@@ -90,7 +90,9 @@ class TrainingReport:
 
     - ``steps`` counts all decisions so far, of all environments and processes. Decisions of
       searches and ``replayed`` decisions do not count.
-    - ``seconds`` is the training time so far, over all resumptions.
+    - ``seconds`` is the training time so far, over all resumptions, from the starts of the commands.
+    - ``setup_s`` are the seconds of it before the first iteration, since the training was started or
+      resumed, without the search.
     - ``unbroken`` is the number of successive episodes, up to the last one, that met the spec. It
       starts at 0 again when the policy fails its test in new episodes.
     - ``confirmation`` is the result of testing the policy in new episodes after this iteration;
@@ -123,3 +125,4 @@ class TrainingReport:
     imitated: ImitationSummary | None
     plan: SearchPlan | None = None
     lost: LostEpisodes | None = None
+    setup_s: float = 0.0

@@ -1,4 +1,4 @@
-"""Restore a checkpoint into new networks and optimisers; refuse a checkpoint that does not fit."""
+"""Make the first checkpoint of a training, and restore checkpoints; refuse one that does not fit."""
 
 from __future__ import annotations
 
@@ -11,11 +11,33 @@ from torch import Tensor, nn
 from torch.optim import Optimizer
 
 from tltl_runtime.support.record_json import RecordJsonError
-from tltl_runtime.training.files.checkpoint import Checkpoint
+from tltl_runtime.training.files.checkpoint import Checkpoint, deep_copy
+from tltl_runtime.training.files.run_file import TrainingRun, identity
+from tltl_runtime.training.ppo.recent_episodes import Standstill
 from tltl_runtime.training.runner import Runner
 
 _NETWORK: Final = "_state_dict"
 """The suffix of the names under which an algorithm saves its networks and optimisers."""
+
+
+def first_checkpoint(run: TrainingRun, runner: Runner) -> Checkpoint:
+    """Return the checkpoint before the first iteration, without the states of the processes."""
+    return Checkpoint(
+        run=identity(run),
+        iteration=0,
+        losses={},
+        steps=0,
+        seconds=0.0,
+        replayed=0,
+        searched=None,
+        algorithm=deep_copy(runner.alg.save()),
+        processes=(),
+        window=(),
+        unbroken=0,
+        best=None,
+        met=False,
+        standstill=Standstill().state(),
+    )
 
 
 def restore_checkpoint(checkpoint: Checkpoint, runner: Runner, states: int) -> None:

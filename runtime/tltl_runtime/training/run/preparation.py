@@ -47,6 +47,7 @@ from tltl_runtime.training.ppo.scheduled_weights import penalty_rise
 from tltl_runtime.training.run.initial_policy import read_initial_policy
 from tltl_runtime.training.run.search_schedule import SearchCallback, search_before_training
 from tltl_runtime.training.run.spaces import TrainingSpaces, env_function
+from tltl_runtime.training.run.training_clock import TrainingClock
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TIMEOUT_S, TLTL_INFO
 from tltl_runtime.wire.lost_episodes import MOST_IN_A_ROW
@@ -95,13 +96,18 @@ def check_is_new(run: TrainingRun) -> None:
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
 
 
-def make_environments(run: TrainingRun, spaces: TrainingSpaces) -> WorkerVectorEnv:
-    """Make the vector environment in which this process trains, and searches if ``spaces.searches``."""
+def make_environments(
+    run: TrainingRun, spaces: TrainingSpaces, on_made: Callable[[int], None] | None = None
+) -> WorkerVectorEnv:
+    """Make the vector environment in which this process trains, and searches if ``spaces.searches``.
+
+    ``on_made`` is called from time to time with the number of environments that are made.
+    """
     settings, rollout = run.settings, run.settings.rollout
     workers: int | Literal["ray"] = "ray" if rollout.pool == "ray" else rollout.workers or cores()
     # Nobody knows yet how many cores of a cluster are free: a single worker may step all environments.
     share = rollout.envs if workers == "ray" else ceil(rollout.envs / min(workers, rollout.envs))
-    options: dict[str, Any] = {}
+    options: dict[str, Any] = {"on_made": on_made}
     if spaces.wire:
         options["timeout"] = TIMEOUT_S + share * _command_s(run, spaces, spaces.wire)
     return make_vec(
@@ -192,13 +198,14 @@ def prepare_environment(
     on_search: SearchCallback,
     imitation_data: ImitationData | None,
     initial: Policy | None,
+    clock: TrainingClock,
 ) -> tuple[TrainingEnv, SearchProgress | None]:
     """Search for demonstrations if needed; return the environment for rsl-rl and the search's progress.
 
     The progress is None if there was no search. A resumed training searches again only if its
     search was interrupted before it found a demonstration. ``initial``, the policy that the
     training begins with, plays the first episodes of the search. ``on_search`` is called with the
-    progress from time to time.
+    progress from time to time. The search ends early at the limit of minutes, by ``clock``.
 
     All environments have begun new episodes. Their seeds depend on the process and the iteration,
     so that resuming does not repeat episodes.
@@ -210,7 +217,15 @@ def prepare_environment(
         encoding = ActionEncoding(vector_env.single_action_space)
         curriculum = _curriculum(run, group, checkpoint, encoding)
         progress = search_before_training(
-            run, group, vector_env, curriculum, checkpoint, on_search, _policy_function(run, group, initial), faults
+            run,
+            group,
+            vector_env,
+            curriculum,
+            checkpoint,
+            on_search,
+            _policy_function(run, group, initial),
+            faults,
+            clock,
         )
         if run.settings.exploration.imitation:
             self_imitation = SelfImitation(env_function(run), curriculum, spaces.layouts)

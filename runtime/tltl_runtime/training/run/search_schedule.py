@@ -13,6 +13,7 @@ from tltl_runtime.training.files.run_file import TrainingRun
 from tltl_runtime.training.ppo.distributed import ProcessGroup
 from tltl_runtime.training.ppo.environment import TrainingEnv
 from tltl_runtime.training.ppo.random_streams import Purpose, stream
+from tltl_runtime.training.run.training_clock import TrainingClock
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import Diagnostic
 
@@ -29,6 +30,7 @@ def search_before_training(
     on_search: SearchCallback,
     policy: PolicyFunction | None,
     faults: list[Diagnostic],
+    clock: TrainingClock,
 ) -> SearchProgress | None:
     """Search for demonstrations before the training, and add them to ``curriculum``.
 
@@ -39,20 +41,26 @@ def search_before_training(
     demonstration, and if time is left now. If an earlier search was stopped, the search goes on with
     the demonstrations that the earlier one stored.
     """
-    iteration, seconds = 0, 0.0
+    iteration = 0
     if checkpoint:
-        before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
-        if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(seconds):
+        before, iteration = checkpoint.searched, checkpoint.iteration
+        if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(clock.seconds):
             return None
     file = _ways_file(run, group, checkpoint)
     found = file.read(ActionEncoding(env.single_action_space))
+    clock.add(found.progress.seconds if found else 0.0)
     seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
     search = TrajectorySearch(env, run.settings.exploration, seed, policy=policy, faults=faults, found=found)
-    return _run_search(run, search, curriculum, seconds, on_search, file)
+    return _run_search(run, search, curriculum, clock, on_search, file)
 
 
 def search_after_standstill(
-    run: TrainingRun, group: ProcessGroup, env: TrainingEnv, state: Checkpoint, on_search: SearchCallback
+    run: TrainingRun,
+    group: ProcessGroup,
+    env: TrainingEnv,
+    state: Checkpoint,
+    on_search: SearchCallback,
+    clock: TrainingClock,
 ) -> SearchProgress | None:
     """Search for demonstrations from the agent's failed episodes, and add them to the curriculum.
 
@@ -65,10 +73,11 @@ def search_after_standstill(
         return None
     file = _ways_file(run, group, state)
     found = file.read(ActionEncoding(env.env.single_action_space))
+    clock.add(found.progress.seconds if found else 0.0)
     seed = stream(run, group, Purpose.SEARCH, state.iteration)
     failures = env.curriculum.failures
     search = TrajectorySearch(env.env, run.settings.exploration, seed, failures, faults=env.faults, found=found)
-    progress = _run_search(run, search, env.curriculum, state.seconds, on_search, file)
+    progress = _run_search(run, search, env.curriculum, clock, on_search, file)
     env.restart_episodes()
     return progress
 
@@ -82,15 +91,14 @@ def _run_search(
     run: TrainingRun,
     search: TrajectorySearch,
     curriculum: ReverseCurriculum,
-    seconds_before: float,
+    clock: TrainingClock,
     on_search: SearchCallback,
     file: WaysFile,
 ) -> SearchProgress:
     """Run a search, add its demonstrations to the curriculum, and return its progress.
 
-    The search ends early at the training's limit of minutes. ``seconds_before`` is the time that
-    the training has taken before the search. The demonstrations found so far are in ``file``, so
-    that a search that is stopped does not lose them.
+    The search ends early at the training's limit of minutes, by ``clock``. The demonstrations found
+    so far are in ``file``, so that a search that is stopped does not lose them.
     """
     stored = len(search.demonstrations)
     for progress in search.run():
@@ -98,7 +106,7 @@ def _run_search(
             file.write(FoundWays(progress, tuple(search.demonstrations)))
             stored = len(search.demonstrations)
         on_search(progress)
-        if run.settings.stop.is_out_of_time(seconds_before + progress.seconds):
+        if run.settings.stop.is_out_of_time(clock.seconds):
             break
     for demonstration in search.demonstrations:
         curriculum.add(demonstration)

@@ -18,7 +18,7 @@ from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.checkpoint import BestPolicy, Checkpoint, checkpoint_error, deep_copy
 from tltl_runtime.training.files.found_ways import remove_ways
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
-from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun, identity
+from tltl_runtime.training.files.run_file import CHECKPOINT, TrainingRun
 from tltl_runtime.training.files.settings import algorithm_name, rsl_config
 from tltl_runtime.training.files.training_lock import lock_training
 from tltl_runtime.training.imitation.demonstrations import Attempt
@@ -29,7 +29,7 @@ from tltl_runtime.training.ppo.random_streams import Purpose, stream
 from tltl_runtime.training.ppo.recent_episodes import RecentEpisodes, Standstill
 from tltl_runtime.training.ppo.scheduled_weights import scheduled_weights
 from tltl_runtime.training.ppo.torch_threads import threads
-from tltl_runtime.training.run.checkpoint_restore import restore_checkpoint
+from tltl_runtime.training.run.checkpoint_restore import first_checkpoint, restore_checkpoint
 from tltl_runtime.training.run.confirmation import confirm
 from tltl_runtime.training.run.named_classes import class_of, device_of
 from tltl_runtime.training.run.preparation import (
@@ -49,6 +49,7 @@ from tltl_runtime.training.run.spaces import (
     spaces_of,
     training_spaces,
 )
+from tltl_runtime.training.run.training_clock import TrainingClock
 from tltl_runtime.training.run.training_files import TrainingFiles
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.wire.lost_episodes import LostEpisodes, together
@@ -64,6 +65,8 @@ def train(
     on_measuring: Callable[..., None] = lambda *, searches: None,
     on_plan: Callable[[SearchPlan], None] = lambda plan: None,
     on_start: Callable[[], None] = lambda: None,
+    on_made: Callable[[int], None] = lambda count: None,
+    began: float | None = None,
 ) -> Generator[TrainingReport]:
     """Train in ``run.folder``; yield a report after each iteration.
 
@@ -78,10 +81,16 @@ def train(
     First, a search finds demonstrations that meet the spec; ``on_search`` is called with its
     progress. ``on_plan`` is called before, with how the game is searched, or why it is not. ``on_measuring``
     is called before the game is played to find that out; it says with ``searches`` whether the training
-    wants a search. ``on_start`` is called before the environments are started. If the
+    wants a search. ``on_start`` is called before the environments are started, and ``on_made`` from
+    time to time with the number of those that have started. If the
     training begins with a policy, that policy plays first in the search. With imitation, there is
     no search. If no demonstrations are given, demonstrations of the expert are recorded first;
     ``on_attempt`` is called with each attempt.
+
+    The limit of minutes counts from ``began``, a time of ``time.perf_counter``; by default, from now. So
+    the starts of the games and the search count, too. If the limit passes while an iteration plays, the
+    steps of this iteration are dropped, and the training ends after the iteration before. The first
+    iteration is always finished, so that there is a policy.
 
     Equal runs give equal results, and so do trainings that resume from equal checkpoints. With
     torchrun, each process trains with its own environments. The reports of all processes are equal,
@@ -102,6 +111,7 @@ def train(
             lost costs one episode, as :class:`~tltl_runtime.wire.surviving_env.SurvivingEnv` says;
             only if too many are lost is this a lost worker, too.
     """
+    began = time.perf_counter() if began is None else began
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
     # A new training writes nothing if it cannot begin. A resumed one first checks that nothing has changed.
@@ -118,6 +128,7 @@ def train(
             stack.enter_context(lock_training(run.folder))
             checkpoint = start_or_resume(run, resume)
         checkpoint = group.broadcast(checkpoint)
+        clock = TrainingClock(began, checkpoint.seconds if checkpoint else 0.0)
         stack.enter_context(threads(1))
         # All processes search, or none does.
         spaces = group.broadcast(spaces_of(spaces or _checked_spaces(run), checkpoint))
@@ -127,11 +138,11 @@ def train(
         imitation_data = load_imitation_data(run, group, spaces, on_attempt)
         initial = initial_policy(run, group, checkpoint)
         on_start()
-        vector_env = stack.enter_context(closing(make_environments(run, spaces)))
+        vector_env = stack.enter_context(closing(make_environments(run, spaces, on_made)))
         if initial:
             check_spaces(initial.card, vector_env.single_observation_space, vector_env.single_action_space)
         env, searched = prepare_environment(
-            run, group, device, spaces, vector_env, checkpoint, on_search, imitation_data, initial
+            run, group, device, spaces, vector_env, checkpoint, on_search, imitation_data, initial, clock
         )
         if env.self_imitation:
             stack.callback(env.self_imitation.close)
@@ -140,7 +151,7 @@ def train(
         new_runner = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
         if initial:
             new_runner.load_actor(initial.weights())
-        training = _Training(run, group, new_runner, checkpoint, searched, on_search, spaces)
+        training = _Training(run, group, new_runner, checkpoint, searched, on_search, spaces, clock)
         yield from training.reports()
 
 
@@ -166,6 +177,7 @@ class _Training:
         searched: SearchProgress | None,
         on_search: SearchCallback,
         spaces: TrainingSpaces,
+        clock: TrainingClock,
     ) -> None:
         self._plan, self._plays_at_once = spaces.plan, spaces.plays_at_once
         self._run, self._group, self._runner, self._on_search = run, group, runner, on_search
@@ -184,15 +196,19 @@ class _Training:
                 set_generators(checkpoint.processes[group.rank], runner)
         self._lost: LostEpisodes | None = None
         self._inverse_temperature = self._apply_weights()
-        self._state = checkpoint or _state_before(run, runner)
+        self._state = checkpoint or first_checkpoint(run, runner)
+        self._clock = clock
+        before_s, search_s = self._state.seconds, searched.seconds if searched else 0.0
+        self._setup_s = group.broadcast(max(0.0, clock.seconds - before_s - search_s))
         if searched:
-            seconds = group.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
                 searched = combined_progress(before, searched)
-            self._state = replace(self._state, searched=searched, seconds=seconds)
+            self._state = replace(self._state, searched=searched)
         if searched or checkpoint is None:
-            self._state = replace(self._state, processes=tuple(group.gather(process_state(runner))))
-        self._seconds_before, self._started = self._state.seconds, time.perf_counter()
+            processes = tuple(group.gather(process_state(runner)))
+            self._state = replace(self._state, processes=processes, seconds=self._seconds())
+        if group.count == 1:
+            runner.is_out_of_time = lambda: self._stop.is_out_of_time(clock.seconds)
         self._replayed_before = self._state.replayed
         self._standstill, self._is_standstill = Standstill(*self._state.standstill), False
         self._may_have_ways = True
@@ -205,8 +221,7 @@ class _Training:
             if self._files:
                 self._files.restore(self._state)
             if self._state.iteration and self._state.reason(self._stop):
-                iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
-                yield self._report(self._state, iteration, None, checkpointed=False)
+                yield self._last_report()
                 return
             for iteration in self._runner.iterations():
                 yield (report := self._finish_iteration(iteration))
@@ -214,9 +229,17 @@ class _Training:
                     return
                 if self._is_standstill:
                     self._search_again()
+            # The runner has dropped an iteration, because the limit of minutes has passed.
+            self._state = replace(self._state, seconds=self._seconds())
+            yield self._last_report()
         finally:
             if self._files:
                 self._files.close(self._state)
+
+    def _last_report(self) -> TrainingReport:
+        """Return the report of a training that ends after an iteration that was reported before."""
+        iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
+        return self._report(self._state, iteration, None, checkpointed=False)
 
     def _finish_iteration(self, iteration: Iteration) -> TrainingReport:
         """Update the state after an iteration; write its metrics and, if due, a checkpoint."""
@@ -270,7 +293,9 @@ class _Training:
         Each process searches from its own failed episodes.
         """
         state = self._state
-        searched = search_after_standstill(self._run, self._group, self._runner.env, state, self._on_search)
+        searched = search_after_standstill(
+            self._run, self._group, self._runner.env, state, self._on_search, self._clock
+        )
         processes = tuple(self._group.gather(process_state(self._runner)))
         seconds = self._seconds()
         if state.searched and searched:
@@ -288,7 +313,7 @@ class _Training:
 
         The clock of the first process measures this time, so that all processes decide alike.
         """
-        return self._group.broadcast(self._seconds_before + time.perf_counter() - self._started)
+        return self._group.broadcast(self._clock.seconds)
 
     def _apply_weights(self) -> float:
         """Set the entropy bonus and the penalty weight for the current pass rate.
@@ -360,24 +385,5 @@ class _Training:
             imitated=imitation_data.summary if imitation_data else None,
             plan=self._plan,
             lost=self._lost,
+            setup_s=self._setup_s,
         )
-
-
-def _state_before(run: TrainingRun, runner: Runner) -> Checkpoint:
-    """Return the checkpoint before the first iteration, without the states of the processes."""
-    return Checkpoint(
-        run=identity(run),
-        iteration=0,
-        losses={},
-        steps=0,
-        seconds=0.0,
-        replayed=0,
-        searched=None,
-        algorithm=deep_copy(runner.alg.save()),
-        processes=(),
-        window=(),
-        unbroken=0,
-        best=None,
-        met=False,
-        standstill=Standstill().state(),
-    )
