@@ -23,7 +23,10 @@ from tltl_runtime.training.exploration.search import SearchProgress
 from tltl_runtime.training.exploration.search_plan import SearchPlan
 from tltl_runtime.training.files.report import Confirmation
 from tltl_runtime.training.files.settings import Stop, read_settings
+from tltlc import compile_text
 from tltlc.core.record import replace
+
+(SPEC,) = compile_text("signal key: bool  signal door: bool  spec leave { reach key then door }")
 
 
 def test_the_lines_before_a_training() -> None:
@@ -64,10 +67,27 @@ def test_the_line_of_an_iteration(stop: Stop) -> None:
 )
 def test_the_line_of_the_search(lengths: tuple[int, ...], ways: str) -> None:
     searched = SearchProgress(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
-    exploration = replace(read_settings().exploration, ways=10, steps=64_000)
+    settings = read_settings()
+    settings = replace(settings, exploration=replace(settings.exploration, ways=10, steps=64_000))
     line = f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {ways}"
-    assert search_line(searched, exploration) == f"{line}, at most 9 min 9 s left"
-    assert search_line(replace(searched, complete=True), exploration) == line
+    assert search_line(searched, settings, SPEC) == f"{line}, at most 9 min 9 s left"
+    assert search_line(replace(searched, complete=True), settings, SPEC) == line
+    limited = replace(settings, stop=replace(settings.stop, minutes=3.0))
+    assert search_line(searched, limited, SPEC) == f"{line}, at most 1 min 59 s left"
+    assert "1 place, " in search_line(replace(searched, places=1), settings, SPEC)
+
+
+def test_the_line_of_a_search_without_a_way_says_what_remains() -> None:
+    searched = SearchProgress(6400, 3200, 61.0, 1200, (), complete=True, state=SPEC.edges_from(0)[-1].target)
+    line = "searching: 6,400 steps in 1 min 1 s, 1,200 places, no way to meet the spec yet; at best this remained: "
+    assert search_line(searched, read_settings(), SPEC) == f"{line}Reach door"
+    assert "remained" not in search_line(replace(searched, lengths=(80,)), read_settings(), SPEC)
+
+
+def test_the_line_of_the_search_counts_lost_episodes() -> None:
+    searched = SearchProgress(6400, 3200, 61.0, 1200, (80,), complete=True, lost=1, loss="the game ended")
+    assert search_line(searched, read_settings(), SPEC).endswith("; 1 episode was lost: the game ended")
+    assert "; 1,200 episodes were lost: the" in search_line(replace(searched, lost=1200), read_settings(), SPEC)
 
 
 def test_the_line_at_the_end_of_the_search() -> None:

@@ -139,9 +139,8 @@ class _LineDisplay:
             self._print(WAYS_ARE_KEPT, always=True)
             self._next = 0.0
         self._has_searched = True
-        self._print(
-            search_line(progress, self._run.settings.exploration), always=self._has_trained and progress.complete
-        )
+        line = search_line(progress, self._run.settings, self._run.fspa)
+        self._print(line, always=self._has_trained and progress.complete)
 
     def show_attempt(self, attempt: Attempt) -> None:
         requested = self._run.settings.imitation.demonstrations

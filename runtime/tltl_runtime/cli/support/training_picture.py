@@ -130,7 +130,15 @@ class TrainingDisplay:
         fraction = min(1.0, searched.steps / exploration.steps)
         most = f"of at most {exploration.steps:,} steps"
         table.add_row("searched", _bar(fraction, "blue", bar), f"{percent(fraction):>4}", most)
-        lines = filter(None, (self._plan, search_line(searched, exploration), search_end(exploration), WAYS_ARE_KEPT))
+        lines = filter(
+            None,
+            (
+                self._plan,
+                search_line(searched, self._run.settings, self._run.fspa),
+                search_end(exploration),
+                WAYS_ARE_KEPT,
+            ),
+        )
         return Group(table, Text("\n" + "\n\n".join(lines)))
 
     def _after_iteration(self, report: TrainingReport, bar: int, room: int) -> RenderableType:
@@ -142,7 +150,7 @@ class TrainingDisplay:
         space = [Text()] if room >= _LINES_FOR_SPACE else []
         since = 0.0 if report.stop else now - self._report_time
         messages = [self._confirmation] if self._confirmation else []
-        messages += [search_line(self._search, self._run.settings.exploration)] if self._search else []
+        messages += [search_line(self._search, self._run.settings, self._run.fspa)] if self._search else []
         messages += [report.lost.text] if report.lost else []
         lines = [*_figures(report, stop, since), *messages, self._checkpoint_text(now, report)]
         # Leave out violated states: an episode that violated the spec counts for its state before the violation.

@@ -10,6 +10,7 @@ from tltl_runtime.training.exploration.search_plan import MEASURED_STEPS, Search
 from tltl_runtime.training.files.report import Confirmation, TrainingReport
 from tltl_runtime.training.files.settings import Stop, TrainingSettings
 from tltl_runtime.training.imitation.demonstrations import Attempt, ImitationSummary
+from tltlc.api import Fspa, label_text
 
 WAYS_ARE_KEPT: Final = "Ctrl-C stops it and keeps the ways found; when you continue, it looks for the others."
 SEARCHED_AGAIN: Final = "the pass rate no longer rises: a random search for ways starts from where episodes failed"
@@ -104,18 +105,28 @@ def no_search_line(plan: SearchPlan | None) -> str:
     return f"it began without a search for demonstrations{reason}: see docs/games.md"
 
 
-def search_line(progress: SearchProgress, exploration: SearchSettings) -> str:
-    """Describe in one line the progress of the search for ways to meet the spec, and how long it may still take."""
+def search_line(progress: SearchProgress, settings: TrainingSettings, fspa: Fspa) -> str:
+    """Describe in one line the progress of the search for ways to meet the spec, and how long it may still take.
+
+    Without a way, the line says what remained at best, by the automaton ``fspa``.
+    """
+    exploration, limit = settings.exploration, settings.stop.minutes
     if count := len(progress.lengths):
         ways = f"{count} of {exploration.ways} ways to meet the spec, the shortest of {min(progress.lengths)} steps"
     else:
         ways = "no way to meet the spec yet"
+        if progress.state is not None:
+            ways += f"; at best this remained: {label_text(fspa, progress.state, 'english').removesuffix('.')}"
     spent = f"{progress.steps:,} steps in {duration(progress.seconds)}"
     left = ""
     if progress.steps and not progress.complete:
         left_s = progress.seconds / progress.steps * (exploration.steps - progress.steps)
+        left_s = min(left_s, limit * 60 - progress.seconds) if limit else left_s
         left = f", at most {duration(left_s)} left" if left_s > 0 else ""
-    return f"searching: {spent}, {progress.places:,} places, {ways}{left}"
+    places = f"{progress.places:,} place{'s' * (progress.places != 1)}"
+    episodes = "1 episode was" if progress.lost == 1 else f"{progress.lost:,} episodes were"
+    lost = f"; {episodes} lost: {progress.loss}" if progress.lost else ""
+    return f"searching: {spent}, {places}, {ways}{left}{lost}"
 
 
 def kept_ways_text(count: int) -> str:

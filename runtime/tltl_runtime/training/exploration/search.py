@@ -102,7 +102,9 @@ class SearchProgress:
     are the lengths of the demonstrations, in decisions. ``complete`` is true if the search ended
     because it had enough demonstrations or had taken enough steps. It is false if the search goes
     on or the training ran out of time. ``dropped`` counts the cells that were left out, because the game
-    did not lead there again.
+    did not lead there again. ``state`` is the automaton state nearest to the goal that an episode
+    reached without meeting the spec; None if it is not known. ``lost`` counts the episodes that were
+    lost with their games, and ``loss`` says what happened to the first of them.
     """
 
     steps: int
@@ -112,12 +114,15 @@ class SearchProgress:
     lengths: tuple[int, ...]
     complete: bool
     dropped: int = 0
+    state: int | None = None
+    lost: int = 0
+    loss: str = ""
 
 
 def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchProgress:
     """Combine the progress of two searches of one training: add the counts, and join ``lengths``.
 
-    ``places`` and ``complete`` are those of the later search.
+    ``places``, ``complete`` and ``state`` are those of the later search.
     """
     return SearchProgress(
         steps=before.steps + later.steps,
@@ -127,6 +132,9 @@ def combined_progress(before: SearchProgress, later: SearchProgress) -> SearchPr
         lengths=(*before.lengths, *later.lengths),
         complete=later.complete,
         dropped=before.dropped + later.dropped,
+        state=later.state,
+        lost=before.lost + later.lost,
+        loss=before.loss or later.loss,
     )
 
 
@@ -162,6 +170,8 @@ class TrajectorySearch:
     ``policy``, it plays the first episode of each environment; random actions then continue from
     the cells that it reached. What happens to games that are lost is added to ``faults``.
 
+    ``distances`` are the distances of the automaton's states to the goal, None for traps.
+
     With ``found``, the search goes on after an earlier one that was stopped: it begins with the
     demonstrations of that search, and with its steps and seconds. The places that it had reached are
     lost.
@@ -176,10 +186,13 @@ class TrajectorySearch:
         policy: PolicyFunction | None = None,
         faults: list[Diagnostic] | None = None,
         found: FoundWays | None = None,
+        distances: Sequence[int | None] = (),
     ) -> None:
         self._env = env
         self._policy = policy
-        self._faults = faults
+        self._faults = [] if faults is None else faults
+        self._faults_before = len(self._faults)
+        self._distances = distances
         self._exploration = exploration
         self._before = found.progress if found else SearchProgress(0, 0, 0.0, 0, (), complete=False)
         self.demonstrations: list[SuccessfulEpisode] = list(found.demonstrations) if found else []
@@ -291,8 +304,25 @@ class TrajectorySearch:
 
     def _progress(self, steps: int, episodes: EpisodesInProgress, seconds: float, *, complete: bool) -> SearchProgress:
         lengths = tuple(sorted(len(demonstration.actions) for demonstration in self.demonstrations))
-        replayed, dropped = self._before.replayed + episodes.replayed, self._before.dropped + self._dropped_cells
-        return SearchProgress(steps, replayed, seconds, len(self._cells), lengths, complete, dropped)
+        lost = self._faults[self._faults_before :]
+        return SearchProgress(
+            steps,
+            self._before.replayed + episodes.replayed,
+            seconds,
+            len(self._cells),
+            lengths,
+            complete,
+            self._before.dropped + self._dropped_cells,
+            self._nearest_state(),
+            self._before.lost + len(lost),
+            self._before.loss or (lost[0].title if lost else ""),
+        )
+
+    def _nearest_state(self) -> int | None:
+        """Return the reached state with the least distance to the goal, the first of several; None without one."""
+        states = sorted({state for state, _ in self._cells if state < len(self._distances)})
+        known = [(distance, state) for state in states if (distance := self._distances[state]) is not None]
+        return min(known)[1] if known else None
 
 
 class _CellArchive:

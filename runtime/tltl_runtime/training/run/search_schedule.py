@@ -50,7 +50,15 @@ def search_before_training(
     found = file.read(ActionEncoding(env.single_action_space))
     clock.add(found.progress.seconds if found else 0.0)
     seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
-    search = TrajectorySearch(env, run.settings.exploration, seed, policy=policy, faults=faults, found=found)
+    search = TrajectorySearch(
+        env,
+        run.settings.exploration,
+        seed,
+        policy=policy,
+        faults=faults,
+        found=found,
+        distances=_distances(run),
+    )
     return _run_search(run, search, curriculum, clock, on_search, file)
 
 
@@ -76,10 +84,23 @@ def search_after_standstill(
     clock.add(found.progress.seconds if found else 0.0)
     seed = stream(run, group, Purpose.SEARCH, state.iteration)
     failures = env.curriculum.failures
-    search = TrajectorySearch(env.env, run.settings.exploration, seed, failures, faults=env.faults, found=found)
+    search = TrajectorySearch(
+        env.env,
+        run.settings.exploration,
+        seed,
+        failures,
+        faults=env.faults,
+        found=found,
+        distances=_distances(run),
+    )
     progress = _run_search(run, search, env.curriculum, clock, on_search, file)
     env.restart_episodes()
     return progress
+
+
+def _distances(run: TrainingRun) -> list[int | None]:
+    """Return the distance of each state of the spec's automaton to the goal; None for traps."""
+    return [state.distance for state in run.fspa.states]
 
 
 def _ways_file(run: TrainingRun, group: ProcessGroup, state: Checkpoint | None) -> WaysFile:
