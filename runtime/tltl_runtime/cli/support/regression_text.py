@@ -25,9 +25,12 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
     beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if is_cached else ''}"
     yield f"{plain_text(report.name):<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
-        yield from (f"    {plain_text(reason)}" for reason in report.reasons)
-    elif report.lost:
-        yield f"    {plain_text(report.lost)}"
+        reasons = report.reasons
+    else:
+        # Where nothing has changed, the line of a case that passes says it all.
+        certain = report.causes[:1] if report.edits and not is_cached else ()
+        reasons = (*(report.edits if certain else ()), *certain, *((report.lost,) if report.lost else ()))
+    yield from (f"    {plain_text(reason)}" for reason in dict.fromkeys(reasons))
 
 
 def summary_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:

@@ -122,17 +122,14 @@ def report_on(result: JudgedCase) -> CaseReport:
     before = result.reference.episodes
     level, outdated = result.prepared.level, result.prepared.outdated
     summaries, summaries_before = summaries_of(now), summaries_of(before)
-    statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before))
+    played, reference = result.prepared.played, result.reference.played
+    compared = reference.variant if reference.variant != played.variant else ""
+    statistics = tuple(reasons(result.judgement, case.thresholds, summaries, summaries_before, reference=compared))
     blocked = tuple(obstacles(level, setup.fspa))
     # A case cannot pass while an outdated spec judges it.
     verdict = "review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict
     changes = tuple(_edits(result))
-    if (
-        verdict != "pass"
-        and not changes
-        and not outdated
-        and is_unchanged(result.prepared.played, result.reference.played)
-    ):
+    if verdict != "pass" and not changes and not outdated and is_unchanged(played, reference):
         changes = (Phrase(_UNCHANGED),)
     figures, baseline = figures_of(summaries), figures_of(summaries_before)
     # If a case fails no more often than before, its failures do not explain an uncertain verdict.

@@ -29,17 +29,20 @@ def reasons(
     before: Sequence[EpisodeSummary],
     *,
     are_traces: bool = False,
+    reference: str = "",
 ) -> Iterator[str]:
     """Yield a sentence on the pass rate, then one for each of progress and reward that may have changed.
 
     ``judgement`` is the verdict on the episodes ``now``. ``before`` are the episodes of the baseline.
     If the episodes ``are_traces`` (recorded traces), they have no seeds, and the means over all of them
-    are compared.
+    are compared. ``reference`` is the variant that the baseline played; empty if it is the variant that
+    is played now.
     """
     passed, passed_before = (sum(episode.success for episode in episodes) for episodes in (now, before))
     pass_rate, fail_rate = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
     noun = "traces" if are_traces else "episodes"
-    met = f"met in {_count(passed, now, before, noun)}, before in {_count(passed_before, before, now)}"
+    earlier = f"`{reference}` before" if reference else "before"
+    met = f"met in {_count(passed, now, before, noun)}, {earlier} in {_count(passed_before, before, now)}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {fail_rate}"
     elif judgement.rate_interval[0] >= thresholds.pass_rate:
