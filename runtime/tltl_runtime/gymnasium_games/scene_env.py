@@ -24,6 +24,7 @@ from tltl_runtime.gymnasium_games.process_games import env_in_process, signals_i
 from tltl_runtime.gymnasium_games.value_text import type_text
 from tltl_runtime.spec.task import Task
 from tltl_runtime.spec.wrapper import TltlEnv
+from tltl_runtime.support.sdl_driver import draw_without_screen
 from tltl_runtime.support.suggestion import suggestion
 from tltlc.api import Diagnostic, Fspa, Label, RewardOptions, TltlError
 
@@ -219,6 +220,8 @@ def make_base_env(
             the observation lacks a key that the game file keeps; the errors of a game in another process.
     """
     own = variant_of(game, scene, variant)
+    if render_mode == "rgb_array":
+        draw_without_screen()
     options = deepcopy(dict(own.options)) | ({} if render_mode is None else {"render_mode": render_mode})
     with folder_first(game):
         for module in game.modules:
