@@ -118,6 +118,11 @@ def unchanged_signals(moments: Sequence[PlayedMoment]) -> list[str]:
     return [name for name in names if all(is_same(one.get(name), other.get(name)) for one, other in steps)]
 
 
+def observation_changes(moments: Sequence[PlayedMoment]) -> bool:
+    """Whether some step has changed the observation."""
+    return any(not is_same(one.observation, other.observation) for one, other in pairwise(moments) if not one.ended)
+
+
 def first_difference(first: Sequence[PlayedMoment], second: Sequence[PlayedMoment]) -> PlayDifference | None:
     """Return the first difference between two plays, in a signal or in the end of an episode; None without one."""
     for one, other in zip(first, second, strict=False):

@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Final
 
-from tltl_runtime.gymnasium_games.plays import STEPS, ScenePlay, unchanged_signals
+from tltl_runtime.gymnasium_games.plays import STEPS, ScenePlay, observation_changes, unchanged_signals
 from tltl_runtime.wire.error_lines import script_error
 from tltlc.api import Diagnostic, Label
+
+_PLAYS: Final = (
+    "the observation changes, so the game plays: check that the signals can change; if only play with a plan changes "
+    "them, a training searches more easily with `tltl_positions`, or with a signal that changes on the way"
+)
+_STANDS: Final = (
+    "check that each step plays the game and reads its signals anew: the observation does not change either; if it "
+    "does, random actions get nowhere: add a signal that changes on the way, such as the distance to the goal"
+)
 
 
 def silent_faults(name: str, label: Label, play: ScenePlay, lines: Sequence[str]) -> Iterator[Diagnostic]:
@@ -27,8 +37,6 @@ def silent_faults(name: str, label: Label, play: ScenePlay, lines: Sequence[str]
     if unchanged and play.steps == STEPS and len(unchanged) == len(play.moments[0].sample):
         counted = f"none of the {len(unchanged)} signals changed" if len(unchanged) > 1 else "the signal did not change"
         title = f"{counted} in {STEPS} random steps in `{name}`"
-        help_ = (
-            "check that each step plays the game and reads its signals anew; if it does, random actions get nowhere: "
-            "add a signal that changes on the way, such as the distance to the goal"
+        yield Diagnostic(
+            "TLT0786", title, (label,), _PLAYS if observation_changes(play.moments) else _STANDS, "warning"
         )
-        yield Diagnostic("TLT0786", title, (label,), help_, "warning")

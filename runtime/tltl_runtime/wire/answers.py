@@ -175,7 +175,9 @@ def picture_from(value: Any, path: str, what: str) -> NDArray[np.uint8]:
 
 
 def _positions(value: Any) -> dict[str, Position]:
-    return {name: _position(name, point) for name, point in an_object(value, "state.positions").items()}
+    """Return the positions in a state; an entity whose position is null is gone, and is left out."""
+    points = an_object(value, "state.positions").items()
+    return {name: _position(name, point) for name, point in points if point is not None}
 
 
 def _position(name: str, point: Any) -> Position:

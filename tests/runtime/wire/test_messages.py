@@ -114,6 +114,11 @@ def test_a_state_is_read() -> None:
     assert np.array_equal(state.observation, np.array([3], np.float32)) and state.positions == {"player": (3.0, 0.0)}
 
 
+def test_an_entity_without_a_position_is_gone() -> None:
+    state = answers.StateReader(hello_from(HELLO)).read(changed(STATE, "state/positions/coin", None))
+    assert state.positions == {"player": (3.0, 0.0)}
+
+
 def test_an_empty_cause_is_an_unknown_one() -> None:
     assert answers.StateReader(hello_from(HELLO)).read(changed(STATE, "state/cause", "")).cause is None
 
