@@ -19,6 +19,7 @@ from tltl_runtime.training.run.train import train
 from tltlc.core.record import replace
 
 NEAR = "import spatial\nentity s1\nspec near_s1 { level cover_and_hide  limit 300 steps  reach near(s1) }"
+CHANCE = "import stealth\nspec chance { level cover_and_hide  limit 2 steps  avoid sneaking }"
 SEARCH = {"exploration__ways": 4, "exploration__steps": 20_000, "stop__steps": 64}
 WAY = SuccessfulEpisode(5, [[1, 2, 0, 1, 0], [0, 0, 1, 0, 0]], 1)
 PROGRESS = SearchProgress(640, 20, 1.5, 12, (2,), complete=False)
@@ -61,6 +62,34 @@ def test_a_search_that_has_found_enough_ways_does_not_go_on(tmp_path: Path) -> N
     found = WaysFile(run)
     assert [progress.complete for progress in searches] == [True]
     assert report.searched is not None and len(report.searched.lengths) >= 4 and found.read() is None
+
+
+@pytest.mark.slow
+def test_a_search_at_a_standstill_goes_on_with_its_ways(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._RISE", 2.0)
+    monkeypatch.setattr("tltl_runtime.training.ppo.recent_episodes._STANDSTILL_STEPS", 256)
+    run = run_in(tmp_path / "run", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
+    ended: list[SearchProgress] = []
+
+    def stop(progress: SearchProgress) -> None:
+        if ended and progress.lengths:
+            raise KeyboardInterrupt
+        if progress.complete:
+            ended.append(progress)
+
+    with pytest.raises(KeyboardInterrupt):
+        list(train(run, on_search=stop))
+    (first,) = ended
+    stored = WaysFile(run, steps_before=first.steps).read(STEALTH_ACTIONS)
+    assert stored is not None and stored.demonstrations
+    searches: list[SearchProgress] = []
+    reports = train(run, resume=True, on_search=searches.append)
+    while not searches:
+        next(reports)
+    reports.close()
+    assert searches[0].steps > stored.progress.steps and searches[0].seconds > stored.progress.seconds
+    assert len(searches[0].lengths) >= len(stored.demonstrations)
 
 
 @pytest.fixture
@@ -116,4 +145,9 @@ def test_a_damaged_file_is_of_no_use(run: TrainingRun, change: Callable[[Any], o
     path.write_text(json.dumps(content), encoding="utf-8")
     assert WaysFile(run).read(STEALTH_ACTIONS) is None
     path.write_text("{", encoding="utf-8")
+    assert WaysFile(run).read(STEALTH_ACTIONS) is None
+
+
+def test_a_file_that_is_no_text_is_of_no_use(run: TrainingRun) -> None:
+    (run.folder / WAYS).write_bytes(b"\xff\x00")
     assert WaysFile(run).read(STEALTH_ACTIONS) is None

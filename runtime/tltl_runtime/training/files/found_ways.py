@@ -17,7 +17,7 @@ from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.search import FoundWays, SearchProgress, SuccessfulEpisode
 from tltl_runtime.training.files.run_file import WAYS, WRITABLE, TrainingRun, identity
-from tltlc.api import fileio, record
+from tltlc.api import TltlError, fileio, record
 
 _FORMAT: Final = "tltl-ways"
 _VERSION: Final = 1
@@ -83,7 +83,7 @@ class WaysFile:
             source = fileio.read_source(path, max_bytes=fileio.limits.FOUND_WAYS.size)
             content = from_json(_Content, fileio.parse_json(source.text, fileio.limits.FOUND_WAYS), "it")
             ways = tuple(_episode(way, encoding) for way in content.ways)
-        except (ValueError, RecursionError):
+        except (TltlError, ValueError, RecursionError):
             return None
         begins = (_FORMAT, _VERSION, self._identity, self._steps_before)
         if (content.format, content.version, content.run, content.steps_before) != begins:

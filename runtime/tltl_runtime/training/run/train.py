@@ -211,7 +211,8 @@ class _Training:
             runner.is_out_of_time = lambda: self._stop.is_out_of_time(clock.seconds)
         self._replayed_before = self._state.replayed
         self._standstill, self._is_standstill = Standstill(*self._state.standstill), False
-        self._may_have_ways = True
+        # A search at a standstill that was stopped is made again after an iteration, and needs its ways until then.
+        self._may_have_ways = searched is not None or not self._state.iteration
         self._files = TrainingFiles(run, self._card, checkpoint) if group.rank == 0 else None
         self._update_gail_time()
 
