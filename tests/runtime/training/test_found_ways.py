@@ -121,8 +121,10 @@ def test_lines_say_that_the_ways_are_kept(run: TrainingRun) -> None:
     WaysFile(run).write(FoundWays(PROGRESS, (WAY, replace(WAY, seed=6))))
     *_, line = _start_lines(run, resume=True)
     assert line.endswith(" with the 2 ways that it has found")
+    start_again = "stopped during the search, which will start again; to go on: AGAIN"
+    assert stopped_line(replace(run, level="missing.toml"), "AGAIN") == start_again
     remove_ways(run.folder)
-    assert stopped_line(run, "AGAIN") == "stopped during the search, which will start again; to go on: AGAIN"
+    assert stopped_line(run, "AGAIN") == start_again
 
 
 @pytest.mark.parametrize(

@@ -50,11 +50,20 @@ def stopped_line(run: TrainingRun, again: str) -> str | None:
         before = ""
     elif not run.settings.searches:
         before = " before the first iteration"
-    elif found := WaysFile(run).read():
-        before = f" during the search, which will go on {kept_ways_text(len(found.demonstrations))}"
+    elif kept := _kept_ways(run):
+        before = f" during the search, which will go on {kept_ways_text(kept)}"
     else:
         before = " during the search, which will start again"
     return f"stopped{before}; to go on: {again}"
+
+
+def _kept_ways(run: TrainingRun) -> int:
+    """Return how many ways the first search of a training has kept; 0 if its level cannot be read any more."""
+    try:
+        ways = WaysFile(run).read()
+    except TltlError:
+        return 0
+    return len(ways.demonstrations) if ways else 0
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
@@ -47,18 +48,8 @@ def search_before_training(
         if before is None or before.complete or before.lengths or run.settings.stop.is_out_of_time(clock.seconds):
             return None
     file = _ways_file(run, group, checkpoint)
-    found = file.read(ActionEncoding(env.single_action_space))
-    clock.add(found.progress.seconds if found else 0.0)
-    seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
-    search = TrajectorySearch(
-        env,
-        run.settings.exploration,
-        seed,
-        policy=policy,
-        faults=faults,
-        found=found,
-        distances=_distances(run),
-    )
+    options = _search_options(run, group, env, file, iteration, clock)
+    search = TrajectorySearch(env, run.settings.exploration, policy=policy, faults=faults, **options)
     return _run_search(run, search, curriculum, clock, on_search, file)
 
 
@@ -80,27 +71,25 @@ def search_after_standstill(
     if env.curriculum is None or not env.curriculum.failures:
         return None
     file = _ways_file(run, group, state)
-    found = file.read(ActionEncoding(env.env.single_action_space))
-    clock.add(found.progress.seconds if found else 0.0)
-    seed = stream(run, group, Purpose.SEARCH, state.iteration)
+    options = _search_options(run, group, env.env, file, state.iteration, clock)
     failures = env.curriculum.failures
-    search = TrajectorySearch(
-        env.env,
-        run.settings.exploration,
-        seed,
-        failures,
-        faults=env.faults,
-        found=found,
-        distances=_distances(run),
-    )
+    search = TrajectorySearch(env.env, run.settings.exploration, failures=failures, faults=env.faults, **options)
     progress = _run_search(run, search, env.curriculum, clock, on_search, file)
     env.restart_episodes()
     return progress
 
 
-def _distances(run: TrainingRun) -> list[int | None]:
-    """Return the distance of each state of the spec's automaton to the goal; None for traps."""
-    return [state.distance for state in run.fspa.states]
+def _search_options(
+    run: TrainingRun, group: ProcessGroup, env: WorkerVectorEnv, file: WaysFile, iteration: int, clock: TrainingClock
+) -> dict[str, Any]:
+    """Return the options ``seed``, ``found`` and ``distances`` of a search after an iteration.
+
+    If ``file`` has ways of an earlier search that was stopped, the time of that search is added to ``clock``.
+    """
+    found = file.read(ActionEncoding(env.single_action_space))
+    clock.add(found.progress.seconds if found else 0.0)
+    seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
+    return {"seed": seed, "found": found, "distances": [state.distance for state in run.fspa.states]}
 
 
 def _ways_file(run: TrainingRun, group: ProcessGroup, state: Checkpoint | None) -> WaysFile:
