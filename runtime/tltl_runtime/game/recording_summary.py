@@ -76,19 +76,23 @@ def summary_text(values: Mapping[str, Any], figures: GameFigures) -> str:
     ``figures`` come from :meth:`Game.figures <tltl_runtime.game.game.Game.figures>`.
     """
     limit = "" if values["limit_steps"] is None else f" of {values['limit_steps']}"
+    # Without a clock, the times are the numbers of the steps.
+    is_timed = values["seconds"] != values["steps"]
+    seconds = f", {values['seconds']:.2f} s" if is_timed else ""
     end = values["end"] if values["verdict"] in ("satisfied", "violated") else f"{values['end']}, {values['verdict']}"
     lines = [
         f"  level    {values['level']}:{values['variant']}, spec {values['spec']}",
         column("  player   ", f"{values['player']}, seed {values['seed']}"),
-        f"  end      {end}, after {values['steps']}{limit} steps, {values['seconds']:.2f} s",
+        f"  end      {end}, after {values['steps']}{limit} steps{seconds}",
         *([] if values["success"] else [column("  why      ", values["cause"]["text"])]),
         f"  reward   {number(values['reward'], 3)}, progress {share(values['progress'], 3)}",
         *(f"  {name:<8} {text}" for name, text in figures.lines),
         "",
-        "    time  state  progress  what remains",
+        f"    {'time' if is_timed else 'step'}  state  progress  what remains",
     ]
+    moments = [f"{change['time']:8.2f}" if is_timed else f"{change['step']:8}" for change in values["changes"]]
     lines += [
-        column(f"{change['time']:8.2f}  {change['state']:5}  {share(change['progress'], 3):>8}  ", change["label"])
-        for change in values["changes"]
+        column(f"{moment}  {change['state']:5}  {share(change['progress'], 3):>8}  ", change["label"])
+        for moment, change in zip(moments, values["changes"], strict=True)
     ]
     return "\n".join(lines) + "\n"
