@@ -72,6 +72,7 @@ def test_a_tape_becomes_a_demonstration_that_a_training_reads(tltlc: TltlcFuncti
         ({"scene": "long"}, "it is of `long:v0`, not of `short:v0`"),
         ({"variant": "v1"}, "it is of `short:v1`, not of `short:v0`"),
         ({"action": 3}, "step 1 sent `action` as 3, but it must be a whole number from 0 to 2"),
+        ({"fuel": 1.0}, "the level gives none of its signals"),
         ({"cell": 3.5}, "after step 1, `cell` is 1, but 3.5 on the tape"),
     ],
 )
@@ -84,6 +85,9 @@ def test_a_tape_that_cannot_be_played_again_is_reported(
     first, *rest = tape.steps
     if "action" in change:
         first = replace(first, action=change["action"])
+    elif "fuel" in change:
+        tape = replace(tape, header=replace(tape.header, signals={"fuel": {"type": "number"}}))
+        first, *rest = (replace(step, signals=change) for step in tape.steps)
     elif "cell" in change:
         first = replace(first, signals={**first.signals, **change})
     else:

@@ -24,7 +24,7 @@ def tape_episode(env: EpisodeRecorder[EpisodeT], tape: Tape, name: str) -> Episo
 
     Raises:
         TltlError: TLT0923, the tape has no seed, is of another scene or variant, has an action that the level
-            does not have, or the level gives other signals; the errors of the game.
+            does not have, or the level gives none of its signals or other values; the errors of the game.
     """
     header, level = tape.header, env.get_wrapper_attr("level")
     if header.seed is None:
@@ -35,6 +35,8 @@ def tape_episode(env: EpisodeRecorder[EpisodeT], tape: Tape, name: str) -> Episo
         raise _error(name, played, f"name `{scene}:{header.variant}` in place of `{level.name}:{level.variant}`")
     judge, read = judging_wrapper(env), value_reader(env.action_space, "action")
     env.reset(seed=header.seed)
+    if header.signals.keys().isdisjoint(judge.sample):
+        raise _error(name, "the level gives none of its signals", _NOT_SAME)
     for number, step in enumerate(tape.steps, 1):
         try:
             action = read(step.action)
