@@ -35,9 +35,15 @@ def test_the_text_report(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert re.fullmatch(
         r"room:v0   pass     (\d\d) of \1   100%  progress  1\.00 \( 1\.00\)  reward  0\.\d\d \( 0\.\d\d\)", lines[0]
     )
-    assert lines[2].startswith("hopeless  fail      0 of 25     0%  progress")
-    assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
-    assert all(line.startswith("    ") for line in lines[3:-1])
+    assert lines[1].startswith("room:v1   pass")
+    # A variant that passes has the lines on what it changes, and on what is certain.
+    assert lines[2] == "    differs from `v0` by overlays/guard_alert.toml"
+    assert re.fullmatch(
+        r"    met in (\d\d) of \1 episodes, `v0` before in 50 of 50: certainly in 85% or more", lines[4]
+    )
+    assert lines[5].startswith("hopeless  fail      0 of 25     0%  progress")
+    assert lines[7] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
+    assert all(line.startswith("    ") for line in lines[6:-1])
     assert lines[-1] == "3 cases: 2 pass, 1 fail"
     progress = result.err.splitlines()
     assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in progress
@@ -100,7 +106,8 @@ def test_the_reports_for_continuous_integration(
     (tests,) = ET.parse("report.xml").getroot()
     assert [len(test.findall("failure")) for test in tests.iter("testcase")] == [0, 0, 1]
     (command,) = (line for line in result.out.splitlines() if line.startswith("::"))
-    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::met in 0 of 25 episodes")
+    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::nothing has changed since")
+    assert "met in 0 of 25 episodes" in command
     assert Path("page.html").read_bytes() == Path("regression/game/report.html").read_bytes()
     assert result.err.splitlines()[-1] == "wrote page.html: open it in a browser"
 

@@ -210,7 +210,11 @@ def test_the_message_is_as_expected(tmp_path: Path, name: str, monkeypatch: pyte
 
 
 def compare(name: str, error: TltlError) -> None:
-    message, expected = render(error.diagnostics), GOLDEN / f"{name}.txt"
+    compare_text(name, render(error.diagnostics))
+
+
+def compare_text(name: str, message: str) -> None:
+    expected = GOLDEN / f"{name}.txt"
     if os.environ.get("UPDATE_GOLDEN") == "1":
         expected.write_text(message, encoding="utf-8")
     assert message == expected.read_text(encoding="utf-8")

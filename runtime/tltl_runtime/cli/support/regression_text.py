@@ -28,7 +28,7 @@ def case_lines(report: CaseReport, width: int, *, is_cached: bool) -> Iterator[s
         reasons = report.reasons
     else:
         # Where nothing has changed, the line of a case that passes says it all.
-        certain = report.causes[:1] if report.edits and not is_cached else ()
+        certain = report.causes[:1] if report.edits else ()
         reasons = (*(report.edits if certain else ()), *certain, *((report.lost,) if report.lost else ()))
     yield from (f"    {plain_text(reason)}" for reason in dict.fromkeys(reasons))
 
