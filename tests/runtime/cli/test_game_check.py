@@ -27,6 +27,13 @@ def test_a_scene_and_a_variant_can_be_chosen(tltlc, inside: Path) -> None:  # ty
     assert "long:v0 has the signals that `fetch` uses" in result.err
 
 
+def test_signals_that_random_play_never_made_true_are_named(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    code = games.GRID.replace('"cell": float(game.cell)', '"cell": float(game.cell), "caught": False, "burnt": False')
+    games.write(inside, corridor__py=code)
+    result: Outcome = tltlc("check", "--game", "corridor.game.toml:short:v0")
+    assert "  in 200 random steps, `caught`, `burnt` were never true\n" in result.err
+
+
 def test_an_artefact_is_checked_against_a_game(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     games.write(inside)
     (inside / "other.tltl").write_text("signal has_kee: bool\nspec other = F has_kee\n", encoding="utf-8")

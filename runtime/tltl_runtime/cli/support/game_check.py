@@ -157,7 +157,8 @@ def _still_lines(scene_report: SceneReport) -> Iterator[str]:
         if all(isinstance(value := moment.sample.get(name), (bool, np.bool_)) and not value for moment in moments)
     ]
     constant = [name for name in scene_report.unchanged if name not in false]
-    for names, what in ((false, "was never true"), (constant, "never changed")):
+    were = "was" if len(false) == 1 else "were"
+    for names, what in ((false, f"{were} never true"), (constant, "never changed")):
         if names:
             listed = ", ".join(f"`{name}`" for name in names[:_MOST_SIGNALS])
             more = ", …" if len(names) > _MOST_SIGNALS else ""
