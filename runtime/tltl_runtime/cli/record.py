@@ -9,6 +9,7 @@ from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from tltl_runtime.cli.support.closed_output import ignore_closed_pipe
 from tltl_runtime.cli.support.keyboard_play import keyboard_of, keyboard_options, play_at_keyboard
@@ -106,13 +107,13 @@ def command(
         from tltl_runtime.training.imitation.demonstrations import Demonstrations
         from tltl_runtime.training.imitation.tape_episode import PLAYER as TAPE_PLAYER
 
-        if tapes and (by == "keyboard" or seed is not None):
-            raise click.UsageError("a tape has its own player and seed: leave out --by and --seed")
+        if tapes and any(_is_given(name) for name in ("by", "episodes", "seed")):
+            raise click.UsageError("a tape is a play with its own player and seed: leave out --by, --episodes and --seed")
         file, variant = _level_and_variant(level, spec)
         game = game_of(file)
         loaded = game.load_level(file, variant)
         player = TAPE_PLAYER if tapes else by
-        mode = keyboard_of(loaded).render_mode if by == "keyboard" else None
+        mode = keyboard_of(loaded).render_mode if player == "keyboard" else None
         env = closing_on_error(
             game.make_env(file, variant, spec, render_mode=mode), partial(game.recorder, player=player)
         )
@@ -126,6 +127,7 @@ def command(
             for line in _existing_lines(demonstrations, 0 if tapes else episodes):
                 click.echo(line, err=True)
             if tapes:
+                episodes = demonstrations.count + len(tapes)
                 episodes = _record_tapes(env, demonstrations, tapes, report)
             elif demonstrations.count < episodes and by == "keyboard":
                 _record_person(env, loaded, demonstrations, episodes, seed, view, crouch)
@@ -149,6 +151,11 @@ def command(
         click.echo(f"to imitate them: tltlc train {arguments} --method imitation --demonstrations {quote(str(folder))}")
         return cli.exits.CLEAN
     return report.status
+
+
+def _is_given(option: str) -> bool:
+    """Whether an option of the command is on the command line."""
+    return click.get_current_context().get_parameter_source(option) is ParameterSource.COMMANDLINE
 
 
 def _level_and_variant(level: str | None, spec: str | None) -> tuple[str, str]:

@@ -114,11 +114,21 @@ def test_a_tape_that_does_not_meet_the_spec_is_not_kept(tltlc: TltlcFunction, ta
 
 
 @pytest.mark.usefixtures("tape")
-@pytest.mark.parametrize("option", [("--by", "keyboard"), ("--seed", "3")])
+@pytest.mark.parametrize("option", [("--by", "keyboard"), ("--by", "expert"), ("--episodes", "3"), ("--seed", "3")])
 def test_a_tape_has_its_own_player_and_seed(tltlc: TltlcFunction, option: tuple[str, str]) -> None:  # noqa: F811
     result = tltlc("record", SCENE, "--tape", TAPE, *option)
     assert result.status == 2
-    assert "a tape has its own player and seed: leave out --by and --seed" in result.err
+    assert "a tape is a play with its own player and seed: leave out --by, --episodes and --seed" in result.err
+
+
+@pytest.mark.usefixtures("tape")
+def test_a_stopped_command_counts_the_tapes(tltlc: TltlcFunction, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tltl_runtime.training.imitation.tape_episode.tape_episode", stop)
+    result = tltlc("record", SCENE, "--tape", TAPE, "-o", "mine")
+    assert result.err.startswith("stopped: 0 of 1 demonstrations are in mine; run the same command again to continue")
 
 
 @pytest.mark.usefixtures("tape")
