@@ -479,9 +479,8 @@ def test_a_recorded_trace_is_judged(driver: str, tmp_path: Path) -> None:
     assert names == other_names == 'time,"near(a, b)",seen'
     assert [cells(row) for row in rows] == [cells(row) for row in other_rows]
     spec = tmp_path / "see.tltl"
-    spec.write_text(
-        "clock 60 Hz\nsignal near(a, b): number in [0, 1]\nsignal seen: bool\nspec see = F seen\n", encoding="utf-8"
-    )
+    text = "clock 60 Hz\nsignal near(a, b): number in [0, 1]\nsignal seen: bool\nspec see = F seen\n"
+    spec.write_text(text, encoding="utf-8")
     assert not (folder / "trace-0003.csv").exists()  # All of its samples were refused.
     words = [sys.executable, "-m", "tltlc", "monitor", str(spec), str(folder)]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
@@ -492,8 +491,7 @@ def test_a_recorder_writes_the_tape_of_a_play(driver: str, tmp_path: Path) -> No
     (tmp_path / "trace-0001.tape.jsonl").write_text("kept", encoding="utf-8")
     words = ["mono", driver, str(tmp_path), "tape"]
     result = subprocess.run(words, capture_output=True, text=True, timeout=HANG_S, check=False)
-    assert result.returncode == 0, result.stderr
-    assert result.stdout == "give the action of each sample of an episode, or of none\n"
+    assert (result.returncode, result.stdout) == (0, "give the action of each sample of an episode, or of none\n")
     tape = recorded_tapes.check_tape(tmp_path / "trace-0002.tape.jsonl", tmp_path)
     assert "csharp" in tape.header.versions
     assert (tmp_path / "trace-0001.tape.jsonl").read_text(encoding="utf-8") == "kept"

@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import Final
 
 from tltl_runtime.game.level import Level
-from tltl_runtime.game.level_name import is_scene
+from tltl_runtime.game.level_name import Variant, is_scene
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.policies.file import SUFFIX, read_policy
 from tltl_runtime.policies.shipped import shipped_policies
@@ -127,6 +127,16 @@ def training_help(name: str, folder: Path, scene: str, spec: str | None) -> str:
         training, then = name, ""
     words = ["tltlc", "train", *([spec] if spec else []), "--game", scene, "--out", str(folder / training)]
     return f"train it: `{shlex.join(words)}`{then}; paths are relative to the suite"
+
+
+def separate_keys_help(level: str, variant: Variant) -> str:
+    """Return a help text that says how to write ``LEVEL:VARIANT+OVERLAY`` in a suite."""
+    lines = [
+        f'`level = "{level}"`',
+        f'`variant = "{variant.name}"`',
+        *([f"`overlay = {json.dumps(variant.overlays)}`"] if variant.overlays else []),
+    ]
+    return f"write {', '.join(lines)}"
 
 
 def _is_level(path: Path) -> bool:

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from contextlib import suppress
 from os.path import normpath
@@ -26,6 +25,7 @@ from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.suite.named_files import (
     level_with_fitting_policy,
     policy_diagnostics,
+    separate_keys_help,
     similar_level,
     similar_policy,
     spec_diagnostics,
@@ -291,7 +291,7 @@ def _level(table: CheckedTable, folder: Path) -> tuple[str, str]:
         exists = name in level_files.names() or fileio.is_file(folder / name)
         help_text = diagnostic.help
         if variant and exists:
-            help_text = _separate_keys_help(name, parse_variant(variant))
+            help_text = separate_keys_help(name, parse_variant(variant))
         elif not level.endswith((".tltl", ".json")) and "+" not in level:
             help_text = similar_level(level, folder) or diagnostic.help
         table.log.append(Diagnostic(diagnostic.code, diagnostic.title, (table.label_of("level"),), help_text))
@@ -323,16 +323,6 @@ def _scene(table: CheckedTable, folder: Path) -> tuple[str, str]:
     if level == scene_place:
         return level, f"{Path(normpath(file)).as_posix()}{ending}"
     return level, Path(normpath(Path(file).with_name(Path(level).name))).as_posix() if level.endswith(".toml") else ""
-
-
-def _separate_keys_help(level: str, variant: Variant) -> str:
-    """Return a help text that says how to write ``LEVEL:VARIANT+OVERLAY`` in a suite."""
-    lines = [
-        f'`level = "{level}"`',
-        f'`variant = "{variant.name}"`',
-        *([f"`overlay = {json.dumps(variant.overlays)}`"] if variant.overlays else []),
-    ]
-    return f"write {', '.join(lines)}"
 
 
 def _overlays(table: CheckedTable, folder: Path) -> tuple[str, ...]:
