@@ -108,7 +108,7 @@ def command(
         from tltl_runtime.training.imitation.tape_episode import PLAYER as TAPE_PLAYER
 
         if tapes and any(_is_given(name) for name in ("by", "episodes", "seed")):
-            raise click.UsageError("a tape is a play with its own player and seed: leave out --by, --episodes and --seed")
+            raise click.UsageError("a tape is one play, with its own seed: leave out --by, --episodes and --seed")
         file, variant = _level_and_variant(level, spec)
         game = game_of(file)
         loaded = game.load_level(file, variant)

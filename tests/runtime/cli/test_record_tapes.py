@@ -118,7 +118,7 @@ def test_a_tape_that_does_not_meet_the_spec_is_not_kept(tltlc: TltlcFunction, ta
 def test_a_tape_has_its_own_player_and_seed(tltlc: TltlcFunction, option: tuple[str, str]) -> None:  # noqa: F811
     result = tltlc("record", SCENE, "--tape", TAPE, *option)
     assert result.status == 2
-    assert "a tape is a play with its own player and seed: leave out --by, --episodes and --seed" in result.err
+    assert "a tape is one play, with its own seed: leave out --by, --episodes and --seed" in result.err
 
 
 @pytest.mark.usefixtures("tape")
