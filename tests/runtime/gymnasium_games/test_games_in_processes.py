@@ -45,10 +45,11 @@ def _game(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.usefixtures("game")
-def test_a_game_is_checked(tltlc: Run) -> None:  # noqa: F811
-    result = tltlc("check", "--game", "counter.game.toml:short:trap")
+def test_a_game_is_checked(tltlc: Run, game: Path) -> None:  # noqa: F811
+    game.write_text(game.read_text().replace('"short"', '"long"'))
+    result = tltlc("check", "--game", "counter.game.toml:long:trap")
     assert result.status == 0, result.err
-    assert "short:trap has the signals that `count` uses" in result.err
+    assert "long:trap has the signals that `count` uses" in result.err
     assert "capabilities: params, clock, positions, outline, cause, snapshot, render\n  speed" in result.err
     assert "equal seeds and actions give equal plays: yes" in result.err
     assert "a restored snapshot is what was saved: yes" in result.err

@@ -109,7 +109,7 @@ def test_a_scene_that_the_game_cannot_load_is_an_error(
 def test_a_game_that_is_not_deterministic_is_measured_and_played(tltlc: Run, folder: Path) -> None:  # noqa: F811
     mortal(folder, "chance")
     with no_game_is_left():
-        result = tltlc("check", *PLACE)
+        result = tltlc("check", "--game", "counter.game.toml:short:v0")
         assert tltlc(*EVALUATE, "--episodes", "4").status == 0
         assert tltlc(*TRAIN, "--steps", "80").status in (0, 1)
     # Ten episodes and more would have to begin alike by chance.

@@ -264,7 +264,7 @@ def test_the_note_of_a_suite_is_shown() -> None:
 def test_a_level_that_looks_different_from_the_baseline_has_a_second_map() -> None:
     def maps(case: ReportedCase) -> tuple[int, str]:
         text = html_report(SuiteReport("maps", 0, 0.05, {}, (case,)))
-        return len([svg for svg in Page(text).all("svg") if (svg["class"] or "").endswith(" map")]), text
+        return len([svg for svg in Page(text).all("svg") if (svg.get("class") or "").endswith(" map")]), text
 
     case = samples.suite().cases[1]
     assert case.level is not None and case.baseline_level is not None
