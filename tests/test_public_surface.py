@@ -37,6 +37,7 @@ FORMATS = {
     "cached result of retraining": "runtime/tltl_runtime/regression/retrain/retrain.py",
     "checkpoint of a training": "runtime/tltl_runtime/training/files/checkpoint.py",
     "record of a training": "runtime/tltl_runtime/training/files/record.py",
+    "ways of a search": "runtime/tltl_runtime/training/files/found_ways.py",
     "settings of a run": "runtime/tltl_runtime/training/files/run_file.py",
     "protocol of games in other processes": "runtime/tltl_runtime/wire/hello.py",
 }
