@@ -214,6 +214,8 @@ class _Training:
         # A search at a standstill that was stopped is made again after an iteration, and needs its ways until then.
         self._may_have_ways = searched is not None or not self._state.iteration
         self._files = TrainingFiles(run, self._card, checkpoint) if group.rank == 0 else None
+        # The start and the search take nothing from the share of the time in which an agent is cloned.
+        self._untrained_s = self._setup_s if self._state.iteration else self._state.seconds
         self._update_gail_time()
 
     def reports(self) -> Generator[TrainingReport]:
@@ -332,7 +334,7 @@ class _Training:
     def _update_gail_time(self) -> None:
         """Tell GAIL the training time, because it clones for a share of the limit of minutes."""
         if isinstance(self._runner.alg, Gail):
-            self._runner.alg.seconds = self._state.seconds
+            self._runner.alg.seconds = max(0.0, self._state.seconds - self._untrained_s)
 
     def _best_policy(self) -> BestPolicy | None:
         """Return the best policy so far; None until ``episodes`` episodes (a window) have ended.
