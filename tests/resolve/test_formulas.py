@@ -182,10 +182,10 @@ def test_signals_inside_quantifiers_are_resolved_once_for_each_entity(monkeypatc
 
 
 def test_a_quantifier_stops_as_soon_as_it_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tltlc.resolve import formulas
+    from tltlc.resolve import groups
 
     calls: list[object] = []
-    monkeypatch.setattr(formulas, "entity", lambda *arguments: calls.append(arguments) or entity(*arguments))
+    monkeypatch.setattr(groups, "entity", lambda *arguments: calls.append(arguments) or entity(*arguments))
     names = ", ".join(f"g{i}" for i in range(300))
     text = f"entity {names} signal at(x: entity): bool spec s = all x in ({names}): all y in ({names}): "
     _, (diagnostic,) = resolve_text(f"{text} F (at(x) & at(y))")

@@ -94,6 +94,11 @@ class Builder:
     def make_entities(self, span: Span, _entity: Token, names: tuple[tree.NameExpr, ...]) -> tree.EntityDecl:
         return tree.EntityDecl(names, self._doc(span), span)
 
+    def make_group_decl(
+        self, span: Span, _entity: Token, name: Token, members: tuple[tree.NameExpr, ...]
+    ) -> tree.GroupDecl:
+        return tree.GroupDecl(name.text, members, self._doc(span), name.span, span)
+
     def make_param(
         self, span: Span, name: Token, type_: str | None, interval: tree.Interval | None, value: Expr
     ) -> tree.ParamDecl:
@@ -212,6 +217,11 @@ class Builder:
         self, span: Span, word: Token, variable: Token, _in: Token, entities: tuple[tree.NameExpr, ...], body: Expr
     ) -> tree.Quantified:
         return tree.Quantified(word.type == "ALL", variable.text, entities, body, span)
+
+    def make_quantified_group(
+        self, span: Span, word: Token, variable: Token, _in: Token, group: tree.NameExpr, body: Expr
+    ) -> tree.Quantified:
+        return tree.Quantified(word.type == "ALL", variable.text, (group,), body, span, brackets=False)
 
     def make_when(self, span: Span, *cases_and_otherwise: tree.WhenCase | Expr) -> tree.WhenExpr:
         *cases, otherwise = cases_and_otherwise

@@ -10,7 +10,7 @@ from tltlc.grammar.typos import likely_name
 DECLARATIONS: Final = {
     "import": '`import NAME`, `import NAME (name, name)`, `import NAME as NAME` or `import "file.tltl"`',
     "signal": "`signal NAME: TYPE in [low, high]`",
-    "entity": "`entity NAME, NAME`",
+    "entity": "`entity NAME, NAME` or `entity GROUP = NAME, NAME`",
     "param": "`param NAME: TYPE in [low, high] = VALUE`",
     "clock": "`clock 20 Hz` or `clock 0.05 s`",
     "predicate": "`predicate NAME(x: entity) in [-1, 1] = EXPRESSION`",

@@ -109,13 +109,18 @@ class GroupExpr:
 
 @record
 class Quantified:
-    """A quantifier: ``all x in (s1, s2): body`` (``all`` is True) or ``any x in (…): body``."""
+    """A quantifier: ``all x in (s1, s2): body`` (``all`` is True) or ``any x in (…): body``.
+
+    ``entities`` may also name groups. Without ``brackets``, as in ``all x in guards: body``, there is
+    one name.
+    """
 
     all: bool
     variable: str
     entities: tuple[NameExpr, ...]
     body: Expr
     span: Span
+    brackets: bool = True
 
 
 @record
@@ -202,6 +207,17 @@ class EntityDecl:
 
     names: tuple[NameExpr, ...]
     doc: str
+    span: Span
+
+
+@record
+class GroupDecl:
+    """A declaration of a group of entities: ``entity guards = g1, g2``. A member may be a group, too."""
+
+    name: str
+    members: tuple[NameExpr, ...]
+    doc: str
+    name_span: Span
     span: Span
 
 
@@ -335,7 +351,17 @@ class TestDecl:
 
 
 Declaration = Union[
-    Import, SignalDecl, EntityDecl, ParamDecl, ClockDecl, PredicateDecl, LetDecl, ExclusiveDecl, SpecDecl, TestDecl
+    Import,
+    SignalDecl,
+    EntityDecl,
+    GroupDecl,
+    ParamDecl,
+    ClockDecl,
+    PredicateDecl,
+    LetDecl,
+    ExclusiveDecl,
+    SpecDecl,
+    TestDecl,
 ]
 
 

@@ -33,7 +33,8 @@ from tltlc.resolve.bounds import expand_bound
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
 from tltlc.resolve.declared_values import signal
-from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula_error
+from tltlc.resolve.groups import entities
+from tltlc.resolve.kinds import kind_of, lookup, not_a_formula_error
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
@@ -232,9 +233,9 @@ def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     subject = f"`{'all' if expr.all else 'any'} {expr.variable}`"
     parts: list[Formula] = []
     size = 0
-    for name in expr.entities:
+    for member in entities(expr.entities, env):
         _count_expansion(expr.span, env)
-        part = yield _formula(expr.body, env.with_local(expr.variable, entity(name, env)))
+        part = yield _formula(expr.body, env.with_local(expr.variable, member))
         parts.append(part)
         size += env.context.tree_size(part)
         if size > LARGEST_EXPANSION and not env.unbounded:

@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Fix, replacement_fix
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.insertion import declaration_edit
-from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, SignalDecl
+from tltlc.grammar.tree import CallExpr, Expr, GroupDecl, GroupExpr, NameExpr, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
@@ -123,6 +123,8 @@ def entity(expr: Expr, env: Env) -> Entity:
             binding = lookup(expr, env, ("entity",), "entity")
             if binding.kind == "entity":
                 return Entity(binding.name)
+            if binding.kind == "group":
+                raise _group_error(expr, env)
     raise problem(
         "TLT0302",
         f"expected an entity, found {kind_in_words(expr, env)}",
@@ -130,6 +132,13 @@ def entity(expr: Expr, env: Env) -> Entity:
         expr.span,
         advice=_entities_help(env) if not isinstance(expr, tree.BinaryExpr) else _ONE_ENTITY,
     )
+
+
+def _group_error(expr: NameExpr, env: Env) -> ResolutionError:
+    """Return the error for a group where one entity is needed."""
+    title = f"expected an entity, found the group `{expr.name}`"
+    advice = f"name one of its members, or write a condition for each: `all x in {expr.name}: …`"
+    return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
 
 
 _ONE_ENTITY = "name one entity here: write a condition for each entity, and join them with `and`, `or` or `then`"
@@ -183,8 +192,16 @@ def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
             return "number" if isinstance(expr, CallExpr) and expr.name in FUNCTIONS else "formula"
         if isinstance(binding.declaration, SignalDecl):
             return "formula" if binding.declaration.type == "bool" else "number"
-        return "entity" if binding.kind == "entity" else "number" if binding.kind == "param" else "formula"
+        return "entity" if binding.kind in ("entity", "group") else "number" if binding.kind == "param" else "formula"
     return "formula"
+
+
+def is_group(expr: Expr, env: Env) -> bool:
+    """Whether an expression is the name of a group of entities."""
+    if not isinstance(expr, NameExpr) or expr.name in env.local:
+        return False
+    binding = env.scope.names.get(expr.name)
+    return binding is not None and isinstance(binding.declaration, GroupDecl)
 
 
 def kind_in_words(expr: Expr, env: Env) -> str:
@@ -195,6 +212,8 @@ def kind_in_words(expr: Expr, env: Env) -> str:
         return f"`{'true' if expr.value else 'false'}`"
     if isinstance(expr, tree.BinaryExpr) and expr.op in ("<", "<=", ">", ">="):
         return "a comparison"
+    if is_group(expr, env):
+        return "a group of entities"
     kind = kind_of(expr, env)
     return {"entity": "an entity", "number": "a number", "formula": "a formula"}[kind]
 
@@ -204,6 +223,8 @@ def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
     advice = None
     if kind_of(expr, env) == "number":
         advice = _comparison_help(expr, env)
+    elif is_group(expr, env):
+        advice = f"write a condition for each member: `all x in {env.scope.source.slice(expr.span)}: …`"
     elif kind_of(expr, env) == "entity":
         advice = entity_help(env.scope.source.slice(expr.span), env, number=False)
     kind = kind_in_words(expr, env)

@@ -14,6 +14,7 @@ from tltlc.logic.formula import Formula
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.context import Context
 from tltlc.resolve.declarations import declare
+from tltlc.resolve.groups import check_group
 from tltlc.resolve.imports import LoadedModule, load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.predicate_checks import check_predicates
@@ -215,7 +216,7 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
 
 
 def _check_unused(scope: Scope, env: Env) -> None:
-    """Check the bodies of the module's own predicates and ``let`` definitions, used or not; log errors."""
+    """Check the module's own predicates, ``let`` definitions and groups, used or not; log errors."""
     for binding in scope.names.values():
         if binding.scope is not scope:
             continue
@@ -224,5 +225,7 @@ def _check_unused(scope: Scope, env: Env) -> None:
                 predicates.check_unused(binding, env)
             elif binding.kind == "let":
                 formulas.check_unused(binding, replace(env, local={}))
+            elif binding.kind == "group":
+                check_group(binding, env)
         except ResolutionError as failure:
             env.context.log.add(failure.diagnostic)

@@ -8,14 +8,24 @@ from typing import Literal, Union
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
-from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, NameExpr, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.tree import (
+    EntityDecl,
+    GroupDecl,
+    Import,
+    LetDecl,
+    Module,
+    NameExpr,
+    ParamDecl,
+    PredicateDecl,
+    SignalDecl,
+)
 from tltlc.grammar.typos import likely_name
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import LoadedModule
 from tltlc.resolve.problem import Log, problem
 
-BindingKind = Literal["signal", "param", "predicate", "let", "entity"]
-NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, NameExpr]
+BindingKind = Literal["signal", "param", "predicate", "let", "entity", "group"]
+NamedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, GroupDecl, NameExpr]
 FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 _MERGED = ("signal", "param", "entity")
 
@@ -142,6 +152,9 @@ def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, l
 
 
 def _own_bindings(scope: Scope) -> Iterator[Binding]:
+    """Yield the bindings of a module's own names; a group declares those of its members that nothing else declares."""
+    declared = {name.name for name in _listed_entities(scope.module)}
+    declared.update(declaration.name for declaration in scope.module.declarations if isinstance(declaration, GroupDecl))
     for declaration in scope.module.declarations:
         if isinstance(declaration, SignalDecl):
             yield Binding("signal", declaration, scope)
@@ -154,6 +167,20 @@ def _own_bindings(scope: Scope) -> Iterator[Binding]:
         elif isinstance(declaration, EntityDecl):
             for name in declaration.names:
                 yield Binding("entity", name, scope)
+        elif isinstance(declaration, GroupDecl):
+            yield Binding("group", declaration, scope)
+            for member in declaration.members:
+                # A name with a point, such as `st.guard`, is that of an import.
+                if member.name not in declared and "." not in member.name:
+                    declared.add(member.name)
+                    yield Binding("entity", member, scope)
+
+
+def _listed_entities(module: Module) -> Iterator[NameExpr]:
+    """Yield the names in the declarations ``entity a, b`` of a module."""
+    for declaration in module.declarations:
+        if isinstance(declaration, EntityDecl):
+            yield from declaration.names
 
 
 def _declare(scope: Scope, binding: Binding) -> Diagnostic | None:

@@ -32,8 +32,8 @@ class SpecPlaces:
         declared = (
             entity
             for declaration in self._declarations
-            if isinstance(declaration, syntax.EntityDecl)
-            for entity in declaration.names
+            if isinstance(declaration, (syntax.EntityDecl, syntax.GroupDecl))
+            for entity in (declaration.names if isinstance(declaration, syntax.EntityDecl) else declaration.members)
         )
         return self._label(
             _first_use(self._declarations_of_spec, name)

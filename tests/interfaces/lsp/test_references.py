@@ -217,3 +217,21 @@ def test_a_closed_file_counts_with_its_saved_text(tmp_path: Path) -> None:
     assert len(references(occurrence.symbol, workspace)) == 2
     other.unlink()
     assert len(references(occurrence.symbol, workspace)) == 2
+
+
+GROUPS = """\
+signal at(x: entity): bool
+entity guards = g1, g2
+entity foes = guards, boss
+spec s = all g in guards: at(g) & at(g1) & (any f in (foes, g1): at(f))
+"""
+
+
+@pytest.mark.parametrize(
+    ("at", "new", "count"),
+    [("guards =", "watch", 3), ("g1, g2", "first", 3), ("boss", "chief", 1), ("foes,", "enemies", 2)],
+)
+def test_a_group_and_its_members_are_renamed(at: str, new: str, count: int) -> None:
+    old = at.partition(" ")[0].rstrip(",")
+    assert texts_after_rename(at, new, text=GROUPS) == {"main": GROUPS.replace(old, new)}
+    assert GROUPS.count(old) == count

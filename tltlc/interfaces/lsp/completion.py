@@ -31,6 +31,7 @@ _KINDS: Final = {
     "predicate": _ItemKind.Function,
     "let": _ItemKind.Function,
     "entity": _ItemKind.EnumMember,
+    "group": _ItemKind.Enum,
 }
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
 _HEADS: Final = ("signal", "param", "predicate", "let")
@@ -130,6 +131,9 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
     elif place.start == "declaration" and (len(place.piece) == 1 or first in ("entity", "clock")):
         if first == "exclusive":
             yield from _expression_names(document, place)
+        elif any(token.type == "EQUAL" for token in place.piece):
+            # The members of a group.
+            yield from _visible_names(document, ("entity", "group"))
     elif place.start == "declaration" and first in _HEADS and not _is_in_body(place.piece):
         if place.last == "COLON":
             yield from _types(first)
@@ -169,7 +173,7 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
     call = _open_call(place.piece)
     binding = document.scope.names.get(call[0]) if call else None
     if call and call[0] == "in":
-        yield from _visible_names(document, ("entity",))
+        yield from _visible_names(document, ("entity", "group"))
         return
     if call and binding and isinstance(binding.declaration, (SignalDecl, PredicateDecl, LetDecl)):
         position, parameters = call[1], binding.declaration.parameters

@@ -52,7 +52,8 @@ def declaration_text(
         return f"entity {declaration.name}"
     if isinstance(declaration, Quantified):
         names = ", ".join(entity.name for entity in declaration.entities)
-        return f"{'all' if declaration.all else 'any'} {declaration.variable} in ({names})"
+        listed = f"({names})" if declaration.brackets else names
+        return f"{'all' if declaration.all else 'any'} {declaration.variable} in {listed}"
     span = declaration.span
     text = dedent(source.slice(span))
     if not head and len(text) <= _LONGEST:

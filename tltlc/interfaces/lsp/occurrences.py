@@ -13,7 +13,7 @@ from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.walk import children
 from tltlc.resolve.scope import Binding, NamedDeclaration, Scope
 
-SymbolKind = Literal["signal", "param", "predicate", "let", "entity", "spec", "parameter", "variable"]
+SymbolKind = Literal["signal", "param", "predicate", "let", "entity", "group", "spec", "parameter", "variable"]
 MERGED: tuple[SymbolKind, ...] = ("signal", "param", "entity")
 """The kinds of symbols that several files of a program may declare: equal names are then one symbol.
 
@@ -116,6 +116,10 @@ class _Walk:
             case tree.EntityDecl():
                 for name in declaration.names:
                     self._note_declaration(name.name, name.span)
+            case tree.GroupDecl():
+                self._note_declaration(declaration.name, declaration.name_span)
+                for member in declaration.members:
+                    self._note_member(member)
             case tree.ExclusiveDecl():
                 self._expressions(declaration.atoms)
             case tree.SpecDecl():
@@ -208,6 +212,14 @@ class _Walk:
         binding = self._scope.names.get(name)
         if binding is not None:
             self._note(span, symbol_of(binding), declares=True)
+
+    def _note_member(self, member: tree.NameExpr) -> None:
+        """Collect a member of a group; the group declares it if nothing else does."""
+        binding = self._scope.names.get(member.name)
+        if binding is not None and binding.declaration is member:
+            self._note_declaration(member.name, member.span)
+        else:
+            self._note_use(member.name, member.span, EMPTY)
 
     def _note_use(self, name: str, span: Span, local: _Locals) -> None:
         if name in local:

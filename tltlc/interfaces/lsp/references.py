@@ -151,7 +151,7 @@ def _distinct(places: list[Occurrence]) -> list[Occurrence]:
 
 
 def _check_form(symbol: Symbol, name: str) -> None:
-    pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity") else _PLAIN
+    pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity", "group") else _PLAIN
     if not pattern.match(name):
         raise _rename_error(f"`{name}` is not a name", "use ASCII letters, digits and `_`, and no digit first")
     if name in load().words:

@@ -76,6 +76,8 @@ def _outline_entries(declaration: tree.Declaration) -> Iterator[tuple[str, types
         case tree.EntityDecl():
             for name in declaration.names:
                 yield name.name, types.SymbolKind.EnumMember, name.span, name.span
+        case tree.GroupDecl():
+            yield declaration.name, types.SymbolKind.Enum, declaration.span, declaration.name_span
         case tree.TestDecl():
             yield declaration.title or "test", types.SymbolKind.Event, declaration.span, declaration.spec.span
         case tree.SignalDecl() | tree.ParamDecl() | tree.PredicateDecl() | tree.LetDecl() | tree.SpecDecl():

@@ -19,6 +19,7 @@ _TYPES: Final = {
     "spec": types.SemanticTokenTypes.Class,
     "parameter": types.SemanticTokenTypes.Parameter,
     "variable": types.SemanticTokenTypes.Parameter,
+    "group": types.SemanticTokenTypes.Enum,
 }
 _MODIFIERS: Final = (
     types.SemanticTokenModifiers.Declaration,

@@ -18,7 +18,7 @@ from tltlc.resolve.spec import Param, Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue
 from tltlc.tools.diff.values import Meaning, meaning_of
 
-ExportKind = Literal["signal", "param", "predicate", "let", "entity"]
+ExportKind = Literal["signal", "param", "predicate", "let", "entity", "group"]
 
 
 @record

@@ -40,6 +40,9 @@ class DeclarationPrinter:
             case tree.EntityDecl():
                 self._page.put("entity ")
                 self._expressions.put_list([*map(name_item, node.names)], STEP)
+            case tree.GroupDecl():
+                self._page.put(f"entity {node.name} = ")
+                self._expressions.put_list([*map(name_item, node.members)], STEP)
             case tree.ParamDecl():
                 self._put_head("param", node, node.type, node.interval, node.value.span.start)
                 self._put_body(node.value)

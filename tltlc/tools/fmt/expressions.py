@@ -141,7 +141,10 @@ class Expressions:
                 self.put(node.operand, indent, reserved)
             case tree.Quantified():
                 self._page.put(f"{self._one_line.quantifier(node)} ")
-                self.put_in_brackets([*map(name_item, node.entities)], None, 1)
+                if node.brackets:
+                    self.put_in_brackets([*map(name_item, node.entities)], None, 1)
+                else:
+                    self._page.put(node.entities[0].name)
                 self._page.put(":")
                 inner = self._page.indent + STEP
                 self._page.put_comments(node.body.span.start, inner)

@@ -57,7 +57,7 @@ class OneLinePrinter:
                 text = self._style.constants["true" if node.value else "false"]
             case tree.Quantified():
                 entities = ", ".join(entity.name for entity in node.entities)
-                head = f"{self.quantifier(node)} ({entities}): "
+                head = f"{self.quantifier(node)} {f'({entities})' if node.brackets else entities}: "
                 operand = self.text(node.body, room - len(head))
                 text = None if operand is None else head + operand
             case tree.WhenExpr():

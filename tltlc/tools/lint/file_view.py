@@ -17,8 +17,8 @@ from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve import formulas
+from tltlc.resolve.groups import entities
 from tltlc.resolve.imports import LoadedModule
-from tltlc.resolve.kinds import entity
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.spec import ResolvedFile, Spec
 from tltlc.resolve.values import Env
@@ -89,10 +89,8 @@ class ScopedExpression:
         """
         if isinstance(self.tree, Quantified):
             variable, body = self.tree.variable, self.tree.body
-            return [
-                ScopedExpression(body, self.env.with_local(variable, entity(name, self.env)))
-                for name in self.tree.entities
-            ]
+            members = entities(self.tree.entities, self.env)
+            return [ScopedExpression(body, self.env.with_local(variable, member)) for member in members]
         return [self.with_tree(child) for child in children(self.tree)]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator
 
 from tltlc.core.record import record
-from tltlc.grammar.tree import CallExpr, Declaration, Expr, Module, NameExpr, Quantified, SpecDecl
+from tltlc.grammar.tree import CallExpr, Declaration, Expr, GroupDecl, Module, NameExpr, Quantified, SpecDecl
 from tltlc.grammar.walk import expressions, parts
 
 _FORMULAS = ("reach", "keep", "avoid", "require")
@@ -28,6 +28,8 @@ def mentioned_names(module: Module) -> frozenset[str]:
 
 
 def _in_declaration(declaration: Declaration) -> Iterator[str]:
+    if isinstance(declaration, GroupDecl):
+        yield from (member.name for member in declaration.members)
     for expression in _expressions(declaration):
         for part in parts(expression):
             if isinstance(part, (NameExpr, CallExpr)):

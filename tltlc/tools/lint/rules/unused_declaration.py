@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator
 from typing import Final, Union
 
 from tltlc.core.source import Span
-from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.tree import EntityDecl, GroupDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import item_removal_spans, removal_span
 from tltlc.tools.lint.rule import LintRule, RuleFinding, removal_fix
@@ -16,7 +16,7 @@ _CheckedDeclaration = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl]
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
-    """Yield a finding for each signal, param, entity, predicate and let that is not used.
+    """Yield a finding for each signal, param, entity, group, predicate and let that is not used.
 
     A name is used if an expression in this file, or a file that imports this file, mentions it.
     """
@@ -26,6 +26,8 @@ def check(view: FileView) -> Iterator[RuleFinding]:
     for declaration in view.module.declarations:
         if isinstance(declaration, EntityDecl):
             yield from _entities(declaration, used_names, view)
+        elif isinstance(declaration, GroupDecl) and declaration.name not in used_names:
+            yield _group_finding(declaration, view)
         elif isinstance(declaration, (SignalDecl, ParamDecl, PredicateDecl, LetDecl)) and not (
             declaration.name in used_names or _is_refined(declaration, view)
         ):
@@ -42,6 +44,13 @@ def _entities(declaration: EntityDecl, used_names: Container[str], view: FileVie
         else:
             removed = item_removal_spans(spans, index, view.module.comments)
         yield _finding("entity", declaration.names[index].name, spans[index], removed, view)
+
+
+def _group_finding(declaration: GroupDecl, view: FileView) -> RuleFinding:
+    # There is no fix: the group may be what declares its members.
+    members = ", ".join(member.name for member in declaration.members)
+    help_ = f"use it, as in `all x in {declaration.name}: …`, or declare its members alone: `entity {members}`"
+    return RuleFinding(f"nothing uses the group `{declaration.name}`", (view.label(declaration.name_span),), help_)
 
 
 def _finding(kind: str, name: str, place: Span, removed: tuple[Span, ...], view: FileView) -> RuleFinding:
