@@ -235,9 +235,9 @@ def _start_lines(run: TrainingRun, *, resume: bool) -> Iterator[str]:
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or (run.folder / CHECKPOINT).exists():
         return
-    found = WaysFile(run).read() if run.settings.searches else None
-    if found and not files:
-        yield f"it was stopped during its search, which goes on {kept_ways_text(len(found.demonstrations))}"
+    ways = WaysFile(run).read() if run.settings.searches else None
+    if ways and not files:
+        yield f"it was stopped during its search, which goes on {kept_ways_text(len(ways.demonstrations))}"
         return
     if not files:
         yield f"it was interrupted before it learned anything: with no {CHECKPOINT}, it starts from its beginning"

@@ -11,7 +11,6 @@ from tests.interfaces.playground.browser_page import (  # noqa: F401
     _address,
     _browser,
     _page,
-    current,
     needs_browser,
     open_page,
     summary,

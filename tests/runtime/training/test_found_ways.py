@@ -42,15 +42,15 @@ def stopped_search(folder: Path, count: int) -> TrainingRun:
 @pytest.mark.slow
 def test_a_stopped_search_goes_on_with_its_ways(tmp_path: Path) -> None:
     run = stopped_search(tmp_path / "run", 2)
-    found = WaysFile(run).read(STEALTH_ACTIONS)
-    assert found is not None and len(found.demonstrations) >= 2
+    kept = WaysFile(run).read(STEALTH_ACTIONS)
+    assert kept is not None and len(kept.demonstrations) >= 2
     searches: list[SearchProgress] = []
     (report,) = train(run, resume=True, on_search=searches.append)
     first, last = searches[0], searches[-1]
-    assert len(first.lengths) >= 2 and first.steps > found.progress.steps and first.seconds > found.progress.seconds
+    assert len(first.lengths) >= 2 and first.steps > kept.progress.steps and first.seconds > kept.progress.seconds
     assert len(last.lengths) >= 4 and last.complete and report.searched == last
     seeds = checkpoint_of(run).processes[0]["way_seeds"].tolist()
-    assert {way.seed for way in found.demonstrations} <= {*seeds}
+    assert {way.seed for way in kept.demonstrations} <= {*seeds}
     assert not (run.folder / WAYS).exists(), "the checkpoint has the ways"
 
 
@@ -59,9 +59,9 @@ def test_a_search_that_has_found_enough_ways_does_not_go_on(tmp_path: Path) -> N
     run = stopped_search(tmp_path / "run", 4)
     searches: list[SearchProgress] = []
     (report,) = train(run, resume=True, on_search=searches.append)
-    found = WaysFile(run)
+    file = WaysFile(run)
     assert [progress.complete for progress in searches] == [True]
-    assert report.searched is not None and len(report.searched.lengths) >= 4 and found.read() is None
+    assert report.searched is not None and len(report.searched.lengths) >= 4 and file.read() is None
 
 
 @pytest.mark.slow
@@ -100,8 +100,8 @@ def run(tmp_path: Path) -> TrainingRun:
 
 
 def test_the_file_gives_back_what_was_stored(run: TrainingRun) -> None:
-    found = WaysFile(run).read(STEALTH_ACTIONS)
-    assert found == FoundWays(PROGRESS, (WAY,))
+    kept = WaysFile(run).read(STEALTH_ACTIONS)
+    assert kept == FoundWays(PROGRESS, (WAY,))
 
 
 def test_another_training_or_search_has_no_use_for_the_ways(run: TrainingRun) -> None:

@@ -172,7 +172,7 @@ class TrajectorySearch:
 
     ``distances`` are the distances of the automaton's states to the goal, None for traps.
 
-    With ``found``, the search goes on after an earlier one that was stopped: it begins with the
+    With ``earlier``, the search goes on after an earlier one that was stopped: it begins with the
     demonstrations of that search, and with its steps and seconds. The places that it had reached are
     lost.
     """
@@ -185,7 +185,7 @@ class TrajectorySearch:
         failures: Sequence[FailedEpisode] = (),
         policy: PolicyFunction | None = None,
         faults: list[Diagnostic] | None = None,
-        found: FoundWays | None = None,
+        earlier: FoundWays | None = None,
         distances: Sequence[int | None] = (),
     ) -> None:
         self._env = env
@@ -194,8 +194,8 @@ class TrajectorySearch:
         self._faults_before = len(self._faults)
         self._distances = distances
         self._exploration = exploration
-        self._before = found.progress if found else SearchProgress(0, 0, 0.0, 0, (), complete=False)
-        self.demonstrations: list[SuccessfulEpisode] = list(found.demonstrations) if found else []
+        self._before = earlier.progress if earlier else SearchProgress(0, 0, 0.0, 0, (), complete=False)
+        self.demonstrations: list[SuccessfulEpisode] = list(earlier.demonstrations) if earlier else []
         known_seeds = {demonstration.seed for demonstration in self.demonstrations}
         self._failures = [failure for failure in failures if failure.seed not in known_seeds]
         self._states = {failure.state for failure in failures}

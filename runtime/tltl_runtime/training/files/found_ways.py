@@ -58,15 +58,15 @@ class WaysFile:
         # The identity now: a level that is edited during the search is another one.
         self._identity, self._steps_before = identity(run), steps_before
 
-    def write(self, found: FoundWays) -> None:
+    def write(self, ways: FoundWays) -> None:
         """Replace the content of the file.
 
         Raises TltlError, TLT0005, if the file cannot be written.
         """
-        ways = tuple(
-            _Way(way.seed, way.end, tuple(tuple(action) for action in way.actions)) for way in found.demonstrations
+        encoded = tuple(
+            _Way(way.seed, way.end, tuple(tuple(action) for action in way.actions)) for way in ways.demonstrations
         )
-        content = _Content(_FORMAT, _VERSION, self._identity, self._steps_before, found.progress, ways)
+        content = _Content(_FORMAT, _VERSION, self._identity, self._steps_before, ways.progress, encoded)
         text = json.dumps(to_json(content)) + "\n"
         fileio.write_files(self._folder, {self._name: text}, WRITABLE, durable=True, over_inputs=True)
 

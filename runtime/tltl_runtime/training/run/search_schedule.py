@@ -82,14 +82,14 @@ def search_after_standstill(
 def _search_options(
     run: TrainingRun, group: ProcessGroup, env: WorkerVectorEnv, file: WaysFile, iteration: int, clock: TrainingClock
 ) -> dict[str, Any]:
-    """Return the options ``seed``, ``found`` and ``distances`` of a search after an iteration.
+    """Return the options ``seed``, ``earlier`` and ``distances`` of a search after an iteration.
 
     If ``file`` has ways of an earlier search that was stopped, the time of that search is added to ``clock``.
     """
-    found = file.read(ActionEncoding(env.single_action_space))
-    clock.add(found.progress.seconds if found else 0.0)
-    seed = stream(run, group, Purpose.SEARCH, iteration, len(found.demonstrations) if found else 0)
-    return {"seed": seed, "found": found, "distances": [state.distance for state in run.fspa.states]}
+    earlier = file.read(ActionEncoding(env.single_action_space))
+    clock.add(earlier.progress.seconds if earlier else 0.0)
+    seed = stream(run, group, Purpose.SEARCH, iteration, len(earlier.demonstrations) if earlier else 0)
+    return {"seed": seed, "earlier": earlier, "distances": [state.distance for state in run.fspa.states]}
 
 
 def _ways_file(run: TrainingRun, group: ProcessGroup, state: Checkpoint | None) -> WaysFile:
