@@ -41,7 +41,7 @@ var level = null
 var judge = null  # the monitor inside the game
 var recorder = null
 var snapshots = []
-var waiting = null  # an action that waits for a frame, after which the engine knows where bodies were put
+var waiting = null  # an action that waits for the frame after which rays hit bodies where they were put
 
 
 func _ready() -> void:
@@ -65,6 +65,9 @@ func _physics_process(_delta) -> void:
 		elif action != null:
 			level.tick(action[0] - 1, action[1] - 1)
 			judge.step(level.signals())
+		return
+	if level.is_put:
+		level.is_put = false
 		return
 	var east = int(Input.is_action_pressed("ui_right")) - int(Input.is_action_pressed("ui_left"))
 	var north = int(Input.is_action_pressed("ui_up")) - int(Input.is_action_pressed("ui_down"))
