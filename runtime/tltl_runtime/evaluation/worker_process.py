@@ -11,18 +11,19 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from functools import partial
 from multiprocessing.connection import Connection
 from typing import Final
 
 from tltl_runtime.evaluation.player import EpisodePlayer, EpisodeRequest
 from tltl_runtime.evaluation.scheduler import Result, WorkerLostError
-from tltl_runtime.support.child_processes import end_with_parent, worker_context
+from tltl_runtime.support.child_processes import begin_worker, kill_worker, worker_context
 from tltlc.api import fileio
 
 _PROCESS_ENDED: Final = "its process ended; if it printed no error, it was perhaps killed because no memory was left"
 
 _TO_END_S: Final = 5.0
-"""The seconds that idle processes have to close their players."""
+"""The seconds that processes have to close their players."""
 
 
 class WorkerProcess:
@@ -46,7 +47,8 @@ class WorkerProcess:
         self._playing: Future[Result] | None = None
         self._receiver: threading.Thread | None = None
         # At its exit, Python waits for processes that nobody closed.
-        atexit.register(self._process.kill)
+        self._kill = partial(kill_worker, self._process)
+        atexit.register(self._kill)
 
     def play(self, request: EpisodeRequest) -> Future[Result]:
         """Start to play an episode; return a future of its result.
@@ -61,19 +63,21 @@ class WorkerProcess:
         return future
 
     def end(self) -> None:
-        """Kill the process if it plays an episode; otherwise tell it to close its player and to end."""
-        if self._playing is not None and not self._playing.done():
-            self._process.kill()
-        if self._receiver is not None:
-            self._receiver.join(_TO_END_S)
-        self._connection.close()
+        """Tell the process to close its player and to end, even if it plays an episode."""
+        if self._playing is None or self._playing.done():
+            self._connection.close()
+        else:
+            self._process.terminate()
 
     def wait(self, seconds: float) -> None:
         """Wait for the end of the process; kill it if it takes longer than ``seconds``."""
         self._process.join(seconds)
-        self._process.kill()
+        self._kill()
         self._process.join(_TO_END_S)
-        atexit.unregister(self._process.kill)
+        if self._receiver is not None:
+            self._receiver.join(_TO_END_S)
+        self._connection.close()
+        atexit.unregister(self._kill)
 
     def close(self) -> None:
         """End the process, even if it plays an episode."""
@@ -116,9 +120,8 @@ class _TracebackInWorker(Exception):
 
 def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
     """Play the episodes that arrive at ``connection`` until its other end is closed."""
-    # The parent process handles Ctrl-C.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    end_with_parent()
+    begin_worker()
+    signal.signal(signal.SIGTERM, _leave)
     if os.name != "nt":
         # A program that the game starts would keep the pipe open after the end of this process.
         os.set_inheritable(connection.fileno(), False)
@@ -132,9 +135,18 @@ def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
             except Exception as error:
                 answer = _failure(error)
             connection.send_bytes(answer)
-    except (EOFError, OSError):
+    except (EOFError, OSError, _Left):
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
         if player is not None:
             player.close()
+
+
+class _Left(BaseException):
+    """The other process has asked this one to leave the episode that it plays."""
+
+
+def _leave(*_: object) -> None:
+    raise _Left
 
 
 def _failure(error: Exception) -> bytes:

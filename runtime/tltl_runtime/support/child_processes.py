@@ -1,14 +1,17 @@
-"""The :mod:`multiprocessing` context that starts worker processes."""
+"""Worker processes: the :mod:`multiprocessing` context that starts them, their beginning and their end."""
 
 from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import sys
 import threading
 from collections.abc import Iterable
+from contextlib import suppress
 from multiprocessing import resource_tracker
 from multiprocessing.context import ForkServerContext, SpawnContext
+from multiprocessing.process import BaseProcess
 
 
 def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext:
@@ -32,17 +35,34 @@ def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext
     return context
 
 
-def end_with_parent() -> None:
-    """End this process, a worker, as soon as its parent process has ended.
+def begin_worker() -> None:
+    """Prepare this process, a worker: Ctrl-C is left to its parent, and it ends as soon as its parent has ended.
 
     Without this, a worker whose parent is killed would wait for ever for the next command, or play on
-    with a game that does not answer.
+    with a game that does not answer. On Unix, the worker leads a process group of its own, to which the
+    programs belong that its games start: they end with it.
     """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if os.name != "nt":
+        os.setpgid(0, 0)
     threading.Thread(target=_end_with_parent, name="end with the parent process", daemon=True).start()
+
+
+def kill_worker(process: BaseProcess) -> None:
+    """Kill a worker, if it still runs, and on Unix the programs that it has started and not ended."""
+    pid = process.pid
+    if os.name != "nt" and pid is not None:
+        # There is no such group if the worker has not begun, or if it has ended and left no process.
+        with suppress(OSError):
+            os.killpg(pid, signal.SIGKILL)
+    process.kill()
 
 
 def _end_with_parent() -> None:
     parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+    if parent is None:
+        return
+    parent.join()
+    if os.name != "nt":
+        os.killpg(0, signal.SIGKILL)
+    os._exit(1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection
@@ -11,7 +10,7 @@ from typing import Any, Final
 import gymnasium
 from gymnasium.vector import AutoresetMode
 
-from tltl_runtime.support.child_processes import end_with_parent
+from tltl_runtime.support.child_processes import begin_worker
 from tltl_runtime.vector.shared_memory import Rows, read, write
 from tltlc.api import TltlError
 
@@ -34,9 +33,7 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
     ``failed``, the worker ends. The first answer needs no command: it is sent when all environments
     are made.
     """
-    # The parent process handles Ctrl-C.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    end_with_parent()
+    begin_worker()
     try:
         share = Share(functions.fn, rows, first, autoreset)
         connection.send((DONE, None))

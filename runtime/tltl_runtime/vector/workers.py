@@ -13,6 +13,7 @@ from typing import Any, Final
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import CloudpickleWrapper
 
+from tltl_runtime.support.child_processes import kill_worker
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.shared_memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
@@ -197,9 +198,8 @@ class Workers:
         self._unwatch(worker)
         process, connection = self._processes.pop(worker), self._connections.pop(worker)
         connection.close()
-        if process.is_alive():
-            process.kill()
-            process.join(_TO_END_S)
+        kill_worker(process)
+        process.join(_TO_END_S)
         with contextlib.suppress(ValueError):
             process.close()
 

@@ -6,6 +6,8 @@ They have a module of their own, which worker processes can import.
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from tests.waiting import until
+from tests.waiting import HANG_S, until
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import Box
@@ -62,6 +64,15 @@ class Fragile(gymnasium.Env[Any, Any]):
     def _observed(self) -> dict[str, Any]:
         numbers = self.np_random.random(2).astype(np.float32)
         return {"count": self.count, "pair": (numbers, np.array([1, 0, self.count % 2], dtype=np.int8))}
+
+
+class Launched(Fragile):
+    """An environment that starts a program, whose id is in the file ``program`` in ``folder``."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self._program = subprocess.Popen([sys.executable, "-c", f"import time; time.sleep({HANG_S})"])
+        (folder / "program").write_text(str(self._program.pid), encoding="utf-8")
 
 
 class Held(Fragile):

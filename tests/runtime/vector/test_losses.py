@@ -18,8 +18,20 @@ from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from tests.docs.blocks import ROOT
 from tests.runtime.vector.clock import Clock
-from tests.runtime.vector.envs import EXIT, GO, HANG, HOLD, RAISE, Ending, Fragile, Held, Unmade, leaves_its_level
-from tests.waiting import HANG_S, until, until_gone
+from tests.runtime.vector.envs import (
+    EXIT,
+    GO,
+    HANG,
+    HOLD,
+    RAISE,
+    Ending,
+    Fragile,
+    Held,
+    Launched,
+    Unmade,
+    leaves_its_level,
+)
+from tests.waiting import HANG_S, is_running, until, until_gone
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv
 from tltl_runtime.vector.errors import Loss
 
@@ -53,6 +65,15 @@ def error_of_loss(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
     with pytest.raises(ClosedEnvironmentError):
         env.step(np.array(actions[0]))
     return caught.value
+
+
+def test_the_program_of_a_lost_worker_is_killed(tmp_path: Path) -> None:
+    env = WorkerVectorEnv([partial(Launched, tmp_path)], 1, timeout=HANG_S)
+    env.reset(seed=0)
+    program = int((tmp_path / "program").read_text(encoding="utf-8"))
+    assert is_running(program)
+    error_of_loss(env, [EXIT])
+    until_gone([program])
 
 
 def test_a_worker_without_a_status_had_to_be_killed() -> None:
