@@ -34,6 +34,8 @@ def draw_scene_episode(episode: SceneEpisode, size: tuple[int, int] | None, nota
 
 def draw_scene_trajectories(level: SceneLevel, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
     """Draw the trajectories of many episodes as a PNG: see :func:`~tltl_runtime.game.plan.draw_paths`."""
+    if level.is_one_of_many:
+        title += ", on the map of one of them"
     points = np.concatenate([trajectory.points for trajectory in trajectories]).astype(np.float64)
     return draw_paths(_plan(level, dict(level.landmarks), points, _unit(fspa)), fspa, trajectories, title)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.game.level import Level
 from tltl_runtime.game.recording_path import SUFFIX
 from tltl_runtime.regression.report.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.report.film_cache import INDEX
@@ -21,7 +22,14 @@ from tltl_runtime.regression.suite.suite import Case, Suite, SuiteCase
 from tltl_runtime.regression.suite.trace_case import TraceCase
 from tltl_runtime.regression.verdict.baseline import Reference, baseline_command, check_states, reference_of
 from tltl_runtime.regression.verdict.judged_traces import JudgedTraces, OnTrace, judge_traces
-from tltl_runtime.regression.verdict.play import JudgedCase, OnEpisode, PreparedCase, judge_case, prepare_case
+from tltl_runtime.regression.verdict.play import (
+    JudgedCase,
+    OnEpisode,
+    PreparedCase,
+    judge_case,
+    prepare_case,
+    telling_episodes,
+)
 from tltl_runtime.support.folder_lock import lock_folder
 from tltl_runtime.support.record_json import to_json
 from tltlc.api import Diagnostic, TltlError, fileio, label_text, record, replace
@@ -30,7 +38,7 @@ CASES: Final = "cases"
 """The name of the folder, in the folder of a run, that has a folder for each case."""
 
 _REPORT: Final = "case.json"
-_VERSION: Final = 4
+_VERSION: Final = 5
 _RECORDINGS: Final = 3
 """At most this many episodes of each finding are stored as recordings."""
 
@@ -256,7 +264,8 @@ def _judge(
         if level_fault is None:
             raise
         return FinishedCase(report_on_broken(case, level_fault), is_cached=False)
-    return FinishedCase(_write(own_folder, inputs, result), is_cached=False, prepared=prepared, reference=reference)
+    written = _write(own_folder, inputs, prepared.level, result)
+    return FinishedCase(written, is_cached=False, prepared=prepared, reference=reference)
 
 
 def _inputs(prepared: PreparedCase, reference: Reference, error: float) -> str:
@@ -290,17 +299,19 @@ def _cached_report(folder: Path, inputs: str) -> CaseReport | None:
     return report if report and all((folder / name).is_file() for _, name in report.recordings) else None
 
 
-def _write(folder: Path, inputs: str, result: JudgedCase) -> CaseReport:
+def _write(folder: Path, inputs: str, level: Level, result: JudgedCase) -> CaseReport:
     """Write the report on a case and recordings of example episodes to ``folder``; return the report.
 
     The examples are the first ``_RECORDINGS`` episodes of each finding (a sentence about what the
-    policy does differently), and the first success.
+    policy does differently), the first success, and those that show more of the ``level``.
     """
     report = report_on(result)
     by_index = {episode.explained.summary.index: episode.recording for episode in result.episodes}
     successes = [episode.summary.index for episode in report.episodes if episode.summary.success]
     mentioned = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
-    file_names = {index: f"{index}{SUFFIX}" for index in sorted({*mentioned, *successes[:1]})}
+    chosen = sorted({*mentioned, *successes[:1]})
+    chosen += telling_episodes(level, result.episodes, chosen)
+    file_names = {index: f"{index}{SUFFIX}" for index in sorted(chosen)}
     report = replace(report, recordings=tuple(file_names.items()))
     recordings = {name: by_index[index] for index, name in file_names.items()}
     fileio.write_files(folder, {**recordings, _REPORT: cache_text(inputs, report)}, WRITABLE, over_inputs=True)

@@ -62,6 +62,14 @@ def test_trajectories_are_drawn_on_the_outline(episode: SceneEpisode) -> None:
     assert WALL not in colours(PICTURES.trajectories(replace(level, outline=None), episode.fspa, ways, "one way"))
 
 
+def test_a_plan_of_episodes_on_several_maps_says_whose_map_it_shows(episode: SceneEpisode) -> None:
+    level = GAME.played_level(episode.level, [episode])
+    ways = [way for way in [trajectory(episode)] if way is not None]
+    expected = PICTURES.trajectories(level, episode.fspa, ways, "one way, on the map of one of them")
+    assert PICTURES.trajectories(replace(level, is_one_of_many=True), episode.fspa, ways, "one way") == expected
+    assert PICTURES.trajectories(level, episode.fspa, ways, "one way") != expected
+
+
 def test_positions_alone_are_enough(episode: SceneEpisode) -> None:
     bare = replace(episode, level=replace(episode.level, outline=None))
     assert PICTURES.draws(bare)

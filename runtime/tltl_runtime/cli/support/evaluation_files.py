@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
 from tltl_runtime.evaluation.player import CHOICES, LostEpisode, PlayedEpisode, Setup, is_labelled_policy
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
-from tltl_runtime.game.episode import Trajectory
+from tltl_runtime.game.episode import RecordedEpisode, Trajectory
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -24,6 +24,8 @@ from tltlc.api import Diagnostic, TltlError, cli, fileio, traces
 
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
+_DRAWN: Final = 10
+"""The number of recorded episodes from which a game learns what the files of its level do not say."""
 _KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
 """The keys by which a JSON report is recognized. All versions of the report contain them."""
 _EPISODE_KEYS: Final = (
@@ -83,7 +85,7 @@ class EvaluationFiles:
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
-        self._has_plans = False
+        self._drawn: list[RecordedEpisode] = []
         if folder is not None:
             _check_folder(folder)
             writable_folder(folder)
@@ -123,9 +125,8 @@ class EvaluationFiles:
             episode = self._game.episode_from_bytes(result.recording, stem) if pictures else None
             if pictures is None or episode is None or not pictures.draws(episode):
                 pictures = None
-            elif not self._has_plans:
-                # Some games show their levels only while they are played: take what the recording shows.
-                self._level, self._has_plans = self._game.played_level(self._level, [episode]), True
+            elif len(self._drawn) < _DRAWN:
+                self._drawn.append(episode)
             path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
             files = {path.name: result.recording}
             if pictures:
@@ -190,17 +191,19 @@ class EvaluationFiles:
             return ""
         pictures = dict(self._pictures())
         fileio.write_files(self._folder, {_REPORT: text, **pictures})
-        count, has_plans = len(self._recorded), self._has_plans
+        count, has_plans = len(self._recorded), bool(self._drawn)
         recordings_text = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * has_plans}"
         hint = f"; look at {next(iter(pictures))} first" if pictures else ""
         return f"{self._folder}: {recordings_text}, {', '.join((*pictures, _REPORT))}{hint}"
 
     def _pictures(self) -> Iterator[tuple[str, bytes]]:
         """Yield the name and the content of each picture of trajectories."""
+        # Some games show their levels only while they are played: take what the recordings show.
+        level = self._game.played_level(self._level, self._drawn)
         for sampled, trajectories in self._trajectories.items():
             if trajectories and self._game.pictures:
                 title = f"{self._level.name}:{self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
-                picture = self._game.pictures.trajectories(self._level, self._setup.fspa, trajectories, title)
+                picture = self._game.pictures.trajectories(level, self._setup.fspa, trajectories, title)
                 yield _PICTURES[sampled], picture
 
     def _note(self) -> str:

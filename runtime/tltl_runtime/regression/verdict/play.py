@@ -237,6 +237,25 @@ def _as_played(prepared: PreparedCase, episodes: Sequence[CaseEpisode]) -> Prepa
     return replace(prepared, level=game.played_level(prepared.level, recorded))
 
 
+def telling_episodes(level: Level, episodes: Sequence[CaseEpisode], chosen: Sequence[int]) -> list[int]:
+    """Return the indices of episodes that show of ``level`` what the ``chosen`` ones alone do not show.
+
+    Examples are that the map changes from episode to episode, or that an entity moves. Only the first
+    episodes are looked at.
+    """
+    played = {
+        episode.explained.summary.index: level.game.episode_from_bytes(episode.recording, _PLAYER)
+        for place, episode in enumerate(episodes)
+        if place < _SHOWN or episode.explained.summary.index in chosen
+    }
+    known, added = [played[index] for index in chosen], []
+    for index, episode in played.items():
+        if level.game.played_level(level, [*known, episode]) != level.game.played_level(level, known):
+            known.append(episode)
+            added.append(index)
+    return added
+
+
 def _check_unedited(prepared: PreparedCase, level: Level) -> None:
     before, now = prepared.level.files, level.files
     if before != now:
