@@ -16,5 +16,5 @@ def draw_without_screen() -> None:
     SDL would look for a screen, and print ``error: XDG_RUNTIME_DIR is invalid or not set``. Sets the
     environment variable ``SDL_VIDEODRIVER``, so that games in other processes draw in the same way.
     """
-    if sys.platform == "linux" and not any(os.environ.get(name) for name in _SCREENS):
-        os.environ.setdefault(_DRIVER, "dummy")
+    if sys.platform == "linux" and not any(os.environ.get(name) for name in (*_SCREENS, _DRIVER)):
+        os.environ[_DRIVER] = "dummy"

@@ -141,9 +141,14 @@ def snapshot_id(message: Any) -> int | str:
     return _id_in(message, SNAPSHOT)
 
 
-def released_id(message: Any) -> int | str:
-    """Return the id in a message ``release``; raises as :func:`snapshot_id`."""
-    return _id_in(message, RELEASE)
+def released(message: Any, kept: int | str) -> None:
+    """Check that a message ``release`` has the id of the snapshot ``kept``.
+
+    Raises as :func:`snapshot_id`, and MalformedMessageError if it is another id.
+    """
+    value = _id_in(message, RELEASE)
+    if value != kept:
+        raise wrong(f"{RELEASE}.id", f"{value_text(kept)}, the id of the request", value)
 
 
 def _id_in(message: Any, kind: str) -> int | str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import secrets
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final
 
 import gymnasium
@@ -254,7 +255,8 @@ class WireEnv(gymnasium.Env[Any, Any]):
         if self._session.is_over or document["session"] != self._session_name:
             return
         state, self._state = self._state, None
-        self._session.ask("release", ReleaseRequest(document["id"]).message(), answers.released_id)
+        kept = document["id"]
+        self._session.ask("release", ReleaseRequest(kept).message(), partial(answers.released, kept=kept))
         self._state = state
 
     def _ask_beside(self, kind: str, message: dict[str, Any], read: Callable[[Any], Answer]) -> Answer:

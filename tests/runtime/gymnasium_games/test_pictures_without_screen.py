@@ -27,7 +27,8 @@ env.close()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the message is that of Linux")
-def test_a_frame_is_drawn_without_messages_of_the_system(tmp_path: Path) -> None:
+@pytest.mark.parametrize("driver", [{}, {"SDL_VIDEODRIVER": ""}])
+def test_a_frame_is_drawn_without_messages_of_the_system(tmp_path: Path, driver: dict[str, str]) -> None:
     (tmp_path / "walk.py").write_text("def signals(env):\n    return {'at_goal': env.unwrapped.s == 47}\n")
     game = tmp_path / "walk.game.toml"
     game.write_text(
@@ -40,7 +41,7 @@ def test_a_frame_is_drawn_without_messages_of_the_system(tmp_path: Path) -> None
         [sys.executable, "-c", _DRAW, str(game)],
         capture_output=True,
         text=True,
-        env=environment,
+        env={**environment, **driver},
         timeout=HANG_S,
         check=False,
     )

@@ -229,9 +229,11 @@ def test_a_screenshot_has_three_colours() -> None:
 
 
 def test_a_release_has_the_id_of_the_snapshot() -> None:
-    assert answers.released_id({"release": {"id": "x"}}) == "x"
+    answers.released({"release": {"id": "x"}}, "x")
     with pytest.raises(MalformedMessageError, match=r"`release.id` as null"):
-        answers.released_id({"release": {}})
+        answers.released({"release": {}}, "x")
+    with pytest.raises(MalformedMessageError, match=r"`release.id` as 3, .*\"x\", the id of the request"):
+        answers.released({"release": {"id": 3}}, "x")
     with pytest.raises(MalformedMessageError, match="sent a message `release` instead of `snapshot`"):
         answers.snapshot_id({"release": {"id": 1}})
 
