@@ -11,6 +11,7 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from contextlib import ExitStack, suppress
 from functools import partial
 from multiprocessing.connection import Connection
 from typing import Final
@@ -68,11 +69,15 @@ class WorkerProcess:
             self._connection.close()
         else:
             self._process.terminate()
+            # A game may go on in spite of that: its worker then waits for the next request.
+            self._playing.add_done_callback(lambda _: self._connection.close())
 
-    def wait(self, seconds: float) -> None:
-        """Wait for the end of the process; kill it if it takes longer than ``seconds``."""
-        self._process.join(seconds)
-        self._kill()
+    def wait_until(self, deadline: float) -> None:
+        """Wait for the end of the process; kill it at ``deadline``, a time of ``time.monotonic()``."""
+        try:
+            self._process.join(max(0.0, deadline - time.monotonic()))
+        finally:
+            self._kill()
         self._process.join(_TO_END_S)
         if self._receiver is not None:
             self._receiver.join(_TO_END_S)
@@ -82,7 +87,7 @@ class WorkerProcess:
     def close(self) -> None:
         """End the process, even if it plays an episode."""
         self.end()
-        self.wait(_TO_END_S)
+        self.wait_until(time.monotonic() + _TO_END_S)
 
     def _receive(self, request: EpisodeRequest, future: Future[Result]) -> None:
         """Send a request, and pass its result or its error on to ``future``."""
@@ -107,8 +112,9 @@ def close_all(workers: Sequence[WorkerProcess]) -> None:
     for worker in workers:
         worker.end()
     deadline = time.monotonic() + _TO_END_S
-    for worker in workers:
-        worker.wait(max(0.0, deadline - time.monotonic()))
+    with ExitStack() as stack:
+        for worker in workers:
+            stack.callback(worker.wait_until, deadline)
 
 
 class _TracebackInWorker(Exception):
@@ -123,6 +129,8 @@ def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
     begin_worker()
     signal.signal(signal.SIGTERM, _leave)
     if os.name != "nt":
+        os.register_at_fork(after_in_child=lambda: signal.signal(signal.SIGTERM, signal.SIG_DFL))
+    if os.name != "nt":
         # A program that the game starts would keep the pipe open after the end of this process.
         os.set_inheritable(connection.fileno(), False)
     player: EpisodePlayer | None = None
@@ -135,10 +143,15 @@ def _serve(make: Callable[[], EpisodePlayer], connection: Connection) -> None:
             except Exception as error:
                 answer = _failure(error)
             connection.send_bytes(answer)
-    except (EOFError, OSError, _Left):
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    except (EOFError, OSError):
         if player is not None:
             player.close()
+    except _Left:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        # A game may not expect its end in the middle of a step. Nobody is interested in what it says to that.
+        with suppress(Exception):
+            if player is not None:
+                player.close()
 
 
 class _Left(BaseException):

@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
@@ -23,9 +22,6 @@ from tltlc.api import Diagnostic, Label, TltlError
 
 _PACKAGES: Final = {"PIL": "pillow", "cv2": "opencv-python", "yaml": "pyyaml", "skimage": "scikit-image"}
 """The names of PyPI packages that differ from the names of their modules, by module."""
-
-_ALIKE: Final = 0.8
-"""Names are alike from this ratio of :func:`difflib.get_close_matches` on."""
 
 _folders: Final[set[Path]] = set()
 """The folders of the games that this process has imported modules from."""
@@ -111,8 +107,9 @@ def _not_found(game: GameFile, name: str, error: ModuleNotFoundError, label: Lab
         title = f"the module `{package}` is not installed, and `{name}` needs it"
     help_ = f"install it: `pip install {_PACKAGES.get(package, package)}`"
     # A name that only begins alike, such as `minigrid_scenes` beside `minigrid`, is another module.
-    if close := get_close_matches(package, own, 1, _ALIKE):
-        help_ += f"; or did you mean `{close[0]}`?"
+    close = suggestion(package, {module for module in own if not module.startswith(f"{package}_")})
+    if close.startswith("did you mean"):
+        help_ += f"; or {close}"
     return Diagnostic("TLT0730", title, (label,), help_)
 
 

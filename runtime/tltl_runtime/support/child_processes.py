@@ -12,6 +12,7 @@ from contextlib import suppress
 from multiprocessing import resource_tracker
 from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
+from typing import NoReturn
 
 
 def worker_context(preloaded: Iterable[str]) -> ForkServerContext | SpawnContext:
@@ -39,30 +40,46 @@ def begin_worker() -> None:
     """Prepare this process, a worker: Ctrl-C is left to its parent, and it ends as soon as its parent has ended.
 
     Without this, a worker whose parent is killed would wait for ever for the next command, or play on
-    with a game that does not answer. On Unix, the worker leads a process group of its own, to which the
-    programs belong that its games start: they end with it.
+    with a game that does not answer. On Unix, the worker leads a process group of its own. The programs that
+    its games start belong to the group and end with it, unless they begin a session of their own.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if os.name != "nt":
         os.setpgid(0, 0)
+        # A terminal may stop a process that is not of its foreground group and prints.
+        signal.signal(signal.SIGTTOU, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, name="end with the parent process", daemon=True).start()
+
+
+def end_worker() -> NoReturn:
+    """End this process, a worker, and on Unix the programs that it has started."""
+    if os.name != "nt":
+        os.killpg(0, signal.SIGKILL)
+    os._exit(1)
 
 
 def kill_worker(process: BaseProcess) -> None:
     """Kill a worker, if it still runs, and on Unix the programs that it has started and not ended."""
-    pid = process.pid
-    if os.name != "nt" and pid is not None:
+    if os.name != "nt" and process.pid is not None and not _has_new_owner(process):
         # There is no such group if the worker has not begun, or if it has ended and left no process.
         with suppress(OSError):
-            os.killpg(pid, signal.SIGKILL)
+            os.killpg(process.pid, signal.SIGKILL)
     process.kill()
+
+
+def _has_new_owner(process: BaseProcess) -> bool:
+    """Whether the worker has ended, and another process has its id. No process of the worker is left then."""
+    if process.exitcode is None or process.pid is None:
+        return False
+    try:
+        os.getpgid(process.pid)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def _end_with_parent() -> None:
     parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-    parent.join()
-    if os.name != "nt":
-        os.killpg(0, signal.SIGKILL)
-    os._exit(1)
+    if parent is not None:
+        parent.join()
+        end_worker()

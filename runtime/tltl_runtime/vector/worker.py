@@ -10,7 +10,7 @@ from typing import Any, Final
 import gymnasium
 from gymnasium.vector import AutoresetMode
 
-from tltl_runtime.support.child_processes import begin_worker
+from tltl_runtime.support.child_processes import begin_worker, end_worker
 from tltl_runtime.vector.shared_memory import Rows, read, write
 from tltlc.api import TltlError
 
@@ -46,7 +46,7 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
                 return
             connection.send((DONE, getattr(share, command)(*arguments)))
     except (EOFError, BrokenPipeError, ConnectionResetError):
-        return
+        end_worker()
     except Exception as error:
         diagnostics = error.diagnostics if isinstance(error, TltlError) else ()
         connection.send((FAILED, (traceback.format_exc(), diagnostics)))

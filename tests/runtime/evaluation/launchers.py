@@ -22,7 +22,7 @@ class Launcher:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._program = subprocess.Popen([sys.executable, "-c", f"import time; time.sleep({HANG_S})"])
+        self._program = subprocess.Popen([sys.executable, "-c", f"import time; time.sleep({10 * HANG_S})"])
 
     def play(self, request: EpisodeRequest) -> PlayedEpisode:
         text = self._folder / "text"
@@ -43,9 +43,19 @@ class Launcher:
 class Deaf(Launcher):
     """Its episode cannot be interrupted."""
 
-    def stay(self) -> NoReturn:
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
-        super().stay()
+
+
+class Stubborn(Launcher):
+    """Its episode ends in an ordinary way when it is interrupted."""
+
+    def play(self, request: EpisodeRequest) -> PlayedEpisode:
+        try:
+            return super().play(request)
+        except BaseException:
+            return PlayedEpisode(request, None)  # type: ignore[arg-type]
 
 
 class Mortal(Launcher):

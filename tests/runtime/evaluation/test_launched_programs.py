@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.docs.blocks import ROOT
-from tests.runtime.evaluation.launchers import Deaf, Launcher, Mortal
+from tests.runtime.evaluation.launchers import Deaf, Launcher, Mortal, Stubborn
 from tests.waiting import HANG_S, is_running, until, until_gone
 from tltl_runtime.evaluation import worker_process
 from tltl_runtime.evaluation.player import EpisodeRequest
@@ -26,8 +26,12 @@ def playing(folder: Path) -> int:
     return int(path.read_text(encoding="utf-8"))
 
 
-def test_a_worker_closes_its_player_in_the_middle_of_an_episode(tmp_path: Path) -> None:
-    worker = WorkerProcess(partial(Launcher, tmp_path))
+@pytest.mark.parametrize("make", [Launcher, Stubborn])
+def test_a_worker_closes_its_player_in_the_middle_of_an_episode(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, make: type[Launcher]
+) -> None:
+    monkeypatch.setattr(worker_process, "_TO_END_S", HANG_S)
+    worker = WorkerProcess(partial(make, tmp_path))
     worker.play(EpisodeRequest(0))
     program = playing(tmp_path)
     assert is_running(program)

@@ -71,8 +71,11 @@ class Launched(Fragile):
 
     def __init__(self, folder: Path) -> None:
         super().__init__()
-        self._program = subprocess.Popen([sys.executable, "-c", f"import time; time.sleep({HANG_S})"])
+        self._program = subprocess.Popen([sys.executable, "-c", f"import time; time.sleep({10 * HANG_S})"])
         (folder / "program").write_text(str(self._program.pid), encoding="utf-8")
+
+    def close(self) -> None:
+        self._program.kill()
 
 
 class Held(Fragile):

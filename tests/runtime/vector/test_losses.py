@@ -76,6 +76,28 @@ def test_the_program_of_a_lost_worker_is_killed(tmp_path: Path) -> None:
     until_gone([program])
 
 
+def test_a_program_ends_if_the_process_of_the_environment_is_killed(tmp_path: Path) -> None:
+    code = f"""
+import time
+from functools import partial
+from pathlib import Path
+from tests.runtime.vector.envs import Launched
+from tltl_runtime.vector import WorkerVectorEnv
+
+env = WorkerVectorEnv([partial(Launched, Path({str(tmp_path)!r}))], 1, timeout={HANG_S})
+env.reset(seed=0)
+print("ready", flush=True)
+time.sleep({HANG_S})
+"""
+    path = os.pathsep.join([str(ROOT), str(ROOT / "runtime")])
+    words, environment = [sys.executable, "-c", code], {**os.environ, "PYTHONPATH": path}
+    with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.kill()
+    until_gone([int((tmp_path / "program").read_text(encoding="utf-8"))])
+
+
 def test_a_worker_without_a_status_had_to_be_killed() -> None:
     assert str(Loss(0)) == "worker 0 closed its connection without ending, and was killed"
 

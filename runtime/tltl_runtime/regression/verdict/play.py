@@ -38,6 +38,9 @@ _SHOWN: Final = 10
 Examples are the outline of the level, and which entities do not move.
 """
 
+_ADDED: Final = 2
+"""The most episodes that are recorded only because they show more of the level."""
+
 
 @record
 class PreparedCase:
@@ -241,7 +244,7 @@ def telling_episodes(level: Level, episodes: Sequence[CaseEpisode], chosen: Sequ
     """Return the indices of episodes that show of ``level`` what the ``chosen`` ones alone do not show.
 
     Examples are that the map changes from episode to episode, or that an entity moves. Only the first
-    episodes are looked at.
+    episodes are looked at, and at most ``_ADDED`` are returned.
     """
     played = {
         episode.explained.summary.index: level.game.episode_from_bytes(episode.recording, _PLAYER)
@@ -253,7 +256,7 @@ def telling_episodes(level: Level, episodes: Sequence[CaseEpisode], chosen: Sequ
         if level.game.played_level(level, [*known, episode]) != level.game.played_level(level, known):
             known.append(episode)
             added.append(index)
-    return added
+    return added[:_ADDED]
 
 
 def _check_unedited(prepared: PreparedCase, level: Level) -> None:
