@@ -25,7 +25,6 @@ SCREENSHOT: Final = "screenshot"
 OUTLINE: Final = "outline"
 ERROR: Final = "error"
 _INFINITE: Final = (inf, -inf)
-_NUMBERS: Final = (float, int)
 _LARGEST: Final = sys.float_info.max
 _KINDS: Final = ("hello", STATE, SNAPSHOT, RELEASE, SCREENSHOT, OUTLINE, ERROR)
 
@@ -190,7 +189,8 @@ def _position(name: str, point: Any) -> Position:
     if type(point) is not list or len(point) not in (2, 3):
         raise wrong(member("state.positions", name), "a list of two or three numbers", point)
     for number in point:
-        if type(number) not in _NUMBERS or not -_LARGEST <= number <= _LARGEST:
+        kind = type(number)
+        if (kind is not float and kind is not int) or not -_LARGEST <= number <= _LARGEST:
             a_number(number, member("state.positions", name))
     return tuple(map(float, point))
 

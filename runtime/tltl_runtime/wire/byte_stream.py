@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import select
 import socket
+import struct
 import time
+from collections.abc import Callable
+from math import ceil
 from typing import Final
 
 from tltl_runtime.wire.errors import GameGoneError, GameSilentError, MalformedMessageError
@@ -23,17 +28,16 @@ class ByteStream:
     def __init__(self, connection: socket.socket, rest: bytes = b"") -> None:
         self._socket = connection
         self._rest = rest
+        self._timeout: float | None = None
+        self._has_arrived = _arrival(connection)
         if connection.family in (socket.AF_INET, socket.AF_INET6):
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def arrived(self) -> bytes:
         """Return the bytes that have arrived and were not read yet, without waiting; empty if there are none."""
         data, self._rest = self._rest, b""
-        self._socket.settimeout(0)
         try:
-            return data or self._socket.recv(_CHUNK)
-        except BlockingIOError:
-            return b""
+            return data or (self._socket.recv(_CHUNK) if self._has_arrived() else b"")
         except OSError:
             raise GameGoneError from None
 
@@ -46,10 +50,10 @@ class ByteStream:
         """Send all bytes."""
         if patience <= 0:
             raise GameSilentError
-        self._socket.settimeout(patience)
+        self._set_timeout(patience)
         try:
             self._socket.sendall(data)
-        except TimeoutError:
+        except (BlockingIOError, TimeoutError):
             raise GameSilentError from None
         except OSError:
             raise GameGoneError from None
@@ -102,13 +106,36 @@ class ByteStream:
         """Receive some bytes, at least one."""
         if patience <= 0:
             raise GameSilentError
-        self._socket.settimeout(patience)
+        self._set_timeout(patience)
         try:
             data = self._socket.recv(_CHUNK)
-        except TimeoutError:
+        except (BlockingIOError, TimeoutError):
             raise GameSilentError from None
         except OSError:
             raise GameGoneError from None
         if not data:
             raise GameGoneError
         return data
+
+    def _set_timeout(self, seconds: float) -> None:
+        """Let a call on the socket raise BlockingIOError, or TimeoutError on Windows, after so many seconds."""
+        if seconds == self._timeout:
+            return
+        self._timeout = seconds
+        if os.name == "nt":
+            self._socket.settimeout(seconds)
+            return
+        # With a timeout of Python's own, each call would first wait in a second call of the system.
+        self._socket.settimeout(None)
+        whole, part = divmod(max(1, ceil(seconds * 1e6)), 1_000_000)
+        for option in (socket.SO_SNDTIMEO, socket.SO_RCVTIMEO):
+            self._socket.setsockopt(socket.SOL_SOCKET, option, struct.pack("@ll", whole, part))
+
+
+def _arrival(connection: socket.socket) -> Callable[[], object]:
+    """Return a function that says, without waiting, whether bytes have arrived or the connection was closed."""
+    if not hasattr(select, "poll"):
+        return lambda: select.select([connection], [], [], 0)[0]
+    poller = select.poll()
+    poller.register(connection, select.POLLIN)
+    return lambda: poller.poll(0)

@@ -25,6 +25,8 @@ from tltl_runtime.wire.start_watch import GRACE_S, StartWatch
 from tltl_runtime.wire.wire_game import GODOT_RL, ML_AGENTS, TLTL, WireGame, address
 from tltlc.api import fileio
 
+_AT_ONCE: Final = 0.99
+"""The share of the time for an answer that is left after a request was sent at once, at least."""
 _TO_CLOSE_S: Final = 5.0
 """Seconds in which a game that has closed its connection, was refused, or was asked to close, ends by itself."""
 _TO_LISTEN_S: Final = 5.0
@@ -86,10 +88,13 @@ class WireSession:
             WireError: TLT0791, the game is lost; TLT0792, its answer is malformed; TLT0793, the answer is an error.
         """
         assert self._channel is not None
-        deadline = time.monotonic() + self._game.step_s
+        patience = self._game.step_s
+        deadline = time.monotonic() + patience
         try:
-            self._channel.send(message, self._game.step_s)
-            return read(self._channel.receive(deadline - time.monotonic()))
+            self._channel.send(message, patience)
+            left = deadline - time.monotonic()
+            # To set the timeout of a socket takes a call of the system, so keep it for a request that is sent at once.
+            return read(self._channel.receive(patience if left > _AT_ONCE * patience else left))
         except BaseException as error:
             raise self._lost(error, kind, self._game.step_s) from None
 

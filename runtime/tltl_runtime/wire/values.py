@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import binascii
 from base64 import b64decode
-from collections.abc import Callable
-from math import prod
+from collections.abc import Callable, Sequence
+from math import inf, prod
 from typing import Any, Final
 
 import numpy as np
@@ -18,6 +18,8 @@ from tltl_runtime.wire.json_text import value_text
 from tltlc.api import fileio
 
 _MOST_AXES: Final = fileio.limits.WIRE_HELLO.depth or 0
+
+_INFINITE: Final = (inf, -inf)
 
 Reader = Callable[[Any], Any]
 Writer = Callable[[Any], Any]
@@ -121,8 +123,13 @@ def _float_reader(space: spaces.Box, path: str) -> Reader:
     finite: Any = np.finfo(kind)
     # With finite bounds, one comparison also finds infinite numbers and NaN.
     low, high = np.maximum(space.low, finite.min), np.minimum(space.high, finite.max)
+    # Most observations are short lists, for which Python's own comparisons are faster than those of arrays.
+    length = space.shape[0] if len(space.shape) == 1 else 0
+    least, most = (float(low.max()), float(high.min())) if length else (0.0, 0.0)
 
     def read(value: Any) -> NDArray[Any]:
+        if type(value) is list and len(value) == length and _all_between(value, least, most):
+            return np.array(value, kind)
         array = _shaped(value, path, space.shape)
         if array.dtype == kind:
             result: NDArray[Any] = array.copy()
@@ -138,6 +145,15 @@ def _float_reader(space: spaces.Box, path: str) -> Reader:
         return result
 
     return read
+
+
+def _all_between(numbers: Sequence[Any], least: float, most: float) -> bool:
+    """Whether all items are floats or whole numbers from ``least`` to ``most``, of which NaN is none."""
+    for number in numbers:
+        kind = type(number)
+        if (kind is not float and kind is not int) or not least <= number <= most:
+            return False
+    return True
 
 
 def _whole_number_reader(space: Space[Any], path: str) -> Reader:
@@ -210,8 +226,19 @@ def _choice_writer(space: spaces.Discrete) -> Writer:
 
 def _array_writer(space: Space[Any]) -> Writer:
     low, high = _bounds(space)
+    # Most actions are short lists, for which Python's own comparisons are faster than those of arrays.
+    is_flat, kind = len(space.shape or ()) == 1, np.dtype(space.dtype)
+    item = float if kind.kind == "f" else int
+    least, most = (np.broadcast_to(bound, space.shape or ()).ravel().tolist() for bound in (low, high))
 
     def write(value: Any) -> Any:
+        numbers = value.tolist() if type(value) is np.ndarray and value.dtype == kind else value
+        if is_flat and type(numbers) is list and len(numbers) == len(least) and (item is int or numbers is not value):
+            for number, low_, high_ in zip(numbers, least, most, strict=True):
+                if type(number) is not item or not low_ <= number <= high_ or number in _INFINITE:
+                    break
+            else:
+                return numbers
         array = np.asarray(value, dtype=space.dtype)
         if array.shape != space.shape or not ((array >= low) & (array <= high)).all() or not np.isfinite(array).all():
             raise ValueError(f"the action is {a_short_text(array)}, which is not in {space}")
