@@ -142,9 +142,9 @@ def test_a_wrong_entry_is_an_error_with_its_place(folder: Path, old: str, new: s
 
 
 def test_a_module_whose_name_only_begins_alike_is_not_suggested(folder: Path) -> None:
-    code = games.GAME.replace('"corridor:make"', '"hall:make"')
-    message = error_of(games.write(folder, corridor__game__toml=code, hall_maps__py=""))
-    assert "`pip install hall`" in message
+    code = games.GAME.replace('"corridor:make"', '"granary:make"')
+    message = error_of(games.write(folder, corridor__game__toml=code, granary_maps__py=""))
+    assert "`pip install granary`" in message
     assert "did you mean" not in message
 
 
