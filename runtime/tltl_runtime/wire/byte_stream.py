@@ -118,7 +118,7 @@ class ByteStream:
         return data
 
     def _set_timeout(self, seconds: float) -> None:
-        """Let a call on the socket raise BlockingIOError, or TimeoutError on Windows, after so many seconds."""
+        """Limit how long a call on the socket waits. Then it raises BlockingIOError, or TimeoutError on Windows."""
         if seconds == self._timeout:
             return
         self._timeout = seconds

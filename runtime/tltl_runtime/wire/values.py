@@ -124,11 +124,11 @@ def _float_reader(space: spaces.Box, path: str) -> Reader:
     # With finite bounds, one comparison also finds infinite numbers and NaN.
     low, high = np.maximum(space.low, finite.min), np.minimum(space.high, finite.max)
     # Most observations are short lists, for which Python's own comparisons are faster than those of arrays.
-    length = space.shape[0] if len(space.shape) == 1 else 0
-    least, most = (float(low.max()), float(high.min())) if length else (0.0, 0.0)
+    is_flat = len(space.shape) == 1 and space.shape[0] > 0
+    least, most = (float(low.max()), float(high.min())) if is_flat else (0.0, 0.0)
 
     def read(value: Any) -> NDArray[Any]:
-        if type(value) is list and len(value) == length and _all_between(value, least, most):
+        if is_flat and type(value) is list and len(value) == space.shape[0] and _all_between(value, least, most):
             return np.array(value, kind)
         array = _shaped(value, path, space.shape)
         if array.dtype == kind:

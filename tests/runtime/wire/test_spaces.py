@@ -155,6 +155,7 @@ PAIR = spaces.Box(np.float32(0), np.float32(10), (2,), np.float32)
     ("space", "value", "message"),
     [
         (PAIR, [1, 2, 3], "sent `v` in the shape [3], but declared [2]"),
+        (spaces.Box(0, 1, (2, 3), np.float32), [], "sent `v` in the shape [0], but declared [2, 3]"),
         (PAIR, [1, [2]], "sent `v` with lists of unequal lengths"),
         (PAIR, ["1", "2"], 'sent `v` as "1", but it must be numbers, in nested lists or in base64'),
         (PAIR, [1, None], "sent `v` as 1, but it must be numbers, in nested lists or in base64"),
@@ -190,6 +191,8 @@ def test_what_is_no_value_of_the_space_is_refused(space: Space[Any], value: Any,
     [
         *((spaces.Discrete(3), action) for action in (3, 0.5, None, np.inf)),
         *((PAIR, action) for action in ([0, 11], [0], [0, np.nan], [0, 10**400], None)),
+        *((PAIR, np.array(action, np.float32)) for action in ([0, 11], [0], [0, np.nan], [[0, 1]], 1)),
+        (spaces.Box(-np.inf, np.inf, (1,), np.float32), np.array([np.inf], np.float32)),
         (spaces.MultiBinary(2), [0, np.inf]),
         *((spaces.Dict({"a": PAIR}), action) for action in ({}, {"a": None}, np.zeros(2), None)),
     ],
