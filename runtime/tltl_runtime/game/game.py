@@ -6,7 +6,7 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic
+from typing import Any, Final, Generic
 
 import gymnasium
 
@@ -28,6 +28,9 @@ from tltl_runtime.game.sensors import SensorChoice, Sensors
 from tltl_runtime.spec.episode_summary import EpisodeSummary
 from tltl_runtime.spec.wrapper import TltlEnv
 from tltlc.api import EMPTY, Diagnostic, Fspa, RewardOptions, TltlError
+
+SHOWN_EPISODES: Final = 10
+"""The most episodes from which reports learn what the files of a level do not say (:meth:`Game.played_level`)."""
 
 
 class Game(ABC, Generic[LevelT, EpisodeT]):

@@ -14,6 +14,7 @@ from tltl_runtime.evaluation.player import CHOICES, LostEpisode, PlayedEpisode, 
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.evaluation.versions import versions
 from tltl_runtime.game.episode import RecordedEpisode, Trajectory
+from tltl_runtime.game.game import SHOWN_EPISODES
 from tltl_runtime.game.recording_path import SUFFIX, new_path
 from tltl_runtime.game.registry import game_of
 from tltl_runtime.spec.episode_summary import EpisodeSummary
@@ -24,8 +25,6 @@ from tltlc.api import Diagnostic, TltlError, cli, fileio, traces
 
 _REPORT: Final = "evaluation.json"
 _PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
-_DRAWN: Final = 10
-"""The number of recorded episodes from which a game learns what the files of its level do not say."""
 _KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
 """The keys by which a JSON report is recognized. All versions of the report contain them."""
 _EPISODE_KEYS: Final = (
@@ -125,7 +124,7 @@ class EvaluationFiles:
             episode = self._game.episode_from_bytes(result.recording, stem) if pictures else None
             if pictures is None or episode is None or not pictures.draws(episode):
                 pictures = None
-            elif len(self._drawn) < _DRAWN:
+            elif len(self._drawn) < SHOWN_EPISODES:
                 self._drawn.append(episode)
             path = new_path(self._folder, stem, result.recording, [".png"] if pictures else [])
             files = {path.name: result.recording}

@@ -12,6 +12,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import OnLost, Pool, log_lost, results, set_up
 from tltl_runtime.evaluation.player import EpisodeRequest, LostEpisode, Setup
 from tltl_runtime.evaluation.versions import versions
+from tltl_runtime.game.game import SHOWN_EPISODES
 from tltl_runtime.game.level import Level
 from tltl_runtime.game.level_name import Variant, is_scene, level_option, split_scene
 from tltl_runtime.game.registry import game_of
@@ -32,12 +33,6 @@ OnEpisode = Callable[[Case, int, ExplainedEpisode], None]
 """A callback after each episode. It gets the case, the number of episodes so far, and the last episode."""
 
 _PLAYER: Final = "policy"
-_SHOWN: Final = 10
-"""The number of episodes from which a game learns what the files of its level do not say.
-
-Examples are the outline of the level, and which entities do not move.
-"""
-
 _ADDED: Final = 2
 """The most episodes that are recorded only because they show more of the level."""
 
@@ -217,7 +212,7 @@ def _judged(
         return None
     check_unedited(prepared)
     lost_episodes = LostEpisodes(len(lost), lost[0].fault) if lost else None
-    return JudgedCase(_as_played(prepared, played[:_SHOWN]), reference, judgement, tuple(played), lost_episodes)
+    return JudgedCase(_as_played(prepared, played[:SHOWN_EPISODES]), reference, judgement, tuple(played), lost_episodes)
 
 
 def _without(reference: Reference, lost: Sequence[LostEpisode]) -> Reference:
@@ -249,7 +244,7 @@ def telling_episodes(level: Level, episodes: Sequence[CaseEpisode], chosen: Sequ
     played = {
         episode.explained.summary.index: level.game.episode_from_bytes(episode.recording, _PLAYER)
         for place, episode in enumerate(episodes)
-        if place < _SHOWN or episode.explained.summary.index in chosen
+        if place < SHOWN_EPISODES or episode.explained.summary.index in chosen
     }
     known, added = [played[index] for index in chosen], []
     for index, episode in played.items():
