@@ -10,7 +10,7 @@ from typing import Any, Final, Literal
 
 from tltlc.core.record import record
 from tltlc.logic.formula import FlatNodes, Formula, flatten, unflatten
-from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
+from tltlc.resolve.spec import Atom, JudgeMode, Param, Register, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
@@ -114,6 +114,9 @@ class Fspa:
     Over infinite traces, a run is accepted if it meets one of the pairs of ``acceptance``, and a
     state is accepting if it lies on an accepted cycle. Edges with the same source and target then
     differ in their :meth:`marks` (``docs/semantics.md``, "Infinite traces").
+
+    ``registers`` are the memory that atoms read, each after the registers that its update reads at the
+    same sample (``docs/semantics.md``, "Memory").
     """
 
     name: str
@@ -133,6 +136,7 @@ class Fspa:
     edges: tuple[Edge, ...]
     spec_size: int
     acceptance: tuple[Pair, ...] = ()
+    registers: tuple[Register, ...] = ()
 
     def edges_from(self, state: int) -> tuple[Edge, ...]:
         """Return the edges that leave a state, in order of target."""

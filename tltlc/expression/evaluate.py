@@ -13,18 +13,31 @@ import math
 from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import add, ge, gt, le, lt, mul, neg, sub, truediv
-from typing import Final
+from typing import Any, Final
 
-from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    ParamValue,
+    SignalValue,
+    StepLength,
+    When,
+    variable_key,
+)
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
 """Maps each constant exponent whose power is computed as a product to the number of factors."""
 
 
-def evaluate(expression: Expression, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
+def evaluate(expression: Expression, signals: Mapping[Any, float], params: Mapping[str, float]) -> float:
     """Return the value of an expression, given the values of signals and params.
 
     ``signals`` and ``params`` map full names, such as ``distance(s1)``, to finite numbers in SI units.
+    For the update of a register, ``signals`` also maps the nodes that read atoms, registers before the
+    sample, and the length of the step (:data:`tltlc.expression.tree.VariableKey`).
     The result is infinite or NaN if a product, quotient or sum is too large for a float.
 
     Raises:
@@ -35,8 +48,8 @@ def evaluate(expression: Expression, signals: Mapping[str, float], params: Mappi
     """
     if isinstance(expression, Const):
         return expression.value
-    if isinstance(expression, SignalValue):
-        return float(signals[expression.name])
+    if isinstance(expression, (SignalValue, AtomValue, Before, StepLength)):
+        return float(signals[variable_key(expression)])
     if isinstance(expression, ParamValue):
         return float(params[expression.name])
     if isinstance(expression, When):
@@ -52,7 +65,7 @@ def evaluate(expression: Expression, signals: Mapping[str, float], params: Mappi
     return _FUNCTIONS[expression.op](*[evaluate(argument, signals, params) for argument in expression.args])
 
 
-def _holds(condition: Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> bool:
+def _holds(condition: Condition, signals: Mapping[Any, float], params: Mapping[str, float]) -> bool:
     if condition.op == "not":
         return not _part_holds(condition.args[0], signals, params)
     if condition.op == "and":
@@ -63,12 +76,12 @@ def _holds(condition: Condition, signals: Mapping[str, float], params: Mapping[s
     return _COMPARISONS[condition.op](left, right)
 
 
-def _part_holds(part: Expression | Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> bool:
+def _part_holds(part: Expression | Condition, signals: Mapping[Any, float], params: Mapping[str, float]) -> bool:
     assert isinstance(part, Condition), "and, or, not take conditions"
     return _holds(part, signals, params)
 
 
-def _part_value(part: Expression | Condition, signals: Mapping[str, float], params: Mapping[str, float]) -> float:
+def _part_value(part: Expression | Condition, signals: Mapping[Any, float], params: Mapping[str, float]) -> float:
     assert not isinstance(part, Condition), "comparisons take expressions"
     return evaluate(part, signals, params)
 

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    StepLength,
+    When,
+)
 
 
 def to_json(expression: Expression | Condition) -> dict[str, Any]:
@@ -15,6 +26,12 @@ def to_json(expression: Expression | Condition) -> dict[str, Any]:
         return {"signal": expression.name}
     if isinstance(expression, ParamValue):
         return {"param": expression.name}
+    if isinstance(expression, AtomValue):
+        return {"atom": expression.name}
+    if isinstance(expression, Before):
+        return {"before": expression.name}
+    if isinstance(expression, StepLength):
+        return {"step_length": "s"}
     if isinstance(expression, When):
         cases = [[to_json(condition), to_json(value)] for condition, value in expression.cases]
         return {"when": cases, "otherwise": to_json(expression.otherwise)}
@@ -32,6 +49,12 @@ def from_json(node: dict[str, Any]) -> Expression:
         return SignalValue(node["signal"])
     if "param" in node:
         return ParamValue(node["param"])
+    if "atom" in node:
+        return AtomValue(node["atom"])
+    if "before" in node:
+        return Before(node["before"])
+    if "step_length" in node:
+        return StepLength()
     if "when" in node:
         cases = tuple((_condition(condition), from_json(value)) for condition, value in node["when"])
         return When(cases, from_json(node["otherwise"]))

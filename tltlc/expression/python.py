@@ -9,10 +9,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Final, cast
+from typing import Any, Final, cast
 
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
-from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When, nodes
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    StepLength,
+    VariableKey,
+    When,
+    nodes,
+    variable_key,
+)
 
 INDENT: Final = "    "
 
@@ -24,11 +38,12 @@ _CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
 
 
 def compile_expressions(
-    expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
+    expressions: Sequence[Expression], signals: Sequence[VariableKey], params: Mapping[str, float]
 ) -> tuple[Callable[[Sequence[float]], float], ...]:
     """Return, for each expression, a function that computes its value from a sample.
 
-    A sample is a sequence of floats: the values of ``signals``, in order. ``params`` maps names to
+    A sample is a sequence of floats: the values of ``signals``, in order. These are names of signals;
+    for updates of registers, also the nodes that read anything else. ``params`` maps names to
     values, which are built into the functions. Values and errors are those of
     :func:`tltlc.expression.evaluate.evaluate`. A function reads only the signals of its expression,
     so that many signals do not make the source long.
@@ -46,14 +61,15 @@ def compile_expressions(
 
 
 def _function(
-    index: int, expression: Expression, positions: Mapping[str, int], constants: Mapping[str, str]
+    index: int, expression: Expression, positions: Mapping[VariableKey, int], constants: Mapping[str, str]
 ) -> Iterator[str]:
     """Yield the source lines of a function ``atomINDEX(sample)`` for an expression.
 
     The functions that it calls come first. ``positions`` maps signals to their indices in a sample, and
     ``constants`` maps params to Python variables.
     """
-    signals = {node.name: f"s{positions[node.name]}" for node in nodes(expression) if isinstance(node, SignalValue)}
+    variables = (node for node in nodes(expression) if isinstance(node, (SignalValue, AtomValue, Before, StepLength)))
+    signals = {key: f"s{positions[key]}" for key in map(variable_key, variables)}
     params = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, ParamValue)}
     writer = PythonWriter(signals, params, f"_{index}_")
     body = writer.assignment("value", expression, INDENT)
@@ -73,7 +89,7 @@ class PythonWriter:
     ``PREFIXpart1``, … for functions, and ``PREFIXbase``, ``PREFIXbase2``, … for the bases of powers.
     """
 
-    def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
+    def __init__(self, signals: Mapping[Any, str], params: Mapping[str, str], prefix: str) -> None:
         self._signals, self._params, self._prefix = signals, params, prefix
         self._count = self._powers = 0
         self.helpers: list[str] = []
@@ -104,8 +120,8 @@ class PythonWriter:
             return _with_brackets(
                 repr(float(node.value)), _SIGN if math.copysign(1, node.value) < 0 else _UNIT, min_binding
             )
-        if isinstance(node, SignalValue):
-            return self._signals[node.name]
+        if isinstance(node, (SignalValue, AtomValue, Before, StepLength)):
+            return self._signals[variable_key(node)]
         if isinstance(node, ParamValue):
             return self._params[node.name]
         if depth > _MAX_DEPTH:
@@ -136,7 +152,7 @@ class PythonWriter:
         factors = MULTIPLIED_EXPONENTS.get(exponent.value, 0) if isinstance(exponent, Const) else 0
         if not factors:
             return f"pow({self._text(base, _CASES, depth)}, {self._text(exponent, _CASES, depth)})", _UNIT
-        if isinstance(base, (SignalValue, ParamValue)):
+        if isinstance(base, (SignalValue, ParamValue, AtomValue, Before, StepLength)):
             return " * ".join([self._text(base, _UNIT, depth)] * factors), _PRODUCT
         # Nested powers need different variables, since the base of a power may contain another power.
         self._powers += 1

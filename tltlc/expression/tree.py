@@ -33,7 +33,10 @@ class Const:
 
 @record
 class SignalValue:
-    """The current value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1."""
+    """The current value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1.
+
+    A register (:class:`tltlc.resolve.spec.Register`) is read in the same way: no signal has its name.
+    """
 
     name: str
 
@@ -43,6 +46,25 @@ class ParamValue:
     """The value of a param, that is, of a named number that a source text declares."""
 
     name: str
+
+
+@record
+class AtomValue:
+    """The robustness of an atom at this sample, in [-1, 1]. Only updates of registers read atoms."""
+
+    name: str
+
+
+@record
+class Before:
+    """The value of a register before this sample. Only updates of registers read it."""
+
+    name: str
+
+
+@record
+class StepLength:
+    """The time from the sample before to this one, in seconds. Only updates of registers read it."""
 
 
 @record
@@ -79,7 +101,19 @@ class When:
     otherwise: Expression
 
 
-Expression = Union[Const, SignalValue, ParamValue, Op, When]
+Recalled = Union[AtomValue, Before, StepLength]
+"""What only updates of registers read."""
+
+Expression = Union[Const, SignalValue, ParamValue, AtomValue, Before, StepLength, Op, When]
+
+
+VariableKey = Union[str, AtomValue, Before, StepLength]
+"""The key of a variable in a table of values: the name of a signal or register, or the node that reads the variable."""
+
+
+def variable_key(node: SignalValue | Recalled) -> VariableKey:
+    """Return the key under which tables have the value of a variable."""
+    return node.name if isinstance(node, SignalValue) else node
 
 
 def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
@@ -116,7 +150,7 @@ def most_parts(expression: Expression | Condition) -> int:
 def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
     """Return the direct parts of a node: the arguments of an operator, or the conditions and values of a ``when``.
 
-    A number, signal or param has no parts.
+    Any other node has no parts.
     """
     if isinstance(node, When):
         return (*(part for case in node.cases for part in case), node.otherwise)

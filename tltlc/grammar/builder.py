@@ -28,6 +28,11 @@ OPERATORS = {
     "WEAK_UNTIL": "W",
     "RELEASE": "R",
     "STRONG_RELEASE": "M",
+    "ONCE": "once",
+    "HISTORICALLY": "historically",
+    "PREVIOUSLY": "previously",
+    "BEGINS": "begins",
+    "ENDS": "ends",
     "THEN": "then",
     "LESS": "<",
     "AT_MOST": "<=",
@@ -197,7 +202,8 @@ class Builder:
         return names
 
     def make_binary(self, span: Span, left: Expr, operator: Token, right: Expr) -> tree.BinaryExpr:
-        return tree.BinaryExpr(OPERATORS[operator.type], left, right, operator.span, span)
+        # `since` is no reserved word: its token is a name.
+        return tree.BinaryExpr(OPERATORS.get(operator.type, operator.text), left, right, operator.span, span)
 
     def make_unary(self, span: Span, operator: Token, operand: Expr) -> tree.Unary:
         return tree.Unary(OPERATORS[operator.type], operand, None, operator.span, span)

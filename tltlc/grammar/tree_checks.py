@@ -17,12 +17,17 @@ from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import expressions, parts
 
 _FORMULA_CLAUSES: Final = {"reach", "keep", "avoid", "require"}
-_BOUND_OPERATORS: Final = {"within": ("F",), "for": ("G",), "after": ("X", "N"), "[": ("F", "G")}
+_BOUND_OPERATORS: Final = {"within": ("F", "once"), "for": ("G", "historically"), "after": ("X", "N"), "[": ("F", "G")}
 _BOUND_HELP: Final = {
     "F": "`eventually within 20 steps p` or `F[0,20] p`",
     "G": "`always for 20 steps p` or `G[0,19] p`",
     "X": "`next after 3 steps p`",
     "N": "`weak_next after 3 steps p`",
+    "once": "`once within 20 steps p`",
+    "historically": "`historically for 20 steps p`",
+    "previously": "`once within 20 steps p`, or `previously p` without a bound",
+    "begins": "`once within 20 steps begins p`, or `begins p` without a bound",
+    "ends": "`once within 20 steps ends p`, or `ends p` without a bound",
 }
 
 

@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.progress_and_reward import RewardOptions, RewardStep, reward_step
-from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.monitor.samples import Samples, SampleValues, check_exclusive
 from tltlc.monitor.tables import tables
 
 
@@ -46,7 +46,8 @@ class Monitor:
     values that replace the default ones, in SI units. ``reward`` says how steps are rewarded and
     when episodes end. ``notices`` collects warnings about clamped values, one for each signal or
     atom. After :meth:`step`, ``values`` has the values of the atoms at this sample, in the order of
-    ``fspa.atoms``, and ``success`` is true if the episode has ended in success.
+    ``fspa.atoms``, ``registers`` has the values of its registers after the sample, and ``success`` is
+    true if the episode has ended in success.
 
     Raises:
         MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such
@@ -74,6 +75,7 @@ class Monitor:
         self.done = False
         self.success = False
         self.values: tuple[float, ...] = ()
+        self.registers = self._samples.initial
         self._memory: Any = None
 
     def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
@@ -87,26 +89,28 @@ class Monitor:
             MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
                 a value, TLT0614 exclusive atoms that hold at once. The state stays unchanged.
         """
-        return self._take(self._samples.atom_values(signals, self.steps + 1), last)
+        return self._take(self._samples.values(signals, self.registers, self.steps + 1), last)
 
     def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
         """Take one sample, given as the values of the atoms in order, and return the result.
 
-        Each value is in [-1, 1]. If ``last``, the episode ends with this sample, whatever the spec
-        says.
+        Each value is in [-1, 1]. Atoms that follow from others have no value: ``times(seen) > 3``
+        follows from ``seen`` (:func:`tltlc.automaton.memory.given_atoms`). If ``last``, the episode
+        ends with this sample, whatever the spec says.
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once. The state stays unchanged.
             ValueError: a value is not in [-1, 1], or the number of values is not the number of
-                atoms. The state stays unchanged.
+                atoms that do not follow from others. The state stays unchanged.
         """
-        if len(values) != len(self._names) or not all(-1.0 <= value <= 1.0 for value in values):
-            one = len(self._names) == 1
-            needed = "one value in [-1, 1] is" if one else f"{len(self._names)} values in [-1, 1] are"
+        count = len(self._samples.given)
+        if len(values) != count or not all(-1.0 <= value <= 1.0 for value in values):
+            needed = "one value in [-1, 1] is" if count == 1 else f"{count} values in [-1, 1] are"
             raise ValueError(f"{needed} needed, not {tuple(values)}")
-        return self._take(values, last)
+        return self._take(self._samples.from_atoms(values, self.registers, self.steps + 1), last)
 
-    def _take(self, values: Sequence[float], last: bool) -> Step:
+    def _take(self, sample: SampleValues, last: bool) -> Step:
+        values = sample.atoms
         check_exclusive(self.fspa, values, self.steps + 1)
         source = self.state
         edge_taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
@@ -120,7 +124,8 @@ class Monitor:
         if label is None:
             label = self._labels[target.id] = str(target.label)
 
-        self.state, self.steps, self.values = target.id, self.steps + 1, tuple(values)
+        self.state, self.steps, self.values = target.id, self.steps + 1, values
+        self.registers = sample.registers
         self.progress = outcome.progress
         if not self.done:
             self.done, self.success = outcome.done, outcome.success

@@ -1,14 +1,20 @@
-"""Compute the values of the atoms from the game's signals: check and clamp signals, evaluate predicates."""
+"""Compute the values of the atoms from the game's signals: check and clamp signals, evaluate predicates.
+
+The values of registers, the memory of the trace so far, go in and come out: nothing here remembers
+a sample.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
-from typing import Final, SupportsFloat
+from typing import Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.python import compile_expressions
+from tltlc.expression.tree import AtomValue, Before, VariableKey
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
@@ -22,8 +28,18 @@ class MonitorError(TltlError):
     """
 
 
+class SampleValues(NamedTuple):
+    """The values of the atoms at a sample, each in [-1, 1], and of the registers after it, in order."""
+
+    atoms: tuple[float, ...]
+    registers: tuple[float, ...]
+
+
 class Samples:
     """Computes the values of the atoms of an automaton from samples of its signals.
+
+    ``initial`` are the values of the registers before the first sample, and ``given`` the indices of
+    the atoms that do not follow from others.
 
     ``params`` maps names of params to values that replace the default ones. A warning about a
     clamped value is appended to ``notices``, at most one for each signal or atom.
@@ -33,15 +49,35 @@ class Samples:
         self._fspa, self._notices = fspa, notices
         self._names = tuple(signal.name for signal in fspa.signals)
         self._noticed: set[tuple[str, str]] = set()
+        self.initial = tuple(register.initial for register in fspa.registers)
+        self._order = schedule(fspa)
+        self.given = given_atoms(fspa)
+        self._from_atoms = registers_from_atoms(fspa)
+        registers = [register.name for register in fspa.registers]
+        atoms = [AtomValue(atom.name) for atom in fspa.atoms] if registers else []
+        variables: tuple[VariableKey, ...] = (*self._names, *registers, *map(Before, registers), *atoms)
         values = param_values(fspa.params, params or {})
-        self._atoms: tuple[Callable[[Sequence[float]], float], ...] = compile_expressions(
-            [atom.expression for atom in fspa.atoms], self._names, values
+        compiled = compile_expressions(
+            [*(atom.expression for atom in fspa.atoms), *(register.update for register in fspa.registers)],
+            variables,
+            values,
         )
+        self._atoms: tuple[Callable[[Sequence[float]], float], ...] = compiled[: len(fspa.atoms)]
+        self._updates: tuple[Callable[[Sequence[float]], float], ...] = compiled[len(fspa.atoms) :]
 
     def atom_values(self, signals: Mapping[str, SupportsFloat], when: int | str) -> tuple[float, ...]:
-        """Return the values of the atoms at a sample, each in [-1, 1].
+        """Return the values of the atoms at a sample of an automaton without registers, each in [-1, 1].
 
-        ``when`` says in messages which sample it is: its number, from 1, or a phrase.
+        ``when`` and the errors are those of :meth:`values`.
+        """
+        assert not self._updates, "with registers, the values depend on the samples before"
+        return self.values(signals, (), when).atoms
+
+    def values(self, signals: Mapping[str, SupportsFloat], registers: Sequence[float], when: int | str) -> SampleValues:
+        """Return the values of the atoms at a sample, and of the registers after it.
+
+        ``registers`` are the values of the registers before the sample. ``when`` says in messages which
+        sample it is: its number, from 1, or a phrase.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
@@ -54,8 +90,53 @@ class Samples:
             self._signal_value(signal, name, signals[name], when)
             for signal, name in zip(self._fspa.signals, self._names, strict=True)
         ]
+        if self._updates:
+            return self._with_registers(sample, registers, when)
         values = [self._atom_value(index, sample, when) for index in range(len(self._atoms))]
-        return tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values))
+        return SampleValues(
+            tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values)), ()
+        )
+
+    def from_atoms(self, given: Sequence[float], registers: Sequence[float], when: int | str) -> SampleValues:
+        """Return the values of all atoms and registers, from the values of the atoms that do not follow from others.
+
+        ``given`` has a value for each of :func:`tltlc.automaton.memory.given_atoms`, in order.
+        Registers that read signals keep their value.
+        """
+        if not self._updates:
+            return SampleValues(tuple(given), ())
+        return self._with_registers(
+            [0.0] * len(self._names), registers, when, dict(zip(self.given, given, strict=True))
+        )
+
+    def _with_registers(
+        self,
+        sample: Sequence[float],
+        before: Sequence[float],
+        when: int | str,
+        given: Mapping[int, float] | None = None,
+    ) -> SampleValues:
+        """Return the values of atoms and registers at a sample, with the values of the atoms in ``given``."""
+        signals, count = len(self._names), len(self._updates)
+        known = [*sample, *before, *before, *[0.0] * len(self._atoms)]
+        for step in self._order:
+            index = step.index
+            if step.kind == "atom":
+                if given is not None and index in given:
+                    known[signals + 2 * count + index] = given[index]
+                else:
+                    value = self._atom_value(index, known, when)
+                    known[signals + 2 * count + index] = self._clamped_atom_value(index, value, when)
+            elif given is None or self._fspa.registers[index].name in self._from_atoms:
+                known[signals + index] = self._register_value(index, known, when)
+        return SampleValues(tuple(known[signals + 2 * count :]), tuple(known[signals : signals + count]))
+
+    def _register_value(self, index: int, known: Sequence[float], when: int | str) -> float:
+        name = self._fspa.registers[index].name
+        value = self._computed(self._updates[index], known, "register", name, when)
+        if not isfinite(value):
+            raise _error("TLT0613", when, f"the register `{name}` is too large to compute")
+        return value
 
     def _signal_value(self, signal: Signal, name: str, given: SupportsFloat, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range.
@@ -77,15 +158,25 @@ class Samples:
         return nearest
 
     def _atom_value(self, index: int, sample: Sequence[float], when: int | str) -> float:
+        return self._computed(self._atoms[index], sample, "atom", self._fspa.atoms[index].name, when)
+
+    def _computed(
+        self,
+        function: Callable[[Sequence[float]], float],
+        sample: Sequence[float],
+        kind: str,
+        name: str,
+        when: int | str,
+    ) -> float:
         try:
-            return self._atoms[index](sample)
+            return function(sample)
         except ZeroDivisionError:
             problem = "divides by zero"
         except OverflowError:
             problem = "is too large to compute"
         except ValueError:
             problem = "takes a root or power that does not exist"
-        raise _error("TLT0613", when, f"the atom `{self._fspa.atoms[index].name}` {problem}")
+        raise _error("TLT0613", when, f"the {kind} `{name}` {problem}")
 
     def _clamped_atom_value(self, index: int, value: float, when: int | str) -> float:
         if -1.0 <= value <= 1.0:

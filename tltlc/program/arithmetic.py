@@ -270,6 +270,7 @@ class ExpressionTranslator:
             branches = self._cases(name, node)
             lines += [Declare(name, "real", None, _is_reassigned(name, branches)), *branches]
             return ProgramVariable(name)
+        assert isinstance(node, source.Op), "atoms read registers as signals"
         if node.op == "^" and isinstance(exponent := node.args[1], source.Const):
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
             if factors:

@@ -16,6 +16,7 @@ from tltlc.resolve.dimensions import same_dimension
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
+from tltlc.resolve.recall import check_closed, saturate, too_small_error
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
@@ -39,6 +40,8 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     """
     left, right = quantity(expr.left, env), quantity(expr.right, env)
     same_dimension(left, right, expr.right, env)
+    left, right = saturate(left, right), saturate(right, left)
+    left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     op = expr.op
     if left.is_constant and not right.is_constant:
         op, left, right = _MIRRORED[op], right, left
@@ -87,6 +90,8 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
     always = x.low > c if op == ">" else x.high < c
     never = x.high <= c if op == ">" else x.low >= c
     if always or never:
+        if x.recall is not None and x.recall.limit is not None:
+            raise too_small_error(x, x.recall.limit, c)
         holds = always != negated
         message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"
         constant = "true" if holds else "false"

@@ -15,6 +15,7 @@ from tltlc.grammar.walk import parts
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, atom
 from tltlc.resolve.problem import Log, ResolutionError, problem
+from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
 
 LARGEST_EXPANSION = 100_000
@@ -75,6 +76,9 @@ class Context:
     - ``signal_infos`` and ``params`` have the declared signals and params, by name.
     - ``clock_s`` is the time between two samples in seconds, None without a clock. ``clock_failed``
       is true if a declaration of a clock is in error.
+    - ``registers`` has the memory that any formula or predicate asked for, by name, each register
+      after those that it reads at the same sample. ``signals`` has a signal in place of each, so that
+      its range is known. ``recalls`` counts the functions of the past around the current expression.
     - ``signals`` and ``atoms`` have those in use, by full name, such as ``near(s1)``.
     - ``instances`` has the predicates to be checked.
     - ``values`` caches the values of signals, predicates, lets (named formulas), calls and
@@ -103,6 +107,8 @@ class Context:
         "instances",
         "log",
         "params",
+        "recalls",
+        "registers",
         "signal_infos",
         "signals",
         "values",
@@ -116,6 +122,8 @@ class Context:
         self.clock_failed = False
         self.signals: dict[str, Signal] = {}
         self.atoms: dict[str, Atom] = {}
+        self.registers: dict[str, RegisterDraft] = {}
+        self.recalls = 0
         self.bounds: list[Bound] = []
         self.instances: dict[tuple[int, Any], Instance] = {}
         self.expanding: dict[int, str] = {}
@@ -130,6 +138,11 @@ class Context:
         """Return the signal with these entities as its arguments, and record that it is used."""
         signal = info.signal_of(entities)
         return self.signals.setdefault(signal.name, signal)
+
+    def register(self, draft: RegisterDraft) -> None:
+        """Record a register that an atom or another register reads."""
+        self.registers.setdefault(draft.name, draft)
+        self.signals.setdefault(draft.name, Signal(draft.name, "number", draft.low, draft.high))
 
     def atom(
         self,

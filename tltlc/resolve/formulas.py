@@ -28,6 +28,7 @@ from tltlc.grammar.tree import (
 from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
+from tltlc.resolve import memory
 from tltlc.resolve.arguments import match
 from tltlc.resolve.bounds import expand_bound
 from tltlc.resolve.comparisons import comparison
@@ -88,11 +89,20 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
         return logic.TRUE if expr.value else logic.FALSE
     if isinstance(expr, NameExpr):
         return (yield _resolve_name(expr, env))
+    if isinstance(expr, CallExpr) and memory.is_memory(expr, env):
+        return _recalled_bool(expr, env)
     if isinstance(expr, CallExpr) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
         return (yield _resolve_once(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
         return expand_bound(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
+    if isinstance(expr, Unary) and expr.op in memory.PAST:
+        operand = yield _formula(expr.operand, env)
+        return memory.past(expr, operand, env)
+    if isinstance(expr, BinaryExpr) and expr.op == "since":
+        left = yield _formula(expr.left, env)
+        right = yield _formula(expr.right, env)
+        return memory.since(expr, left, right, env)
     if isinstance(expr, Quantified):
         return (yield _expand_quantifier(expr, env))
     if isinstance(expr, BinaryExpr):
@@ -147,6 +157,14 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
         # The declaration has already been reported for its unknown type.
         raise ResolutionError(None)
     raise not_a_formula_error(expr, env)
+
+
+def _recalled_bool(expr: CallExpr, env: Env) -> Formula:
+    """Return the atom of a bool that is recalled, as in ``previous(alarm)``."""
+    value = memory.recall(expr, env, 0)
+    if not value.is_bool:
+        raise not_a_formula_error(expr, env)
+    return _bool_atom(value, "", expr, env)
 
 
 def _bool_atom(value: Quantity, doc: str, expr: NameExpr | CallExpr, env: Env) -> Formula:

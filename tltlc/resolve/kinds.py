@@ -13,10 +13,10 @@ from tltlc.grammar.walk import parts
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.scope import FUNCTIONS, Binding, BindingKind, closest_name
+from tltlc.resolve.scope import FUNCTIONS, MEMORY_FUNCTIONS, Binding, BindingKind, closest_name
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
-_FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
+_FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "since", "then", "<", "<=", ">", ">=")
 
 _MOST_LETTERS = 4
 """The most operator letters that may stand directly in front of a name, as in ``FGgoal``."""
@@ -189,7 +189,8 @@ def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
             return "number" if quantity else "entity" if isinstance(local, Entity) else "formula"
         binding = env.scope.names.get(expr.name)
         if binding is None:
-            return "number" if isinstance(expr, CallExpr) and expr.name in FUNCTIONS else "formula"
+            is_function = isinstance(expr, CallExpr) and expr.name in (*FUNCTIONS, *MEMORY_FUNCTIONS)
+            return "number" if is_function else "formula"
         if isinstance(binding.declaration, SignalDecl):
             return "formula" if binding.declaration.type == "bool" else "number"
         return "entity" if binding.kind in ("entity", "group") else "number" if binding.kind == "param" else "formula"

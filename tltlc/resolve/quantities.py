@@ -19,6 +19,7 @@ from tltlc.resolve.dimensions import mismatch, same_dimension
 from tltlc.resolve.kinds import entity_help, kind_in_words, kind_of, lookup
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
+from tltlc.resolve.recall import check_closed, saturate
 from tltlc.resolve.scope import FUNCTIONS
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import Dimension
@@ -66,6 +67,7 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         a, b = quantity(expr.left, env, depth), quantity(expr.right, env, depth)
         same_dimension(a, b, expr.right, env)
+        a, b = check_closed(saturate(a, b), expr.left, env), check_closed(saturate(b, a), expr.right, env)
         op = cast(ConditionOp, expr.op)
         return Condition(op, (a.expression, b.expression)), f"{a.text} {expr.op} {b.text}"
     if isinstance(expr, (NameExpr, CallExpr)):
@@ -93,6 +95,12 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
                 raise _too_wide_error(f"`{expr.name}` has more than {ARITHMETIC.parts} arguments here", expr, env)
             values = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
             return _apply_operator(expr.name, values, functions.dimension(expr, values, env), expr, env)
+        from tltlc.resolve import memory
+
+        if memory.is_memory(expr, env):
+            if env.constant:
+                raise _not_constant_error(expr, env)
+            return memory.recall(expr, env, depth)
         return _resolve_name(expr, env, depth)
     if isinstance(expr, tree.Unary) and expr.op == "-":
         operand = quantity(expr.operand, env, depth)
@@ -132,14 +140,7 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
             return replace(signal_value(placeholder), dimension=None)
         raise _not_a_number_error(expr, env)
     if env.constant:
-        raise problem(
-            "TLT0302",
-            "expected a constant here",
-            env.scope.source,
-            expr.span,
-            "only numbers and arithmetic with numbers are allowed here",
-            advice=f"write a number in place of `{expr.name}`",
-        )
+        raise _not_constant_error(expr, env)
     if expr.name == "inf" and "inf" not in env.scope.names:
         title = "`inf` can only be used as an end of a range"
         raise problem("TLT0303", title, env.scope.source, expr.span, advice="write a number")
@@ -242,8 +243,8 @@ def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
     values: list[Quantity] = []
     for case in expr.cases:
         tests.append(condition(case.condition, env, depth))
-        values.append(quantity(case.value, env, depth))
-    otherwise = quantity(expr.otherwise, env, depth)
+        values.append(check_closed(quantity(case.value, env, depth), case.value, env))
+    otherwise = check_closed(quantity(expr.otherwise, env, depth), expr.otherwise, env)
     values.append(otherwise)
     # A test may compare a value that was computed earlier, whose expression may be deep.
     deepest = max([*(value.depth for value in values), *(depth_of(test) for test, _ in tests)])
@@ -265,12 +266,24 @@ def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
 
 
 def _apply_operator(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, expr: Expr, env: Env) -> Quantity:
+    args = tuple(check_closed(arg, expr, env) for arg in args)
     result = apply(op, args, dimension)
     if result is None:
         text = f"{args[0].text} {op} {args[1].text}" if op in _ARITHMETIC else f"{op}({args[0].text})"
         advice = "write numbers that give a finite value"
         raise problem("TLT0309", f"`{text}` has no value", env.scope.source, expr.span, advice=advice)
     return result
+
+
+def _not_constant_error(expr: NameExpr | CallExpr, env: Env) -> ResolutionError:
+    return problem(
+        "TLT0302",
+        "expected a constant here",
+        env.scope.source,
+        expr.span,
+        "only numbers and arithmetic with numbers are allowed here",
+        advice=f"write a number in place of `{expr.name}`",
+    )
 
 
 def _not_a_number_error(expr: Expr, env: Env) -> ResolutionError:

@@ -74,6 +74,47 @@ class Atom:
         return self.base.opposite if isinstance(self.base, ComparisonName) else None
 
 
+RegisterKind = Literal[
+    "once",
+    "historically",
+    "since",
+    "previously",
+    "times",
+    "time_since",
+    "time_holding",
+    "previous",
+    "initial",
+    "highest",
+    "lowest",
+    "last",
+    "first",
+]
+
+
+@record
+class Register:
+    """A number that a monitor keeps from sample to sample: a function of the trace so far.
+
+    - ``kind`` says which function. A register of kind ``last`` keeps a value for the next sample, and
+      one of kind ``first`` is 1 until the first sample has been taken.
+    - ``unit`` is ``steps`` or an SI unit; empty for plain numbers, counts and robustness.
+    - ``low`` and ``high`` bound the value; None where there is no bound. ``initial`` is the value
+      before the first sample.
+    - ``update`` is the value at a sample. It may read signals, params, atoms, registers that come
+      earlier in the list, and the values of all registers before the sample.
+
+    No signal has the name of a register.
+    """
+
+    name: str
+    kind: RegisterKind
+    unit: str
+    low: float | None
+    high: float | None
+    initial: float
+    update: Expression
+
+
 @record
 class Bound:
     """A bound of a temporal operator: its upper end, in samples, and its place in the text."""
@@ -104,9 +145,11 @@ class Spec:
     """A specification from which an automaton can be built.
 
     ``parts`` are the conjuncts of ``formula``. ``atoms`` are the atoms of the formula in order of
-    appearance, then those that occur only in ``exclusive``. ``exclusive`` has groups of indices into
+    appearance, then those that only registers read, then those that occur only in ``exclusive``.
+    ``exclusive`` has groups of indices into
     ``atoms``: no two atoms of a group hold at the same sample. ``signals`` and ``params`` are those
-    that the atoms use, in order of first use. ``judge`` says whether an episode is judged when it
+    that the atoms use, in order of first use. ``registers`` are the memory that the atoms read, each
+    after the registers that its update reads at the same sample. ``judge`` says whether an episode is judged when it
     reaches its goal or at its limit; None if no clause says so. ``clock_s`` is the time between two
     samples in seconds, or None if no clock is declared.
     """
@@ -127,14 +170,15 @@ class Spec:
     clock_s: float | None
     source: SourceFile
     name_span: Span
+    registers: tuple[Register, ...] = ()
 
 
 @record
 class Vocabulary:
     """A list of atoms that belong to no formula, with the signals and params that they use.
 
-    ``atoms`` are the requested atoms in order, then those that occur only in ``exclusive``. The other
-    fields are as in :class:`Spec`.
+    ``atoms`` are the requested atoms in order, then those that only registers read, then those that
+    occur only in ``exclusive``. The other fields are as in :class:`Spec`.
     """
 
     atoms: tuple[Atom, ...]
@@ -142,6 +186,7 @@ class Vocabulary:
     params: tuple[Param, ...]
     exclusive: tuple[tuple[int, ...], ...]
     clock_s: float | None
+    registers: tuple[Register, ...] = ()
 
 
 @record

@@ -17,7 +17,8 @@ from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Conjunct, JudgeMode, Spec, Vocabulary
+from tltlc.resolve.registers import memory_of
+from tltlc.resolve.spec import Atom, Conjunct, JudgeMode, Spec, Vocabulary
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
@@ -74,6 +75,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
         clock_s=words.clock_s,
         source=source,
         name_span=declaration.name_span,
+        registers=words.registers,
     )
 
 
@@ -81,20 +83,30 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
     """Return the atoms with the names ``used``, and the signals, params and groups that belong to them.
 
     ``groups`` has the names of the atoms of each ``exclusive`` declaration. A group belongs to the atoms
-    if ``used`` names at least two of its atoms; then the others are returned, too.
+    if ``used`` or the registers name at least two of its atoms; then the others are returned, too.
     """
     used = list(used)
+    used += (atom.name for atom in memory_of(_atoms(used, context), context.registers, context.atoms).atoms)
     exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
     names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
-    atoms = tuple(context.atoms[name] for name in names)
-    variables = [node for atom in atoms for node in _variables(atom.expression)]
+    memory = memory_of(_atoms(names, context), context.registers, context.atoms)
+    names = list(dict.fromkeys([*names, *(atom.name for atom in memory.atoms)]))
+    atoms = _atoms(names, context)
+    read = [*(atom.expression for atom in atoms), *(register.update for register in memory.registers)]
+    variables = [node for expression in read for node in _variables(expression)]
+    signals = [node.name for node in variables if isinstance(node, SignalNode) and node.name not in context.registers]
     return Vocabulary(
         atoms=atoms,
-        signals=tuple(dict.fromkeys(context.signals[node.name] for node in variables if isinstance(node, SignalNode))),
+        signals=tuple(dict.fromkeys(context.signals[name] for name in signals)),
         params=tuple(dict.fromkeys(context.params[node.name] for node in variables if isinstance(node, ParamNode))),
         exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
         clock_s=context.clock_s,
+        registers=memory.registers,
     )
+
+
+def _atoms(names: Iterable[str], context: Context) -> tuple[Atom, ...]:
+    return tuple(context.atoms[name] for name in names)
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:

@@ -7,6 +7,7 @@ from math import isinf
 from typing import Union
 
 from tltlc.core.record import EMPTY, record, replace
+from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const, Expression, Op
 from tltlc.logic.formula import Formula
 from tltlc.resolve.context import Context
@@ -29,6 +30,21 @@ class Entity:
 
 
 @record
+class Recall:
+    """That a quantity is the count or time in a register which saturates, with no maximum yet or a written one.
+
+    ``rate`` is how many units of the register one unit of the quantity has: the steps of a second, or
+    1. ``is_count`` marks a count. ``limit`` is the place where the maximum is written; None if the
+    quantity has no maximum yet.
+    """
+
+    register: str
+    rate: float
+    is_count: bool
+    limit: Label | None = None
+
+
+@record
 class Quantity:
     """A number that depends on signals and params.
 
@@ -40,6 +56,7 @@ class Quantity:
     - ``is_bool`` marks a value that is 0 or 1 by type.
     - ``overflows`` marks a value whose arithmetic may overflow although all its inputs have finite
       ranges.
+    - ``recall`` marks a count or time of the trace so far whose maximum is not yet found, or is written.
     - ``call`` is the base and the arguments of a signal or a predicate, None for other quantities.
     """
 
@@ -53,6 +70,7 @@ class Quantity:
     is_bool: bool = False
     overflows: bool = False
     call: tuple[str, tuple[str, ...]] | None = None
+    recall: Recall | None = None
 
     @property
     def is_constant(self) -> bool:

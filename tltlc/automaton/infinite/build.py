@@ -53,6 +53,7 @@ def _build(spec: Spec, work: int) -> Fspa:
         semantics=spec.semantics,
         tags=spec.tags,
         clock_s=spec.clock_s,
+        registers=spec.registers,
         signals=spec.signals,
         params=spec.params,
         atoms=spec.atoms,

@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from tltlc.core.record import record
-from tltlc.expression.tree import Condition, Const, Expression, Op, When
+from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
 from tltlc.io.json_text import load
 from tltlc.io.limits import REPORT, WORK
 from tltlc.io.temporary import temporaries
@@ -129,4 +129,5 @@ def _text(node: Expression | Condition, names: Mapping[Variable, str]) -> str:
     if isinstance(node, When):
         cases = [f"[{_text(condition, names)} {_text(value, names)}]" for condition, value in node.cases]
         return f"(when {' '.join(cases)} {_text(node.otherwise, names)})"
+    assert isinstance(node, (SignalValue, ParamValue)), "predicates read registers as signals"
     return names[node]

@@ -6,7 +6,18 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from tltlc.core.record import replace
-from tltlc.expression.tree import Condition, Const, Expression, ParamValue, SignalValue, When, nodes
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    ParamValue,
+    SignalValue,
+    StepLength,
+    When,
+    nodes,
+)
 from tltlc.tools.diff.differences import type_and_range
 from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 
@@ -95,7 +106,7 @@ def _token(node: Expression | Condition, params: Mapping[str, SpecParam]) -> obj
     """Return a key of a single node. It has the number of the node's children, but not the children."""
     if isinstance(node, ParamValue):
         return "param", type_and_range(params[node.name])
-    if isinstance(node, (Const, SignalValue)):
+    if isinstance(node, (Const, SignalValue, AtomValue, Before, StepLength)):
         return node
     if isinstance(node, When):
         return "when", len(node.cases)

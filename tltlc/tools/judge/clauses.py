@@ -149,6 +149,7 @@ def _as_spec(fspa: Fspa) -> Spec:
         semantics=fspa.semantics,
         tags=fspa.tags,
         clock_s=fspa.clock_s,
+        registers=fspa.registers,
         source=SourceFile(f"<{fspa.name}>", "", "text"),
         name_span=Span(0, 0),
     )

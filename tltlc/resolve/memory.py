@@ -1,0 +1,290 @@
+"""Resolve what speaks of the trace so far: ``once``, ``since``, ``time_since(p)``, ``previous(x)``, ….
+
+Each use becomes a register of the context (:mod:`tltlc.resolve.registers`), and an atom or a quantity
+that reads the register.
+"""
+
+from __future__ import annotations
+
+from math import inf, isinf
+from typing import Final
+
+from tltlc.core.record import replace
+from tltlc.core.source import Span
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
+from tltlc.io.limits import ARITHMETIC
+from tltlc.logic import formula as logic
+from tltlc.logic.formula import Formula
+from tltlc.logic.text.printer import ascii_text, operand_text
+from tltlc.resolve import registers, units
+from tltlc.resolve.constants import number, samples
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.recall import check_closed, up_to
+from tltlc.resolve.registers import RegisterDraft
+from tltlc.resolve.scope import MEMORY_FUNCTIONS
+from tltlc.resolve.spec import Signal
+from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
+
+PAST: Final = ("once", "historically", "previously", "begins", "ends")
+"""The operators with one operand that speak of the trace so far."""
+
+_OF_FORMULAS: Final = ("times", "time_since", "time_holding")
+_MOST_NESTED: Final = 32
+"""The most functions of the past that may stand inside each other."""
+
+
+# --- operators --------------------------------------------------------------------------------------
+
+
+def past(expr: Unary, operand: Formula, env: Env) -> Formula:
+    """Return the formula of ``once p``, ``historically p``, ``previously p``, ``begins p`` or ``ends p``.
+
+    ``operand`` is the formula of p. Raises ResolutionError: TLT0320 p speaks of the future, TLT0312 or
+    TLT0313 a window makes no sense or needs a clock.
+    """
+    _check_present(operand, expr.operand, env)
+    if expr.bound is not None:
+        return _window(expr, operand, env)
+    if expr.op == "begins":
+        return logic.and_(operand, logic.not_(_previously(operand, expr, env)))
+    if expr.op == "ends":
+        return logic.and_(logic.not_(operand), _previously(operand, expr, env))
+    if expr.op == "previously":
+        return _previously(operand, expr, env)
+    name = f"{expr.op} {operand_text(operand)}"
+    if not env.symbolic:
+        update = registers.once if expr.op == "once" else registers.historically
+        env.context.register(update(name, _value(operand, expr, env)))
+    return _atom(name, SignalValue(name), expr.span, env)
+
+
+def since(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> Formula:
+    """Return the formula of ``p since q``. Raises ResolutionError (TLT0320) if a side speaks of the future."""
+    _check_present(left, expr.left, env)
+    _check_present(right, expr.right, env)
+    name = f"({operand_text(left)} since {operand_text(right)})"
+    if not env.symbolic:
+        env.context.register(registers.since(name, _value(left, expr, env), _value(right, expr, env)))
+    return _atom(name, SignalValue(name), expr.span, env)
+
+
+def _previously(operand: Formula, expr: Unary, env: Env) -> Formula:
+    name = f"previously {operand_text(operand)}"
+    if not env.symbolic:
+        kept = _kept(operand, _value(operand, expr, env), env)
+        env.context.register(registers.previously(name, kept))
+    return _atom(name, SignalValue(name), expr.span, env)
+
+
+def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
+    """Return the atom of ``once within 5 s p`` or ``historically for 3 s p``.
+
+    ``once within n steps p`` holds if p has held at this sample or at one of the n before it, and
+    ``historically for n steps p`` if p has held at the last n samples, or at all if there are fewer.
+    """
+    bound, source = expr.bound, env.scope.source
+    assert bound is not None, "a window"
+    unit = f" {bound.high.unit}" if bound.high.unit else ""
+    word = "within" if expr.op == "once" else "for"
+    name = f"{expr.op} {word} {number_text(bound.high.value)}{unit} {operand_text(operand)}"
+    steps = samples(bound.high, env)
+    if expr.op == "historically" and steps == 0:
+        advice = "write e.g. `historically for 20 steps p`"
+        raise problem("TLT0312", "`for` needs at least one step", source, bound.high.span, advice=advice)
+    if env.symbolic:
+        return logic.atom(name)
+    watched = operand if expr.op == "once" else logic.not_(operand)
+    register = _time_since(watched, expr, env)
+    # Between n and n + 1 steps lies the border of `within`, between n - 1 and n steps that of `for`.
+    border = steps + 0.5 if expr.op == "once" else steps - 0.5
+    age = registers.saturated(register, 2 * border)
+    margin = (Const(border), age) if expr.op == "once" else (age, Const(border))
+    return _atom(name, Op("/", (Op("-", margin), Const(border))), expr.span, env)
+
+
+def _check_present(operand: Formula, expr: Expr, env: Env) -> None:
+    if any(part.is_temporal for part in operand.walk()):
+        raise problem(
+            "TLT0320",
+            "a formula about the trace so far cannot contain an operator about the future",
+            env.scope.source,
+            expr.span,
+            "this speaks of what is still to come",
+            advice="let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
+        )
+
+
+def _atom(name: str, value: Expression, span: Span, env: Env) -> Formula:
+    return logic.atom(name) if env.symbolic else env.context.atom(name, value, "", env.scope.source, span)
+
+
+def _value(operand: Formula, expr: Expr, env: Env) -> Expression:
+    """Return the robustness of an operand as an expression over its atoms, if it is not too large."""
+    value = registers.robustness(operand)
+    _check_depth(value, expr, env)
+    env.context.count_arithmetic(value, env.scope.source, expr.span)
+    return value
+
+
+def _truth(operand: Formula, expr: Expr, env: Env) -> Condition:
+    """Return the condition that an operand is true, if it is not too large."""
+    condition = registers.truth(operand)
+    _check_depth(condition, expr, env)
+    # The limit counts the parts of expressions, and a condition is none.
+    env.context.count_arithmetic(When(((condition, Const(0.0)),), Const(0.0)), env.scope.source, expr.span)
+    return condition
+
+
+def _check_depth(value: Expression | Condition, expr: Expr, env: Env) -> None:
+    if depth(value) > ARITHMETIC.depth:
+        title = f"this formula is more than {ARITHMETIC.depth} operators deep"
+        advice = "let the game compute a part of it and supply it as a `bool` signal"
+        raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
+
+
+def _kept(operand: Formula, value: Expression, env: Env) -> str:
+    """Return the name of the register that keeps the robustness of a formula for the next sample."""
+    name = f"last {operand_text(operand)}"
+    env.context.register(registers.last(name, value, -1.0, 1.0, -1.0))
+    return name
+
+
+def _time_since(operand: Formula, expr: Expr, env: Env) -> str:
+    name = f"time_since({ascii_text(operand)})"
+    step = registers.step_length(False)
+    env.context.register(registers.time_since(name, _truth(operand, expr, env), step, "steps"))
+    return name
+
+
+# --- functions --------------------------------------------------------------------------------------
+
+
+def is_memory(expr: CallExpr, env: Env) -> bool:
+    """Whether a call is a built-in function of the trace so far: a declaration may have taken its name."""
+    return expr.name in MEMORY_FUNCTIONS and expr.name not in env.local and expr.name not in env.scope.names
+
+
+def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
+    """Return the value of ``times(p)``, ``time_since(p)``, ``previous(x)``, … as a quantity.
+
+    Raises ResolutionError: TLT0210 wrong arguments, TLT0313 a time without a clock, TLT0320 an operand
+    speaks of the future, TLT0303 a maximum that is not above 0. ``level`` is the number of operators
+    around the call.
+    """
+    most = 2 if expr.name in _OF_FORMULAS else 1
+    if not 1 <= len(expr.arguments) <= most or any(argument.name for argument in expr.arguments):
+        form = f"`{expr.name}(p)` or `{expr.name}(p, MAXIMUM)`" if most == 2 else f"`{expr.name}(x)`"
+        title = f"`{expr.name}` takes one {'formula' if most == 2 else 'number'}"
+        raise problem("TLT0210", title, env.scope.source, expr.span, advice=f"write {form}")
+    if env.context.recalls >= _MOST_NESTED:
+        title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
+        advice = "let the game compute the value and supply it as a signal"
+        raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
+    env.context.recalls += 1
+    try:
+        return _of_formula(expr, env) if most == 2 else _of_number(expr, env, level)
+    finally:
+        env.context.recalls -= 1
+
+
+def _of_formula(expr: CallExpr, env: Env) -> Quantity:
+    from tltlc.resolve.formulas import formula
+
+    argument = expr.arguments[0].value
+    operand = formula(argument, env)
+    _check_present(operand, argument, env)
+    name = f"{expr.name}({ascii_text(operand)})"
+    is_time = expr.name != "times"
+    rate = _steps_per_second(expr, env) if is_time else 1.0
+    if not env.symbolic:
+        if expr.name == "time_since":
+            _time_since(operand, expr, env)
+        else:
+            kept, begun = _kept(operand, _value(operand, expr, env), env), _truth(operand, expr, env)
+            step = registers.step_length(False)
+            draft = (
+                registers.time_holding(name, begun, kept, step, "steps")
+                if is_time
+                else registers.times(name, begun, kept)
+            )
+            env.context.register(draft)
+    dimension = units.TYPES["time"] if is_time else units.PLAIN
+    read = Recall(name, rate, is_count=not is_time)
+    open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, recall=read)
+    if env.symbolic:
+        env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
+    if len(expr.arguments) == 1:
+        return open_value
+    limit = expr.arguments[1].value
+    maximum = number(limit, dimension, env, f"the maximum of `{expr.name}`")
+    if maximum <= 0 or isinf(maximum) or (not is_time and maximum != int(maximum)):
+        wanted = "a time above 0, e.g. `60 s`" if is_time else "a whole number above 0"
+        title = "this maximum cannot be reached" if maximum <= 0 else "this is no maximum"
+        raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
+    text = f"{name[:-1]}, {number_text(maximum)})"
+    return up_to(open_value, maximum, text, Label(env.scope.source, limit.span))
+
+
+def _steps_per_second(expr: CallExpr, env: Env) -> float:
+    """Return how many samples a second has, at least approximately. Raises ResolutionError without a clock."""
+    period = env.context.clock_s
+    if period is None and env.context.clock_failed:
+        raise ResolutionError(None)
+    if period is None:
+        advice = "declare how often the game takes a sample, e.g. `clock 60 Hz`"
+        if expr.name == "time_since":
+            advice += ", or count steps: `once within 20 steps p`"
+        raise problem("TLT0313", f"`{expr.name}` needs a clock", env.scope.source, expr.span, advice=advice)
+    rate = 1.0 / period
+    # A period such as 0.1 s is no double, but the rate of 10 Hz is: divide by that, so that 3 steps are 0.3 s.
+    return float(round(rate)) if round(rate) and abs(rate - round(rate)) < 1e-9 * rate else rate
+
+
+def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
+    from tltlc.resolve.quantities import quantity
+
+    argument = expr.arguments[0].value
+    value = check_closed(quantity(argument, env, level), argument, env)
+    if value.is_constant:
+        title = f"`{expr.name}` of a constant is the constant"
+        advice = f"leave out `{expr.name}`, or name a signal"
+        raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
+    if value.depth > ARITHMETIC.depth:
+        return value
+    name = f"{expr.name}({value.text})"
+    result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=None)
+    if env.symbolic:
+        env.context.signals.setdefault(name, Signal(name, "number", None, None))
+        return result
+    context = env.context
+    context.register(registers.first())
+    now, low, high = value.expression, _end(value.low), _end(value.high)
+    before = Before(name)
+    if expr.name == "previous":
+        kept = f"last {value.operand_text(CLOSED)}"
+        context.register(registers.last(kept, now, low, high, _inside(0.0, low, high)))
+        before = Before(kept)
+    updates: dict[str, Expression] = {
+        "previous": before,
+        "initial": before,
+        "highest": Op("max", (before, now)),
+        "lowest": Op("min", (before, now)),
+    }
+    update = registers.at_first(now, updates[expr.name])
+    unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
+    kind = expr.name
+    context.register(RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update))  # type: ignore[arg-type]
+    return result
+
+
+def _end(value: float) -> float | None:
+    return None if isinf(value) else value
+
+
+def _inside(value: float, low: float | None, high: float | None) -> float:
+    """Return the value of a range that is nearest to ``value``."""
+    if low is not None and value < low:
+        return low
+    return high if high is not None and value > high else value

@@ -1,0 +1,74 @@
+"""Counts and times of the trace so far as quantities: find or check the maximum at which they stop."""
+
+from __future__ import annotations
+
+from math import ceil, isinf
+
+from tltlc.core.record import replace
+from tltlc.diagnostics.diagnostic import Label, replacement_fix
+from tltlc.expression.tree import Const, Op
+from tltlc.grammar.tree import Expr
+from tltlc.resolve import registers, units
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.values import Env, Quantity, number_text
+
+
+def up_to(value: Quantity, maximum: float, text: str | None = None, limit: Label | None = None) -> Quantity:
+    """Return a recalled quantity up to a maximum, which is rounded up to whole steps.
+
+    ``text`` is the spelling of the new quantity, by default the old one. ``limit`` is the place where
+    the maximum is written, if it is.
+    """
+    read = value.recall
+    assert read is not None, "a quantity that saturates"
+    steps = max(1, ceil(maximum * read.rate - 1e-9))
+    expression = registers.saturated(read.register, steps)
+    high = float(steps)
+    if read.rate != 1.0:
+        expression, high = Op("/", (expression, Const(read.rate))), steps / read.rate
+    known = None if limit is None else replace(read, limit=limit)
+    return replace(value, expression=expression, high=high, text=text or value.text, recall=known, depth=3)
+
+
+def saturate(value: Quantity, other: Quantity) -> Quantity:
+    """Give a recalled quantity that is compared with ``other`` the least maximum that keeps the comparison exact.
+
+    This is twice the greatest value of ``other``, and for counts one more, so that the robustness has
+    equal room on both sides. The quantity is returned as it is if it has a maximum, or if ``other``
+    has no greatest value.
+    """
+    if not is_open(value) or isinf(other.high):
+        return value
+    assert value.recall is not None, "an open quantity"
+    return up_to(value, 2 * max(other.high, 0.0) + value.recall.is_count)
+
+
+def is_open(value: Quantity) -> bool:
+    """Whether a quantity is a count or time whose maximum is not yet known."""
+    return value.recall is not None and value.recall.limit is None
+
+
+def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
+    """Return a quantity unchanged; raise ResolutionError (TLT0321) if it is recalled and has no maximum."""
+    if env.symbolic or not is_open(value):
+        return value
+    assert value.recall is not None, "an open quantity"
+    example = "10" if value.recall.is_count else "60 s"
+    fixed = f"{value.text[:-1]}, {example})"
+    raise problem(
+        "TLT0321",
+        f"`{value.text}` needs a maximum here",
+        env.scope.source,
+        expr.span,
+        "only a comparison with a number finds one by itself",
+        advice=f"write the greatest value that matters, e.g. `{fixed}`",
+    )
+
+
+def too_small_error(value: Quantity, limit: Label, needed: float) -> ResolutionError:
+    """Return the error for a comparison with a number that the written maximum of a quantity does not reach."""
+    text = number_text(2 * needed + 1) if value.dimension == units.PLAIN else f"{number_text(2 * needed)} s"
+    title = f"the maximum of `{value.text}` is too small for this comparison"
+    fixes = (replacement_fix(limit.source, limit.span, text),)
+    advice = f"write `{text}`, or leave the maximum out"
+    return problem("TLT0322", title, limit.source, limit.span, "it stops here", advice=advice, fixes=fixes)

@@ -1,0 +1,237 @@
+"""Registers, the memory of a monitor: how each is updated, and which of them the atoms of a spec need.
+
+``docs/semantics.md``, "Memory", defines every register as a function of the trace so far. The updates
+below compute the same values from one sample to the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.expression.tree import (
+    LEAST,
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    SignalValue,
+    StepLength,
+    When,
+    nodes,
+)
+from tltlc.logic.formula import Formula
+from tltlc.resolve.spec import Atom, Register, RegisterKind
+
+FIRST: Final = "first sample"
+"""The name of the register that is 1 before the first sample, and 0 from then on."""
+
+SATURATING: Final[tuple[RegisterKind, ...]] = ("times", "time_since", "time_holding")
+"""The kinds of registers that stop at a maximum, which depends on the comparisons of a spec."""
+
+
+@record
+class RegisterDraft:
+    """A register without its maximum. ``update`` has no maximum, either, and may exceed it by one step."""
+
+    name: str
+    kind: RegisterKind
+    unit: str
+    low: float | None
+    high: float | None
+    initial: float
+    update: Expression
+
+    def with_maximum(self, maximum: float) -> Register:
+        """Return the register, which stops at ``maximum`` if it is of a kind that saturates."""
+        if self.kind not in SATURATING:
+            return Register(self.name, self.kind, self.unit, self.low, self.high, self.initial, self.update)
+        initial = maximum if self.kind == "time_since" else 0.0
+        update = Op("min", (self.update, Const(maximum)))
+        return Register(self.name, self.kind, self.unit, 0.0, maximum, initial, update)
+
+
+# --- updates --------------------------------------------------------------------------------------
+
+
+def once(name: str, operand: Expression) -> RegisterDraft:
+    """Return the register of ``once p``: the greatest robustness of p so far."""
+    return RegisterDraft(name, "once", "", -1.0, 1.0, -1.0, Op("max", (Before(name), operand)))
+
+
+def historically(name: str, operand: Expression) -> RegisterDraft:
+    """Return the register of ``historically p``: the least robustness of p so far."""
+    return RegisterDraft(name, "historically", "", -1.0, 1.0, 1.0, Op("min", (Before(name), operand)))
+
+
+def since(name: str, left: Expression, right: Expression) -> RegisterDraft:
+    """Return the register of ``p since q``: q now, or p now and ``p since q`` before."""
+    update = Op("max", (right, Op("min", (left, Before(name)))))
+    return RegisterDraft(name, "since", "", -1.0, 1.0, -1.0, update)
+
+
+def last(name: str, operand: Expression, low: float | None, high: float | None, initial: float) -> RegisterDraft:
+    """Return the register that keeps the value of an expression for the next sample."""
+    return RegisterDraft(name, "last", "", low, high, initial, operand)
+
+
+def previously(name: str, kept: str) -> RegisterDraft:
+    """Return the register of ``previously p``: the robustness of p at the sample before, -1 at the first sample.
+
+    ``kept`` is the register that keeps the robustness of p.
+    """
+    return RegisterDraft(name, "previously", "", -1.0, 1.0, -1.0, Before(kept))
+
+
+def times(name: str, operand: Condition, kept: str) -> RegisterDraft:
+    """Return the register of ``times(p)``: at how many samples p has begun to hold."""
+    begins = Condition("and", (operand, Condition("not", (holds(Before(kept)),))))
+    more = Op("+", (Before(name), Const(1.0)))
+    return RegisterDraft(name, "times", "", 0.0, None, 0.0, When(((begins, more),), Before(name)))
+
+
+def time_since(name: str, operand: Condition, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register of ``time_since(p)``: 0 where p holds, else one step more than before."""
+    update = When(((operand, Const(0.0)),), Op("+", (Before(name), step)))
+    return RegisterDraft(name, "time_since", unit, 0.0, None, 0.0, update)
+
+
+def time_holding(name: str, operand: Condition, kept: str, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register of ``time_holding(p)``: the time from the sample at which p began to hold until now."""
+    both = Condition("and", (operand, holds(Before(kept))))
+    update = When(((both, Op("+", (Before(name), step))),), Const(0.0))
+    return RegisterDraft(name, "time_holding", unit, 0.0, None, 0.0, update)
+
+
+def first() -> RegisterDraft:
+    """Return the register that is 1 before the first sample, and 0 from then on."""
+    return RegisterDraft(FIRST, "first", "", 0.0, 1.0, 1.0, Const(0.0))
+
+
+def at_first(value: Expression, otherwise: Expression) -> Expression:
+    """Return ``value`` at the first sample, and ``otherwise`` at all others."""
+    return When(((holds(Before(FIRST)), value),), otherwise)
+
+
+def step_length(varies: bool) -> Expression:
+    """Return the length of a step in the unit of the registers that count time: seconds, or steps on a fixed clock."""
+    return StepLength() if varies else Const(1.0)
+
+
+# --- formulas as expressions ------------------------------------------------------------------------
+
+
+def robustness(formula: Formula) -> Expression:
+    """Return the robustness of a formula without temporal operators, as an expression over its atoms.
+
+    Its value is above 0 exactly where the formula is true, even where the robustness of an atom is 0.
+    """
+    done: dict[tuple[Formula, bool], Expression] = {}
+    for node in formula.bottom_up():
+        for positive in (True, False):
+            done[node, positive] = _robustness(node, positive, done)
+    return done[formula, True]
+
+
+def _robustness(node: Formula, positive: bool, done: Mapping[tuple[Formula, bool], Expression]) -> Expression:
+    if node.op in ("true", "false"):
+        return Const(1.0 if (node.op == "true") == positive else -1.0)
+    if node.op == "atom":
+        value = AtomValue(node.name)
+        return value if positive else negated(value)
+    if node.op == "not":
+        return done[node.args[0], not positive]
+    if node.op in ("and", "or"):
+        return Op("min" if (node.op == "and") == positive else "max", tuple(done[part, positive] for part in node.args))
+    left, right = node.args
+    if node.op == "implies":
+        return Op("max" if positive else "min", (done[left, not positive], done[right, positive]))
+    assert node.op == "iff", "past operators take formulas without temporal operators"
+    alike, unlike = (done[left, True], done[right, positive]), (done[left, False], done[right, not positive])
+    return Op("max", (Op("min", alike), Op("min", unlike)))
+
+
+def truth(formula: Formula) -> Condition:
+    """Return the condition that a formula without temporal operators is true, over the values of its atoms."""
+    done: dict[Formula, Condition] = {}
+    for node in formula.bottom_up():
+        parts = tuple(done[part] for part in node.args)
+        if node.op in ("true", "false"):
+            done[node] = holds(Const(1.0 if node.op == "true" else -1.0))
+        elif node.op == "atom":
+            done[node] = holds(AtomValue(node.name))
+        elif node.op == "implies":
+            done[node] = Condition("or", (Condition("not", parts[:1]), parts[1]))
+        elif node.op == "iff":
+            neither = Condition("not", (Condition("or", parts),))
+            done[node] = Condition("or", (Condition("and", parts), neither))
+        else:
+            done[node] = Condition(node.op, parts)  # type: ignore[arg-type]
+    return done[formula]
+
+
+def negated(value: Expression) -> Expression:
+    """Return ``-value``, but a number above 0 where ``value`` is 0: there the negation is true."""
+    opposite = Op("neg", (value,))
+    return When(((holds(value), opposite),), Op("max", (opposite, Const(LEAST))))
+
+
+def holds(value: Expression) -> Condition:
+    """Return the condition that a robustness is above 0."""
+    return Condition(">", (value, Const(0.0)))
+
+
+# --- the registers of a spec ------------------------------------------------------------------------
+
+
+@record
+class Memory:
+    """What the atoms of a spec remember: ``registers``, and the further ``atoms`` that these read."""
+
+    registers: tuple[Register, ...]
+    atoms: tuple[Atom, ...]
+
+
+def memory_of(atoms: Iterable[Atom], drafts: Mapping[str, RegisterDraft], known: Mapping[str, Atom]) -> Memory:
+    """Return the registers that the atoms read, directly or through other registers, and their atoms.
+
+    ``drafts`` are all registers by name, each after those that it reads at the same sample, and
+    ``known`` all atoms by name. The maximum of a register is the greatest that any comparison asks for.
+    """
+    found = {atom.name: atom for atom in atoms}
+    given = len(found)
+    pending = [atom.expression for atom in found.values()]
+    used: set[str] = set()
+    maxima: dict[str, float] = {}
+    while pending:
+        expression = pending.pop()
+        for name, maximum in _maxima(expression, drafts):
+            maxima[name] = max(maximum, maxima.get(name, 0.0))
+        for node in nodes(expression):
+            if isinstance(node, AtomValue) and node.name not in found:
+                found[node.name] = known[node.name]
+                pending.append(known[node.name].expression)
+            elif isinstance(node, (SignalValue, Before)) and node.name in drafts and node.name not in used:
+                used.add(node.name)
+                pending.append(drafts[node.name].update)
+    registers = tuple(drafts[name].with_maximum(maxima.get(name, 0.0)) for name in drafts if name in used)
+    order = {name: number for number, name in enumerate(known)}
+    further = sorted(list(found.values())[given:], key=lambda atom: order[atom.name])
+    return Memory(registers, tuple(further))
+
+
+def saturated(register: str, maximum: float) -> Expression:
+    """Return the value of a register that saturates, up to a maximum."""
+    return Op("min", (SignalValue(register), Const(float(maximum))))
+
+
+def _maxima(expression: Expression, drafts: Mapping[str, RegisterDraft]) -> Iterator[tuple[str, float]]:
+    """Yield the name and the maximum of each :func:`saturated` register that an expression reads."""
+    for node in nodes(expression):
+        if isinstance(node, Op) and node.op == "min" and isinstance(node.args[0], SignalValue):
+            draft, maximum = drafts.get(node.args[0].name), node.args[1]
+            if draft is not None and draft.kind in SATURATING and isinstance(maximum, Const):
+                yield draft.name, maximum.value
