@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Final, Union
 
 from tltlc.artefact.guards import guard_problems
 from tltlc.artefact.locations import JsonPath
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.core.record import record
-from tltlc.expression.tree import ParamValue, SignalValue, nodes
+from tltlc.expression.tree import AtomValue, Before, ParamValue, SignalValue, StepLength, nodes
 from tltlc.resolve import spec
 
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
@@ -58,12 +58,42 @@ def _names(fspa: Fspa) -> Iterator[Problem]:
             if item.name in known[kind]:
                 yield Problem((kind, index, "name"), f"two {kind} are named `{item.name}`")
             known[kind].add(item.name)
+    registers = {register.name for register in fspa.registers}
     for index, atom in enumerate(fspa.atoms):
+        path: JsonPath = ("atoms", index, "expression")
         for node in nodes(atom.expression):
-            if isinstance(node, SignalValue) and node.name not in known["signals"]:
-                yield Problem(("atoms", index, "expression"), f"there is no signal `{node.name}`")
+            if isinstance(node, SignalValue) and node.name not in known["signals"] | registers:
+                yield Problem(path, f"there is no signal `{node.name}`")
             elif isinstance(node, ParamValue) and node.name not in known["params"]:
-                yield Problem(("atoms", index, "expression"), f"there is no param `{node.name}`")
+                yield Problem(path, f"there is no param `{node.name}`")
+            elif isinstance(node, (AtomValue, Before, StepLength)):
+                yield Problem(path, "only the update of a register reads atoms, registers before, and the step length")
+    yield from _registers(fspa, known)
+
+
+def _registers(fspa: Fspa, known: Mapping[str, set[str]]) -> Iterator[Problem]:
+    """Check that the updates of registers use only declared names, and registers and atoms that are computed before."""
+    everywhere, earlier = {register.name for register in fspa.registers}, set[str]()
+    reads = {
+        atom.name: {node.name for node in nodes(atom.expression) if isinstance(node, SignalValue)}
+        for atom in fspa.atoms
+    }
+    for index, register in enumerate(fspa.registers):
+        path: JsonPath = ("registers", index, "update")
+        if register.name in earlier or register.name in known["signals"]:
+            yield Problem(("registers", index, "name"), f"two signals or registers are named `{register.name}`")
+        for node in nodes(register.update):
+            if isinstance(node, SignalValue) and node.name not in known["signals"] | earlier:
+                yield Problem(path, f"there is no signal and no earlier register `{node.name}`")
+            elif isinstance(node, ParamValue) and node.name not in known["params"]:
+                yield Problem(path, f"there is no param `{node.name}`")
+            elif isinstance(node, Before) and node.name not in everywhere:
+                yield Problem(path, f"there is no register `{node.name}`")
+            elif isinstance(node, AtomValue) and node.name not in known["atoms"]:
+                yield Problem(path, f"there is no atom `{node.name}`")
+            elif isinstance(node, AtomValue) and not reads[node.name] & everywhere <= earlier:
+                yield Problem(path, f"the atom `{node.name}` reads a register that comes later")
+        earlier.add(register.name)
 
 
 def _values(fspa: Fspa) -> Iterator[Problem]:
@@ -76,6 +106,11 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
         high = param.value if param.high is None else param.high
         if not low <= param.value <= high:
             yield Problem(("params", index, "value"), f"the value of `{param.name}` lies outside its range")
+    for index, register in enumerate(fspa.registers):
+        low = register.initial if register.low is None else register.low
+        high = register.initial if register.high is None else register.high
+        if not low <= register.initial <= high:
+            yield Problem(("registers", index, "initial"), f"the value of `{register.name}` lies outside its range")
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:

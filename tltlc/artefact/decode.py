@@ -17,7 +17,7 @@ from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
 from tltlc.logic.text.printer import is_ascii_text
-from tltlc.resolve.spec import Atom, Param, Signal
+from tltlc.resolve.spec import Atom, Param, Register, Signal
 
 
 def decode(document: object, name: str) -> Fspa:
@@ -111,6 +111,7 @@ def _fspa(document: dict[str, Any]) -> Fspa:
         signals=tuple(_signal(signal) for signal in document["signals"]),
         params=tuple(_param(param) for param in document["params"]),
         atoms=atoms,
+        registers=tuple(_register(register) for register in document.get("registers", ())),
         exclusive=tuple(tuple(int(atom) for atom in group) for group in document["exclusive"]),
         states=tuple(_state(state, formula) for state in document["states"]),
         edges=tuple(_edge(edge, formula) for edge in document["edges"]),
@@ -165,6 +166,12 @@ def _param(param: dict[str, Any]) -> Param:
 def _atom(atom: dict[str, Any]) -> Atom:
     base, arguments = split_name(atom["name"])
     return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
+
+
+def _register(register: dict[str, Any]) -> Register:
+    low, high = map(_number, register["range"])
+    initial, update = float(register["initial"]), from_json(register["update"])
+    return Register(register["name"], register["kind"], register["unit"], low, high, initial, update)
 
 
 def _state(state: dict[str, Any], formula: _FormulaReader) -> State:

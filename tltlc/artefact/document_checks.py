@@ -15,7 +15,7 @@ from tltlc.artefact.validator import validate
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.expression.tree import depth, most_parts
+from tltlc.expression.tree import Expression, depth, most_parts
 from tltlc.io.limits import ARITHMETIC
 
 MOST_PROBLEMS: Final = 5
@@ -58,7 +58,7 @@ def check_format(document: object, origin: Origin) -> dict[str, Any]:
         title = f"`{origin.name}` is JSON, but not an artefact"
         raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])
     version = document.get("version")
-    if isinstance(version, bool) or version != VERSION:
+    if isinstance(version, bool) or version not in range(1, VERSION + 1):
         raise TltlError([_version_error(version, origin)])
     try:
         validate(document)
@@ -68,19 +68,25 @@ def check_format(document: object, origin: Origin) -> dict[str, Any]:
 
 
 def check_arithmetic(fspa: Fspa, origin: Origin) -> None:
-    """Check that the expression of each atom is within the limits that also apply to specs.
+    """Check that the expressions of atoms and registers are within the limits that also apply to specs.
 
     Raises:
         TltlError: TLT0006 an expression has too many operators inside each other, or a part with too
             many cases or arguments.
     """
-    for index, atom in enumerate(fspa.atoms):
-        path = ("atoms", index, "expression")
-        if depth(atom.expression) > ARITHMETIC.compared:
-            title = f"the arithmetic of `{atom.name}` is more than {ARITHMETIC.compared} operators deep"
+    checked: list[tuple[str, Expression, JsonPath]] = [
+        (atom.name, atom.expression, ("atoms", index, "expression")) for index, atom in enumerate(fspa.atoms)
+    ]
+    checked += [
+        (register.name, register.update, ("registers", index, "update"))
+        for index, register in enumerate(fspa.registers)
+    ]
+    for name, expression, path in checked:
+        if depth(expression) > ARITHMETIC.compared:
+            title = f"the arithmetic of `{name}` is more than {ARITHMETIC.compared} operators deep"
             raise TltlError([origin.error("TLT0006", title, path)])
-        if most_parts(atom.expression) > ARITHMETIC.parts:
-            title = f"the arithmetic of `{atom.name}` has a part with more than {ARITHMETIC.parts} cases or arguments"
+        if most_parts(expression) > ARITHMETIC.parts:
+            title = f"the arithmetic of `{name}` has a part with more than {ARITHMETIC.parts} cases or arguments"
             raise TltlError([origin.error("TLT0006", title, path)])
 
 
@@ -100,7 +106,7 @@ def check_consistency(fspa: Fspa, origin: Origin) -> None:
 def _version_error(version: object, origin: Origin) -> Diagnostic:
     if not isinstance(version, int) or isinstance(version, bool):
         return origin.error("TLT0602", "this artefact does not say its version", ("version",))
-    title = f"this artefact has version {version}, and only version {VERSION} can be read"
+    title = f"this artefact has version {version}, and only versions 1 to {VERSION} can be read"
     advice = "use a newer tltlc" if version > VERSION else RECOMPILE
     return origin.error("TLT0602", title, ("version",), advice)
 

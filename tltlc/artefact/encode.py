@@ -7,10 +7,10 @@ from typing import Any, Final
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
 from tltlc.automaton.text import formula_text, guard_texts, label_text
 from tltlc.expression.json import to_json
-from tltlc.resolve.spec import Param, Signal
+from tltlc.resolve.spec import Param, Register, Signal
 
-VERSION: Final = 1
-"""The version of the format. Artefacts of other versions cannot be read."""
+VERSION: Final = 2
+"""The newest version of the format. Automata without registers are written as version 1."""
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
@@ -20,7 +20,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
     """
     return {
         "format": "fspa",
-        "version": VERSION,
+        "version": VERSION if fspa.registers else 1,
         "spec": {
             "name": fspa.name,
             "doc": fspa.doc,
@@ -35,6 +35,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "signals": [_signal(signal) for signal in fspa.signals],
         "params": [_param(param) for param in fspa.params],
         "atoms": [{"name": atom.name, "expression": to_json(atom.expression), **_doc(atom.doc)} for atom in fspa.atoms],
+        **({"registers": [_register(register) for register in fspa.registers]} if fspa.registers else {}),
         "exclusive": [list(group) for group in fspa.exclusive],
         "states": [_state(fspa, state) for state in fspa.states],
         "initial": 0,
@@ -69,6 +70,17 @@ def _signal(signal: Signal) -> dict[str, Any]:
 def _param(param: Param) -> dict[str, Any]:
     document: dict[str, Any] = {"name": param.name, "type": param.type, "value": param.value}
     return {**document, "range": [param.low, param.high], **_doc(param.doc)}
+
+
+def _register(register: Register) -> dict[str, Any]:
+    return {
+        "name": register.name,
+        "kind": register.kind,
+        "unit": register.unit,
+        "range": [register.low, register.high],
+        "initial": register.initial,
+        "update": to_json(register.update),
+    }
 
 
 def _state(fspa: Fspa, state: State) -> dict[str, Any]:

@@ -16,6 +16,26 @@ NoneType = type(None)
 def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException(path, 'type', 'object')
+    try:
+        data_is_dict = isinstance(data, dict)
+        if data_is_dict:
+            data__missing_keys = set(['version']) - data.keys()
+            if data__missing_keys:
+                raise JsonSchemaValueException(path, 'required', ['version'], sorted(data__missing_keys))
+            data_keys = set(data.keys())
+            if "version" in data_keys:
+                data_keys.remove("version")
+                data__version = data["version"]
+                if not (isinstance(data__version, (int, float)) and not isinstance(data__version, bool) and data__version == 2):
+                    raise JsonSchemaValueException((*path, 'version'), 'enum', [2])
+    except JsonSchemaValueException:
+        pass
+    else:
+        data_is_dict = isinstance(data, dict)
+        if data_is_dict:
+            data__missing_keys = set(['registers']) - data.keys()
+            if data__missing_keys:
+                raise JsonSchemaValueException(path, 'required', ['registers'], sorted(data__missing_keys))
     data_is_dict = isinstance(data, dict)
     if data_is_dict:
         data__missing_keys = set(['format', 'version', 'spec', 'semantics', 'signals', 'params', 'atoms', 'exclusive', 'states', 'initial', 'edges', 'spec_size']) - data.keys()
@@ -30,6 +50,15 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                     data__semantics = data["semantics"]
                     if not (isinstance(data__semantics, str) and data__semantics == 'infinite'):
                         raise JsonSchemaValueException((*path, 'semantics'), 'enum', ['infinite'])
+        if "registers" in data:
+            data_is_dict = isinstance(data, dict)
+            if data_is_dict:
+                data_keys = set(data.keys())
+                if "version" in data_keys:
+                    data_keys.remove("version")
+                    data__version = data["version"]
+                    if not (isinstance(data__version, (int, float)) and not isinstance(data__version, bool) and data__version == 2):
+                        raise JsonSchemaValueException((*path, 'version'), 'enum', [2])
         data_keys = set(data.keys())
         if "format" in data_keys:
             data_keys.remove("format")
@@ -39,8 +68,8 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
         if "version" in data_keys:
             data_keys.remove("version")
             data__version = data["version"]
-            if not (isinstance(data__version, (int, float)) and not isinstance(data__version, bool) and data__version == 1):
-                raise JsonSchemaValueException((*path, 'version'), 'enum', [1])
+            if not (isinstance(data__version, (int, float)) and not isinstance(data__version, bool) and data__version == 1 or isinstance(data__version, (int, float)) and not isinstance(data__version, bool) and data__version == 2):
+                raise JsonSchemaValueException((*path, 'version'), 'enum', [1, 2])
         if "spec" in data_keys:
             data_keys.remove("spec")
             data__spec = data["spec"]
@@ -292,6 +321,78 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                             data__atoms_item__doc = data__atoms_item["doc"]
                             if not isinstance(data__atoms_item__doc, (str)):
                                 raise JsonSchemaValueException((*path, 'atoms', data__atoms_x, 'doc'), 'type', 'string')
+        if "registers" in data_keys:
+            data_keys.remove("registers")
+            data__registers = data["registers"]
+            if not isinstance(data__registers, (list, tuple)):
+                raise JsonSchemaValueException((*path, 'registers'), 'type', 'array')
+            data__registers_is_list = isinstance(data__registers, (list, tuple))
+            if data__registers_is_list:
+                data__registers_len = len(data__registers)
+                if data__registers_len < 1:
+                    raise JsonSchemaValueException((*path, 'registers'), 'minItems', 1)
+                for data__registers_x, data__registers_item in enumerate(data__registers):
+                    if not isinstance(data__registers_item, (dict)):
+                        raise JsonSchemaValueException((*path, 'registers', data__registers_x), 'type', 'object')
+                    data__registers_item_is_dict = isinstance(data__registers_item, dict)
+                    if data__registers_item_is_dict:
+                        data__registers_item__missing_keys = set(['name', 'kind', 'unit', 'range', 'initial', 'update']) - data__registers_item.keys()
+                        if data__registers_item__missing_keys:
+                            raise JsonSchemaValueException((*path, 'registers', data__registers_x), 'required', ['name', 'kind', 'unit', 'range', 'initial', 'update'], sorted(data__registers_item__missing_keys))
+                        data__registers_item_keys = set(data__registers_item.keys())
+                        if "name" in data__registers_item_keys:
+                            data__registers_item_keys.remove("name")
+                            data__registers_item__name = data__registers_item["name"]
+                            if not isinstance(data__registers_item__name, (str)):
+                                raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'name'), 'type', 'string')
+                            if isinstance(data__registers_item__name, str):
+                                data__registers_item__name_len = len(data__registers_item__name)
+                                if data__registers_item__name_len < 1:
+                                    raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'name'), 'minLength', 1)
+                        if "kind" in data__registers_item_keys:
+                            data__registers_item_keys.remove("kind")
+                            data__registers_item__kind = data__registers_item["kind"]
+                            if not (isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'once' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'historically' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'since' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'previously' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'times' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'time_since' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'time_holding' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'previous' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'initial' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'highest' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'lowest' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'last' or isinstance(data__registers_item__kind, str) and data__registers_item__kind == 'first'):
+                                raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'kind'), 'enum', ['once', 'historically', 'since', 'previously', 'times', 'time_since', 'time_holding', 'previous', 'initial', 'highest', 'lowest', 'last', 'first'])
+                        if "unit" in data__registers_item_keys:
+                            data__registers_item_keys.remove("unit")
+                            data__registers_item__unit = data__registers_item["unit"]
+                            if not isinstance(data__registers_item__unit, (str)):
+                                raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'unit'), 'type', 'string')
+                        if "range" in data__registers_item_keys:
+                            data__registers_item_keys.remove("range")
+                            data__registers_item__range = data__registers_item["range"]
+                            if not isinstance(data__registers_item__range, (list, tuple)):
+                                raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range'), 'type', 'array')
+                            data__registers_item__range_is_list = isinstance(data__registers_item__range, (list, tuple))
+                            if data__registers_item__range_is_list:
+                                data__registers_item__range_len = len(data__registers_item__range)
+                                if data__registers_item__range_len < 2:
+                                    raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range'), 'minItems', 2)
+                                if data__registers_item__range_len > 2:
+                                    raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range'), 'maxItems', 2)
+                                for data__registers_item__range_x, data__registers_item__range_item in enumerate(data__registers_item__range):
+                                    if not isinstance(data__registers_item__range_item, (int, float, NoneType)) or isinstance(data__registers_item__range_item, bool):
+                                        raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range', data__registers_item__range_x), 'type', ['number', 'null'])
+                                    if isinstance(data__registers_item__range_item, (int, float)) and not isinstance(data__registers_item__range_item, bool):
+                                        if data__registers_item__range_item < -1.7976931348623157e+308:
+                                            raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range', data__registers_item__range_x), 'minimum', -1.7976931348623157e+308)
+                                        if data__registers_item__range_item > 1.7976931348623157e+308:
+                                            raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'range', data__registers_item__range_x), 'maximum', 1.7976931348623157e+308)
+                        if "initial" in data__registers_item_keys:
+                            data__registers_item_keys.remove("initial")
+                            data__registers_item__initial = data__registers_item["initial"]
+                            if not isinstance(data__registers_item__initial, (int, float)) or isinstance(data__registers_item__initial, bool):
+                                raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'initial'), 'type', 'number')
+                            if isinstance(data__registers_item__initial, (int, float)) and not isinstance(data__registers_item__initial, bool):
+                                if data__registers_item__initial < -1.7976931348623157e+308:
+                                    raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'initial'), 'minimum', -1.7976931348623157e+308)
+                                if data__registers_item__initial > 1.7976931348623157e+308:
+                                    raise JsonSchemaValueException((*path, 'registers', data__registers_x, 'initial'), 'maximum', 1.7976931348623157e+308)
+                        if "update" in data__registers_item_keys:
+                            data__registers_item_keys.remove("update")
+                            data__registers_item__update = data__registers_item["update"]
+                            validate___definitions_expression(data__registers_item__update, custom_formats, (*path, 'registers', data__registers_x, 'update'))
         if "exclusive" in data_keys:
             data_keys.remove("exclusive")
             data__exclusive = data["exclusive"]
@@ -705,6 +806,24 @@ def validate___definitions_expression(data: object, custom_formats: object = {},
                 data_len = len(data)
                 if data_len > 1:
                     raise JsonSchemaValueException(path, 'maxProperties', 1)
+        if "atom" in data:
+            data_is_dict = isinstance(data, dict)
+            if data_is_dict:
+                data_len = len(data)
+                if data_len > 1:
+                    raise JsonSchemaValueException(path, 'maxProperties', 1)
+        if "before" in data:
+            data_is_dict = isinstance(data, dict)
+            if data_is_dict:
+                data_len = len(data)
+                if data_len > 1:
+                    raise JsonSchemaValueException(path, 'maxProperties', 1)
+        if "step_length" in data:
+            data_is_dict = isinstance(data, dict)
+            if data_is_dict:
+                data_len = len(data)
+                if data_len > 1:
+                    raise JsonSchemaValueException(path, 'maxProperties', 1)
         if "const" in data:
             data_is_dict = isinstance(data, dict)
             if data_is_dict:
@@ -759,6 +878,29 @@ def validate___definitions_expression(data: object, custom_formats: object = {},
                 data__param_len = len(data__param)
                 if data__param_len < 1:
                     raise JsonSchemaValueException((*path, 'param'), 'minLength', 1)
+        if "atom" in data_keys:
+            data_keys.remove("atom")
+            data__atom = data["atom"]
+            if not isinstance(data__atom, (str)):
+                raise JsonSchemaValueException((*path, 'atom'), 'type', 'string')
+            if isinstance(data__atom, str):
+                data__atom_len = len(data__atom)
+                if data__atom_len < 1:
+                    raise JsonSchemaValueException((*path, 'atom'), 'minLength', 1)
+        if "before" in data_keys:
+            data_keys.remove("before")
+            data__before = data["before"]
+            if not isinstance(data__before, (str)):
+                raise JsonSchemaValueException((*path, 'before'), 'type', 'string')
+            if isinstance(data__before, str):
+                data__before_len = len(data__before)
+                if data__before_len < 1:
+                    raise JsonSchemaValueException((*path, 'before'), 'minLength', 1)
+        if "step_length" in data_keys:
+            data_keys.remove("step_length")
+            data__steplength = data["step_length"]
+            if not (isinstance(data__steplength, str) and data__steplength == 's'):
+                raise JsonSchemaValueException((*path, 'step_length'), 'enum', ['s'])
         if "const" in data_keys:
             data_keys.remove("const")
             data__const = data["const"]

@@ -5,15 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Union
 
-from tltlc.expression.tree import Condition, Const, Expression, Op, ParamValue, SignalValue, When
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    StepLength,
+    When,
+)
 
-ExpressionLeaf = Union[Const, SignalValue, ParamValue]
+ExpressionLeaf = Union[Const, SignalValue, ParamValue, AtomValue, Before, StepLength]
 
 
 def replace_leaves(node: Expression, change: Callable[[ExpressionLeaf], ExpressionLeaf]) -> Expression:
     """Return the expression in which ``change(leaf)`` takes the place of each leaf.
 
-    The leaves are signals, params and constants, including those in conditions.
+    The leaves are all nodes without parts, including those in conditions.
     """
     match node:
         case Op():
