@@ -72,3 +72,23 @@ def test_an_impossible_step_is_an_error() -> None:
 def test_tests_run_in_order_and_independently() -> None:
     results = failures("step p, a  step p, b  expect holding", "step p, b  expect holding", "step p  expect pending")
     assert [failure is None for failure in results] == [True, False, True]
+
+
+MEMORY = """
+clock 10 Hz
+signal a: bool
+spec s { keep times(a) <= 2  reach time_holding(a) >= 1 s }
+"""
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "step 10x a  expect pending  step a  expect holding",
+        "step a  step not a  step a  step not a  step a  expect violated",
+        "step 100000x a  step not a  step a  expect holding",
+    ],
+)
+def test_counts_and_times_are_computed_from_the_steps(block: str) -> None:
+    compiled = compile_source(SourceFile("specs.tltl", f'{MEMORY} test "t" for s {{ {block} }}'))
+    assert [result.failure for result in run_tests(compiled.program, compiled.automata)] == [None]

@@ -6,15 +6,16 @@ a sample.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
+from tltlc.automaton.memory import given_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import AtomValue, Before, VariableKey
+from tltlc.resolve.derived_atoms import registers_from_atoms
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
@@ -52,7 +53,7 @@ class Samples:
         self.initial = tuple(register.initial for register in fspa.registers)
         self._order = schedule(fspa)
         self.given = given_atoms(fspa)
-        self._from_atoms = registers_from_atoms(fspa)
+        self._from_atoms = registers_from_atoms(fspa.registers)
         registers = [register.name for register in fspa.registers]
         atoms = [AtomValue(atom.name) for atom in fspa.atoms] if registers else []
         variables: tuple[VariableKey, ...] = (*self._names, *registers, *map(Before, registers), *atoms)
@@ -72,6 +73,22 @@ class Samples:
         """
         assert not self._updates, "with registers, the values depend on the samples before"
         return self.values(signals, (), when).atoms
+
+    def of_trace(
+        self, trace: Sequence[Mapping[str, SupportsFloat]], steps: range | None = None
+    ) -> Iterator[SampleValues]:
+        """Yield the values at the samples of a trace with the indices ``steps``, by default at all.
+
+        ``trace`` begins with the first sample, which registers need. ``steps`` has no gaps. Without
+        registers, only the samples in ``steps`` are read. Raises the errors of :meth:`values`.
+        """
+        steps = range(len(trace)) if steps is None else steps
+        registers = self.initial
+        for index in range(0 if self._updates else steps.start, steps.stop):
+            sample = self.values(trace[index], registers, index + 1)
+            registers = sample.registers
+            if index >= steps.start:
+                yield sample
 
     def values(self, signals: Mapping[str, SupportsFloat], registers: Sequence[float], when: int | str) -> SampleValues:
         """Return the values of the atoms at a sample, and of the registers after it.

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, cast
 
+from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import replacement_fix
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
+from tltlc.resolve.derived_atoms import derived_atoms, sources
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Expect, RepeatedSample, Spec, Test
@@ -55,6 +57,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
 def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     source = env.scope.source
     names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
+    derived = derived_atoms(spec.atoms, spec.registers)
     values: dict[str, bool] = {}
     for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
@@ -63,6 +66,8 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
             verb = "has" if not names else "has the atoms" if len(names) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
+        if name in derived:
+            raise _derived_atom_error(name, spec, source, literal_expr.span)
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
@@ -72,6 +77,14 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
                 advice="leave one out",
             )
     return RepeatedSample(item.times, frozenset(name for name, holds in values.items() if holds))
+
+
+def _derived_atom_error(name: str, spec: Spec, source: SourceFile, span: Span) -> ResolutionError:
+    """Return the error for a ``step`` that names an atom which the monitor computes from others."""
+    given = [f"`{atom}`" for atom in sources(name, spec.atoms, spec.registers)]
+    title = f"`{name}` follows from the steps so far: a test cannot choose it"
+    advice = f"leave it out, and say in each step whether {' and '.join(given)} hold{'s' * (len(given) == 1)}"
+    return problem("TLT0218", title, source, span, advice=advice if given else "leave it out")
 
 
 def _literal(literal_expr: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:

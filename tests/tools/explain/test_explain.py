@@ -243,3 +243,20 @@ def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str
 
     compile_and_explain()  # Warm up: read the libraries.
     assert calls(compile_and_explain) < 3 * calls(compile_only)
+
+
+def test_values_that_are_remembered_are_listed_and_no_trace_is_called_the_shortest() -> None:
+    (fspa,) = compiler.compile_text(
+        "clock 10 Hz\nsignal seen: bool\nsignal hidden: bool\n"
+        "spec s { keep times(seen) <= 1  reach time_holding(hidden) >= 0.5 s }"
+    )
+    explanation = explain(fspa)
+    assert [(value.name, value.unit, value.maximum) for value in explanation.memory] == [
+        ("times(seen)", "", 3.0),
+        ("time_holding(hidden)", "steps", 10.0),
+    ]
+    assert explanation.succeed is not None
+    assert [(step.times, step.what) for step in explanation.succeed.steps] == [(6, "hidden and not seen")]
+    headings = [section.heading for section in sections(explanation)]
+    assert headings[-2:] == ["A way to succeed", "A way to fail"]
+    assert "What it remembers" in headings

@@ -320,3 +320,26 @@ def test_the_nearest_sample_is_the_last_of_equally_near_ones() -> None:
     assert (nearest.row, fspa.atoms[nearest.atom].name, nearest.wanted, nearest.reached) == (2, "door", True, False)
     swapped = nearest_edge(fspa, 0, [[1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]])
     assert swapped is not None and (fspa.atoms[swapped.atom].name, swapped.reached) == ("red", True)
+
+
+MEMORY = """
+clock 10 Hz
+signal seen: bool
+signal hidden: bool
+spec sneak { keep times(seen) <= 1  reach time_holding(hidden) >= 0.5 s  reach once seen }
+"""
+
+
+def test_clauses_about_the_trace_so_far_are_judged_from_its_first_sample() -> None:
+    judge = Judge(*_compiled(MEMORY), details=True)
+    rows = ["1,0", "0,1", "1,1", "0,0"]
+    cause = _verdict(judge, _trace(rows, "seen,hidden")).cause
+    assert cause == RejectionCause(
+        "broken", 3, ("keep times(seen) <= 1",), ("times(seen) > 1",), Measure("times(seen)", 2.0, 1.0, "")
+    )
+    verdict = _verdict(judge, _trace(["1,0", *["0,1"] * 4, "0,0"], "seen,hidden"))
+    assert verdict.cause == RejectionCause("unfinished", 6, ("reach time_holding(hidden) >= 0.5 s",))
+    assert verdict.details is not None
+    assert verdict.details.missed is not None
+    assert verdict.details.missed == Measure("time_holding(hidden)", 0.3, verdict.details.missed.gap, "s")
+    assert verdict.details.missed.gap == pytest.approx(0.2)

@@ -10,7 +10,7 @@ from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
-from tltlc.tools.witness.blocks import letter_values
+from tltlc.tools.witness.blocks import given_values
 from tltlc.tools.witness.samples import SampleFinder
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
@@ -28,12 +28,13 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
     """Run the monitor on a trace, and return a row with its output for each step.
 
     ``letters`` are the inputs of the steps. A letter gives the names of the atoms that hold (unknown
-    names are ignored), or the values of the signals. In a row, ``from`` is the state before the
-    step, ``values`` are the values of the atoms in order, and ``signals`` are values of the signals
-    with which exactly these atoms hold; None if no such values were found. If the monitor refuses a
-    step, the row of the step has an ``error``, and is the last row.
+    names, and those of atoms that follow from others, are ignored), or the values of the signals. In a
+    row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
+    ``signals`` are values of the signals with which exactly these atoms hold; None if no such values
+    were found, or if the automaton has registers, which depend on the steps before. If the monitor
+    refuses a step, the row of the step has an ``error``, and is the last row.
     """
-    monitor, finder = Monitor(fspa), SampleFinder(fspa)
+    monitor, finder = Monitor(fspa), None if fspa.registers else SampleFinder(fspa)
     result: list[dict[str, Any]] = []
     for letter in letters:
         before = monitor.state
@@ -42,8 +43,8 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
                 step = monitor.step(letter)
                 sample: object = {signal.name: float(letter[signal.name]) for signal in fspa.signals}
             else:
-                step = monitor.step_atoms(letter_values(fspa, frozenset(letter)))
-                sample = finder.sample_for_letter(frozenset(letter))
+                step = monitor.step_atoms(given_values(fspa, frozenset(letter)))
+                sample = finder and finder.sample_for_letter(frozenset(letter))
         except MonitorError as error:
             result.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
             break
@@ -76,6 +77,8 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
         return sum(polarity for _, polarity in prime)
 
+    if fspa.registers:
+        return _idle_step_with_registers(fspa)
     leaving = fspa.edges_from(0)
     edge = min(leaving, key=lambda edge: (edge.target != 0, fspa.states[edge.target].verdict == "violated"))
     finder = SampleFinder(fspa)
@@ -86,6 +89,15 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
             letter = finder.letter_of(sample)
             return {"atoms": _atom_names(fspa, letter), "signals": sample}
     return {"atoms": [fspa.atoms[atom].name for atom, polarity in primes[0] if polarity], "signals": None}
+
+
+def _idle_step_with_registers(fspa: Fspa) -> dict[str, Any]:
+    def cost(move: SampledEdge) -> tuple[bool, bool, int]:
+        target = fspa.states[fspa.edges[move.edge].target]
+        return target.id != 0, target.verdict == "violated", len(move.letter)
+
+    moves = Moves(fspa).traces.first_moves()
+    return _letter(fspa, min(moves, key=cost)) if moves else {"atoms": [], "signals": None}
 
 
 def shortest_traces(fspa: Fspa) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
+from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.text import formula_text, label_range_text, label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
@@ -15,10 +16,13 @@ from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
+from tltlc.resolve.derived_atoms import derived_atoms, sources
+from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.spec import Register
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
-from tltlc.tools.witness.transitions import Moves
+from tltlc.tools.witness.transitions import Moves, SampledEdge
 
 ANYTHING: Final = "anything"
 """What texts say for a condition that is always true."""
@@ -100,6 +104,19 @@ class ExampleTrace:
 
 
 @record
+class Remembered:
+    """A value of the trace so far that the monitor keeps.
+
+    ``maximum`` is where a count or a time stops, in ``unit``: ``steps``, an SI unit, or empty for a
+    plain number. It is None for values that do not stop.
+    """
+
+    name: str
+    unit: str
+    maximum: float | None
+
+
+@record
 class Explanation:
     """A spec in words. The fields are those of the JSON of ``tltlc explain --format json``.
 
@@ -108,9 +125,11 @@ class Explanation:
     at a time. ``counting`` lists the runs of states that differ only in a count.
     ``judge`` is ``goal`` or ``limit``, and ``ending`` says what that means for this spec.
 
+    ``memory`` lists the values of the trace so far that the atoms read.
+
     ``succeed`` is a trace that succeeds, and ``fail`` one that fails. They are None if there is no
-    such trace, or if the search found none. Over finite traces both are as short as possible, and
-    ``fail`` ends where success is no longer possible.
+    such trace, or if the search found none. Over finite traces and without ``memory``, both are as
+    short as possible. Over finite traces, ``fail`` ends where success is no longer possible.
     """
 
     name: str
@@ -121,6 +140,7 @@ class Explanation:
     level: str | None
     outline: Outline | None
     exclusive: tuple[tuple[str, ...], ...]
+    memory: tuple[Remembered, ...]
     failures: tuple[TrapCondition, ...]
     judge: str
     ending: str
@@ -148,6 +168,7 @@ def explain(fspa: Fspa) -> Explanation:
         level=fspa.level,
         outline=_outline(formula, endless=fspa.semantics == "infinite") if isinstance(formula, Formula) else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
+        memory=tuple(_remembered(register) for register in fspa.registers if register.kind not in ("last", "first")),
         failures=_failures(fspa, guards),
         judge=fspa.judge,
         ending=ending(fspa),
@@ -159,6 +180,10 @@ def explain(fspa: Fspa) -> Explanation:
         succeed=_example_trace(fspa, _witness(moves, accept=True)),
         fail=_example_trace(fspa, _witness(moves, accept=False)),
     )
+
+
+def _remembered(register: Register) -> Remembered:
+    return Remembered(register.name, register.unit, register.high if register.kind in SATURATING else None)
 
 
 def _outline(formula: Formula, *, endless: bool) -> Outline:
@@ -259,7 +284,7 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     steps: list[TraceStep] = []
     cycle: int | None = None
     for index, move in enumerate(witness.moves):
-        condition, state = _condition_text(_literals(fspa, move.prime)), fspa.edges[move.edge].target
+        condition, state = _condition_text(_literals(fspa, _shown(fspa, move))), fspa.edges[move.edge].target
         if index == witness.cycle:
             cycle = len(steps)
         elif steps and steps[-1].what == condition:
@@ -267,3 +292,19 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
             continue
         steps.append(TraceStep(1, condition, state))
     return ExampleTrace(tuple(steps), cycle)
+
+
+def _shown(fspa: Fspa, move: SampledEdge) -> Implicant:
+    """Return the literals of a step that a text shows: those that its edge needs.
+
+    With registers, literals of the atoms from which an atom follows replace that atom. All atoms that
+    hold and do not follow from others are shown.
+    """
+    if not fspa.registers:
+        return move.prime
+    derived = derived_atoms(fspa.atoms, fspa.registers)
+    names = {fspa.atoms[atom].name for atom, _ in move.prime}
+    origins = {origin for name in names & derived for origin in sources(name, fspa.atoms, fspa.registers)}
+    needed = {index for index, each in enumerate(fspa.atoms) if each.name in names | origins}
+    literals = ((atom, fspa.atoms[atom].name in move.letter) for atom in given_atoms(fspa))
+    return tuple((atom, holds) for atom, holds in literals if holds or atom in needed)

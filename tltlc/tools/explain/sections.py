@@ -47,11 +47,12 @@ class Section:
 
 def sections(explanation: Explanation) -> tuple[Section, ...]:
     """Return the sections of an explanation. The heading of the first one is the spec's name."""
-    # Over infinite traces, the search finds short traces, but not always the shortest.
-    article = "A way" if explanation.semantics == "infinite" else "The shortest way"
+    # Over infinite traces and with memory, the search finds short traces, but not always the shortest.
+    article = "A way" if explanation.semantics == "infinite" or explanation.memory else "The shortest way"
     return (
         Section(explanation.name, tuple(filter(None, (explanation.doc, explanation.english)))),
         *_requirements(explanation),
+        *_memory(explanation),
         Section("What breaks it", _failures(explanation)),
         Section("When it ends", (explanation.ending, limit_text(explanation.limit_steps, explanation.limit_s))),
         Section("States", _states(explanation)),
@@ -78,6 +79,14 @@ def _requirements(explanation: Explanation) -> tuple[Section, ...]:
         if items:
             lists.append(SectionList(title, items))
     return (Section("What it asks for", tuple(lists)),) if lists else ()
+
+
+def _memory(explanation: Explanation) -> tuple[Section, ...]:
+    items = tuple(
+        value.name if value.maximum is None else f"{value.name}, up to {value.maximum:g} {value.unit}".rstrip()
+        for value in explanation.memory
+    )
+    return (Section("What it remembers", (SectionList("", items),)),) if items else ()
 
 
 def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:

@@ -13,7 +13,7 @@ from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
-from tltlc.expression.tree import SignalValue, nodes
+from tltlc.expression.tree import AtomValue, Before, SignalValue, nodes
 from tltlc.logic.formula import FALSE, TRUE, Formula, and_
 from tltlc.logic.text.english import clause_text, invariant_text
 from tltlc.logic.text.printer import ascii_text
@@ -87,24 +87,46 @@ def _automaton(whole: Spec, formula: Formula, state_budget: int) -> Fspa | None:
 
 
 def _with_formula(whole: Spec, formula: Formula) -> Spec:
-    """Return the spec ``whole`` with another formula, and only the atoms and signals it needs.
+    """Return the spec ``whole`` with another formula, and only the atoms, signals and registers it needs.
 
-    A formula needs the atoms that occur in it, and all atoms of each ``exclusive`` group of which
-    at least two occur in it.
+    A formula needs the atoms that occur in it, the atoms and registers that these read, and all atoms
+    of each ``exclusive`` group of which at least two are among these.
     """
-    used = set(formula.atoms())
+    used, _ = _read(whole, set(formula.atoms()))
     groups = [{whole.atoms[index].name for index in group} for group in whole.exclusive]
     groups = [group for group in groups if len(group & used) > 1]
-    atoms = tuple(atom for atom in whole.atoms if atom.name in used.union(*groups))
+    used, read = _read(whole, used.union(*groups))
+    atoms = tuple(atom for atom in whole.atoms if atom.name in used)
     index_of = {atom.name: index for index, atom in enumerate(atoms)}
-    read = {node.name for atom in atoms for node in nodes(atom.expression) if isinstance(node, SignalValue)}
     return replace(
         whole,
         formula=formula,
         atoms=atoms,
         signals=tuple(signal for signal in whole.signals if signal.name in read),
         exclusive=tuple(tuple(sorted(index_of[name] for name in group)) for group in groups),
+        registers=tuple(register for register in whole.registers if register.name in read),
     )
+
+
+def _read(whole: Spec, names: set[str]) -> tuple[set[str], set[str]]:
+    """Return the atoms ``names`` with those that their registers read, and all signals and registers that these read.
+
+    All are names.
+    """
+    expressions = {atom.name: atom.expression for atom in whole.atoms}
+    updates = {register.name: register.update for register in whole.registers}
+    atoms, read = set(names), set[str]()
+    pending = [expressions[name] for name in sorted(names)]
+    while pending:
+        for node in nodes(pending.pop()):
+            if isinstance(node, AtomValue) and node.name not in atoms:
+                atoms.add(node.name)
+                pending.append(expressions[node.name])
+            elif isinstance(node, (SignalValue, Before)) and node.name not in read:
+                read.add(node.name)
+                if node.name in updates:
+                    pending.append(updates[node.name])
+    return atoms, read
 
 
 def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Final
 
@@ -15,7 +15,7 @@ from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.sample_times import times_fit
-from tltlc.monitor.samples import MonitorError, Samples
+from tltlc.monitor.samples import MonitorError, Samples, SampleValues
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.measures import Measure, measure
@@ -93,10 +93,11 @@ class Judge:
             stays = [
                 range(start, end) for (state, start), end in zip(run.arrivals, ends, strict=True) if state == unmet
             ]
-            values = [self._samples.atom_values(samples[index], index + 1) for index in stays[-1]]
-            nearest = nearest_edge(self._fspa, unmet, values)
+            values = list(self._samples.of_trace(samples, stays[-1]))
+            nearest = nearest_edge(self._fspa, unmet, [sample_values.atoms for sample_values in values])
             if nearest is not None:
-                missed = measure(self._fspa, nearest.atom, samples[stays[-1][nearest.row]])
+                known = self._known(samples[stays[-1][nearest.row]], values[nearest.row])
+                missed = measure(self._fspa, nearest.atom, known)
         return TraceDetails(run.arrivals, unmet, nearest, missed)
 
     def _unjudged(self, name: str, samples: Sequence[TraceSample], error: TltlError) -> JudgedTrace:
@@ -152,9 +153,10 @@ class Judge:
             is_late = self._episodes and limit is not None and len(samples) >= limit
             return RejectionCause("late" if is_late else "unfinished", len(samples), self._texts(self._unmet(samples)))
         until = samples[: run.broken_at]
-        breaking = self._breaking_atoms(until[-1], run.broken_state, run.broken_at)
+        (values,) = self._samples.of_trace(until, range(run.broken_at - 1, run.broken_at))
+        breaking = self._breaking_atoms(values.atoms, run.broken_state)
         atoms = tuple(self._fspa.atoms[atom].name for atom in breaking)
-        measured = self._measure(breaking, until[-1])
+        measured = self._measure(breaking, self._known(until[-1], values))
         broken = [
             index
             for index, runner in enumerate(self._clause_runners)
@@ -201,18 +203,22 @@ class Judge:
     def _texts(self, indices: Sequence[int]) -> tuple[str, ...]:
         return tuple(self._clauses.parts[index].text for index in indices) if self._clauses else ()
 
-    def _measure(self, atoms: Sequence[int], sample: TraceSample) -> Measure | None:
+    def _known(self, sample: TraceSample, values: SampleValues) -> Mapping[str, float]:
+        """Return the values that atoms read at a sample, by name: those of its signals and of the registers."""
+        names = (register.name for register in self._fspa.registers)
+        return {**sample, **dict(zip(names, values.registers, strict=True))}
+
+    def _measure(self, atoms: Sequence[int], known: Mapping[str, float]) -> Measure | None:
         """Measure the first of the atoms that is a comparison, at a sample; None if none of them is."""
-        measures = (measure(self._fspa, atom, sample) for atom in atoms)
+        measures = (measure(self._fspa, atom, known) for atom in atoms)
         return next((result for result in measures if result is not None), None)
 
-    def _breaking_atoms(self, sample: TraceSample, state: int, number: int) -> tuple[int, ...]:
-        """Return the indices of the atoms that decide which edge leaves ``state`` at this sample.
+    def _breaking_atoms(self, values: Sequence[float], state: int) -> tuple[int, ...]:
+        """Return the indices of the atoms that decide which edge leaves ``state`` at a sample.
 
-        The sample makes the guard of exactly one edge true. The result has the atoms of this guard's
-        most robust prime implicant. ``number`` is the number of the sample, from 1.
+        ``values`` are the values of all atoms at the sample. They make the guard of exactly one edge
+        true. The result has the atoms of this guard's most robust prime implicant.
         """
-        values = self._samples.atom_values(sample, number)
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
         prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
         return tuple(atom for atom, _ in prime)

@@ -9,6 +9,7 @@ from tltlc.core.names import ComparisonName
 from tltlc.core.record import record
 from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import Const, Expression, Op, ParamValue, SignalValue, nodes
+from tltlc.resolve.spec import Register
 from tltlc.resolve.units import PLAIN, TYPES, Dimension, power, product, si_unit
 
 
@@ -30,9 +31,9 @@ class Measure:
 def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | None:
     """Measure an atom that compares two numbers, at a sample.
 
-    ``atom`` is the index of the atom. ``sample`` has the values of its signals, by name. Params have the
-    values that they have in ``fspa``. Return None if the atom is no comparison, such as ``near(exit)``, or
-    if its sides cannot be computed.
+    ``atom`` is the index of the atom. ``sample`` has the values of the signals and registers at the
+    sample, by name. Params have the values that they have in ``fspa``. Return None if the atom is no
+    comparison, such as ``near(exit)``, or if its sides cannot be computed from ``sample``.
     """
     sides = _sides(fspa.atoms[atom].expression, fspa.atoms[atom].base)
     if sides is None:
@@ -45,7 +46,7 @@ def measure(fspa: Fspa, atom: int, sample: Mapping[str, float]) -> Measure | Non
     params = {param.name: param.value for param in fspa.params}
     try:
         values = evaluate(left, sample, params), evaluate(right, sample, params)
-    except (ArithmeticError, ValueError):
+    except (ArithmeticError, KeyError, ValueError):
         return None
     unit = si_unit(_dimension(left, fspa) or _dimension(right, fspa) or PLAIN)
     return Measure(quantity, None if _varies(right) else values[0], abs(values[0] - values[1]), str(unit or ""))
@@ -86,6 +87,10 @@ def _number(text: str) -> float | None:
 
 def _dimension(expression: Expression, fspa: Fspa) -> Dimension | None:
     """Return the dimension of an expression; None if it fits any dimension, as that of a number does."""
+    if isinstance(expression, SignalValue):
+        registers = {register.name: register for register in fspa.registers}
+        if expression.name in registers:
+            return _dimension_of_register(registers[expression.name])
     if isinstance(expression, (SignalValue, ParamValue)):
         named = fspa.signals if isinstance(expression, SignalValue) else fspa.params
         return next((TYPES[item.type] for item in named if item.name == expression.name), None)
@@ -98,3 +103,9 @@ def _dimension(expression: Expression, fspa: Fspa) -> Dimension | None:
         exponent = Const(0.5) if expression.op == "sqrt" else expression.args[1]
         return power(parts[0], exponent.value) if isinstance(exponent, Const) else None
     return None if expression.op in ("exp", "tanh") else next(filter(None, parts), None)
+
+
+def _dimension_of_register(register: Register) -> Dimension:
+    # A time counts steps, which a comparison divides by the rate of the clock.
+    unit = "s" if register.kind in ("time_since", "time_holding") else register.unit
+    return next((dimension for dimension in TYPES.values() if str(si_unit(dimension) or "") == unit), PLAIN)

@@ -12,7 +12,7 @@ from tltlc.expression.tree import Condition, Const, Op, When, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.logic.formula import Formula, always, and_, atom, not_
-from tltlc.resolve.spec import Atom, Conjunct, Param, Signal
+from tltlc.resolve.spec import Atom, Conjunct, Param, Register, Signal
 from tltlc.tools.lint.atom_signs import can_be, is_always
 from tltlc.tools.lint.file_view import SpecView
 
@@ -30,6 +30,7 @@ most samples to try for a pair of atoms before a proof is tried.
 class _DeclaredSignals:
     signals: tuple[Signal, ...]
     params: tuple[Param, ...]
+    registers: tuple[Register, ...]
 
 
 def relations(spec: SpecView, names: Collection[str]) -> tuple[Conjunct, ...]:
@@ -53,7 +54,7 @@ def is_impossible(spec: SpecView) -> bool:
 
 def _impossible_pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
     """Yield conjunctions such as ``x > 5 & x < 3``, of two atoms or negated atoms, that provably never hold."""
-    declared = _DeclaredSignals(spec.fspa.signals, spec.fspa.params)
+    declared = _DeclaredSignals(spec.fspa.signals, spec.fspa.params, spec.fspa.registers)
     simple = [candidate for candidate in spec.fspa.atoms if candidate.name in names and _is_simple(candidate)]
     pairs = [pair for pair in combinations(simple, 2) if _signals(pair[0]) & _signals(pair[1])]
     for pair in pairs[:_MOST_PAIRS]:

@@ -1,6 +1,6 @@
 """Find out which signs the value of an atom can have.
 
-The signals and params of the atom may have any values within their ranges.
+The signals, params and registers of the atom may have any values within their ranges.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from tltlc.resolve.range_proof.proof import TOLERANCE, ProofGoal, unproved_goals
 from tltlc.resolve.range_proof.region import ConstrainedBox
 from tltlc.resolve.range_proof.witness import points, value_at
 from tltlc.resolve.range_proof.work_budget import OutOfWorkError, step_limit
-from tltlc.resolve.spec import Atom, Param, Signal
+from tltlc.resolve.spec import Atom, Param, Register, Signal
 
 Sign = Literal["positive", "not positive", "negative", "not negative"]
 
 
 class DeclaredNames(Protocol):
-    """Anything that declares signals and params, for example an automaton."""
+    """Anything that declares signals, params and registers, for example an automaton."""
 
     @property
     def signals(self) -> tuple[Signal, ...]:
@@ -31,6 +31,10 @@ class DeclaredNames(Protocol):
     @property
     def params(self) -> tuple[Param, ...]:
         """The params that atoms may read."""
+
+    @property
+    def registers(self) -> tuple[Register, ...]:
+        """The registers that atoms may read."""
 
 
 _MOST_POINTS: Final = 600
@@ -79,8 +83,9 @@ def is_always(sign: Sign, atom: Atom, declarations: DeclaredNames) -> bool:
 
 
 def _by_name(declarations: DeclaredNames) -> tuple[dict[str, Signal], dict[str, Param]]:
+    registers = (Signal(each.name, "number", each.low, each.high) for each in declarations.registers)
     return (
-        {signal.name: signal for signal in declarations.signals},
+        {signal.name: signal for signal in (*declarations.signals, *registers)},
         {param.name: param for param in declarations.params},
     )
 

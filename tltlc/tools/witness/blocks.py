@@ -11,6 +11,7 @@ from math import floor
 from typing import TYPE_CHECKING, NamedTuple
 
 from tltlc.automaton.fspa import Edge, Fspa
+from tltlc.automaton.memory import given_atoms
 from tltlc.logic.formula import atom
 from tltlc.logic.text.printer import operand_text
 from tltlc.monitor import Monitor, Step
@@ -40,6 +41,7 @@ class BlockWriter:
     def __init__(self, spec: Fspa) -> None:
         self.monitor_steps = 0
         self._spec = spec
+        self._given = given_atoms(spec)
         self._fresh = Monitor(spec)
         self._last_trace: list[_MonitoredStep] = []
         self._literals_cache: dict[tuple[int, Letter], tuple[int, tuple[str, ...]]] = {}
@@ -53,10 +55,10 @@ class BlockWriter:
         an ``exclusive`` group hold together.
 
         Raises:
-            ValueError: there is no letter or no expectation, or the spec has no atoms.
+            ValueError: there is no letter or no expectation, or the spec has no atoms that a step can name.
         """
         steps = list(enumerate(letters, start=1))
-        if not self._spec.atoms or not steps or not any(expects.get(number) for number, _ in steps):
+        if not self._given or not steps or not any(expects.get(number) for number, _ in steps):
             raise ValueError("a test names atoms, takes at least one step and expects something")
         lines = [f'test "{_one_line(title)}" for {self._spec.name} {{']
         # A step with an expectation after it ends its run of equal steps.
@@ -94,7 +96,7 @@ class BlockWriter:
         monitor = copy(self._last_trace[-1].monitor if self._last_trace else self._fresh)
         for letter in letters[common:]:
             self.monitor_steps += 1
-            result = monitor.step_atoms(letter_values(self._spec, letter))
+            result = monitor.step_atoms(given_values(self._spec, letter))
             self._last_trace.append(_MonitoredStep(letter, result, copy(monitor)))
         return [step.result for step in self._last_trace]
 
@@ -129,8 +131,9 @@ class BlockWriter:
         )
         # A letter that breaks `exclusive` may take no edge: the monitor rejects it, and so does the test.
         target, prime = next(((edge.target, prime) for edge, prime in taken), (state, ()))
-        atom_names = tuple(atom.name for atom in spec.atoms if atom.name in letter)
-        return target, atom_names or (f"not {atom_operand(spec.atoms[prime[0][0] if prime else 0].name)}",)
+        atom_names = tuple(spec.atoms[atom].name for atom in self._given if spec.atoms[atom].name in letter)
+        named = next((atom for atom, _ in prime if atom in self._given), self._given[0])
+        return target, atom_names or (f"not {atom_operand(spec.atoms[named].name)}",)
 
     @cached_property
     def _leaving(self) -> list[list[Edge]]:
@@ -165,11 +168,17 @@ def _report(step: Step) -> tuple[str, ...]:
 
 
 def letter_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
-    """Return a value for each atom of an automaton, in order: 1 if the atom holds in the letter, else -1.
+    """Return a value for each atom of an automaton, in order: 1 if the atom holds in the letter, else -1."""
+    return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
+
+
+def given_values(fspa: Fspa, letter: Letter) -> tuple[float, ...]:
+    """Return the values of the atoms that do not follow from others, as for :meth:`Monitor.step_atoms`.
 
     The atoms of ``test`` blocks have the same values.
     """
-    return tuple(1.0 if atom.name in letter else -1.0 for atom in fspa.atoms)
+    values = letter_values(fspa, letter)
+    return tuple(values[atom] for atom in given_atoms(fspa))
 
 
 def _state_expectation(label: str) -> tuple[str, ...]:

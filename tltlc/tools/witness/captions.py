@@ -14,6 +14,7 @@ from tltlc.tools.witness.transitions import Moves
 
 _MOST_NAMED = 10
 """The most untaken edges that get a warning of their own."""
+_SEARCH = "its atoms remember the trace so far, and the search for such a trace is not complete"
 
 
 def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
@@ -24,12 +25,13 @@ def title(fspa: Fspa, witness: Witness, number: int = 1, count: int = 1) -> str:
     """
     if witness.kind == "cover":
         return f"{fspa.name}: way {number} of {count} through its automaton"
-    if witness.cycle is not None:
+    if witness.cycle is not None or (fspa.registers and witness.kind == "accepting"):
         return f"{fspa.name}: a trace that is {'accepted' if witness.kind == 'accepting' else 'rejected'}"
     if witness.kind == "accepting":
         return f"{fspa.name}: a shortest trace that is accepted"
     last = fspa.states[fspa.edges[witness.moves[-1].edge].target]
-    return f"{fspa.name}: a shortest trace that {'breaks it' if last.verdict == 'violated' else 'is rejected'}"
+    shortest = "" if fspa.registers else "shortest "
+    return f"{fspa.name}: a {shortest}trace that {'breaks it' if last.verdict == 'violated' else 'is rejected'}"
 
 
 def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
@@ -47,6 +49,8 @@ def no_trace_warning(moves: Moves, outcome: str) -> Diagnostic:
         return Diagnostic(
             "TLT0741", f"no samples were found for a trace that is {outcome} by `{fspa.name}`", (), help_, "warning"
         )
+    if fspa.registers:
+        return Diagnostic("TLT0741", f"no trace was found that is {outcome} by `{fspa.name}`", (), _SEARCH, "warning")
     help_ = f"`tltlc explain` says what it requires; weaken it if some traces should be {outcome}"
     if outcome == "rejected":
         help_ = "it requires nothing of the game, or nothing that can fail"
@@ -67,13 +71,14 @@ def untaken_warnings(fspa: Fspa, edges: Sequence[UntakenEdge]) -> list[Diagnosti
         else:
             text, help_ = (
                 "no way was found to",
-                "the state that it leaves is reached only by edges that no trace takes",
+                _SEARCH if fspa.registers else "the state that it leaves is reached only by edges that no trace takes",
             )
         warnings.append(Diagnostic("TLT0740", f"{text} {name}", (), help_, "warning"))
     if len(edges) > _MOST_NAMED:
         rest = len(edges) - _MOST_NAMED
         text = f"no trace takes {rest} more edge{'s' * (rest > 1)} of `{fspa.name}`"
-        warnings.append(Diagnostic("TLT0740", text, (), "use fewer atoms of the same signals", "warning"))
+        help_ = _SEARCH if fspa.registers else "use fewer atoms of the same signals"
+        warnings.append(Diagnostic("TLT0740", text, (), help_, "warning"))
     return warnings
 
 

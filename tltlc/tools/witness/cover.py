@@ -42,6 +42,8 @@ def cover(moves: Moves) -> Cover:
     has finite beginnings of traces.
     """
     edges = moves.fspa.edges
+    if moves.fspa.registers:
+        return _cover_with_registers(moves)
     wanted = WantedEdges(
         [[(edge, edges[edge].target) for edge in leaving if moves.move(edge)] for leaving in moves.leaving]
     )
@@ -51,6 +53,20 @@ def cover(moves: Moves) -> Cover:
     traces.sort(key=len)
     taken = {move.edge for trace in traces for move in trace}
     untaken = [UntakenEdge(edge, moves.obstacles.get(edge, ())) for edge in range(len(edges)) if edge not in taken]
+    return Cover(tuple(_witnesses(traces)), tuple(untaken))
+
+
+def _cover_with_registers(moves: Moves) -> Cover:
+    """Return the first traces that the search finds for the edges, without those that are parts of others."""
+    ends = moves.traces.traces_to_all()
+    taken: set[int] = set()
+    traces: list[tuple[SampledEdge, ...]] = []
+    for trace in sorted(ends.values(), key=len, reverse=True):
+        if trace[-1].edge not in taken:
+            taken.update(move.edge for move in trace)
+            traces.append(trace)
+    traces.sort(key=len)
+    untaken = [UntakenEdge(edge, ()) for edge in range(len(moves.fspa.edges)) if edge not in taken]
     return Cover(tuple(_witnesses(traces)), tuple(untaken))
 
 

@@ -45,7 +45,7 @@ class Witness:
 def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
     """Return a shortest accepted trace for which samples are found.
 
-    If the spec is over infinite traces, the trace need not be a shortest one. Return None if no trace
+    If the spec is over infinite traces or has registers, the trace need not be a shortest one. Return None if no trace
     is accepted, or if no samples are found for any accepted trace.
 
     Raises:
@@ -53,7 +53,7 @@ def accepting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
     """
     fspa = moves.fspa
     if fspa.semantics == "infinite":
-        return _lasso(moves, "accepting", work)
+        return _decided(moves, "accepting") if fspa.registers else _lasso(moves, "accepting", work)
     return _shortest_to(moves, "accepting", [state.accepting for state in fspa.states])
 
 
@@ -68,6 +68,8 @@ def rejecting_trace(moves: Moves, work: int = DEFAULT_WORK) -> Witness | None:
         OutOfWork: over infinite traces, the search takes more than ``work`` steps.
     """
     fspa = moves.fspa
+    if fspa.semantics == "infinite" and fspa.registers:
+        return _decided(moves, "rejecting")
     violating = _shortest_to(moves, "rejecting", [state.verdict == "violated" for state in fspa.states])
     if fspa.semantics == "infinite":
         return _lasso(moves, "rejecting", work) if violating is None else _with_loop(moves, violating)
@@ -82,6 +84,22 @@ def _shortest_to(moves: Moves, kind: WitnessKind, is_target: list[bool]) -> Witn
     edges = moves.fspa.edges
     path = moves.shortest_path(0, lambda edge: is_target[edges[edge].target])
     return None if path is None else Witness(kind, path)
+
+
+def _decided(moves: Moves, kind: Literal["accepting", "rejecting"]) -> Witness | None:
+    """Return an infinite trace of an automaton with registers whose verdict becomes final; None if none is found.
+
+    Its last step repeats for ever: whatever comes then makes no difference.
+    """
+    verdict = "satisfied" if kind == "accepting" else "violated"
+    edges, states = moves.fspa.edges, moves.fspa.states
+
+    def repeats(edge: int) -> bool:
+        source, target = edges[edge].source, edges[edge].target
+        return source == target and states[target].verdict == verdict
+
+    path = moves.shortest_path(0, repeats)
+    return None if path is None else Witness(kind, path, len(path) - 1)
 
 
 def _with_loop(moves: Moves, trace: Witness) -> Witness | None:

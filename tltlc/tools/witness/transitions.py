@@ -14,6 +14,7 @@ from tltlc.tools.witness.samples import SampleFinder, UnsatisfiedLiterals
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
     from tltlc.monitor.traces import TraceSample
+    from tltlc.tools.witness.memory_traces import MemoryTraces
 
 _MOST_PRIMES = 500
 """The most prime implicants of a guard that are tried."""
@@ -40,8 +41,18 @@ class Moves:
         self.fspa = fspa
         self.obstacles: dict[int, tuple[UnsatisfiedLiterals, ...]] = {}
         """Maps the index of each edge without a sample to the reasons why the search found none."""
-        self._finder = SampleFinder(fspa)
         self._cache: dict[int, SampledEdge | None] = {}
+
+    @cached_property
+    def traces(self) -> MemoryTraces:
+        """The traces of an automaton with registers."""
+        from tltlc.tools.witness.memory_traces import MemoryTraces
+
+        return MemoryTraces(self.fspa)
+
+    @cached_property
+    def _finder(self) -> SampleFinder:
+        return SampleFinder(self.fspa)
 
     @cached_property
     def leaving(self) -> tuple[tuple[int, ...], ...]:
@@ -54,7 +65,8 @@ class Moves:
     def move(self, edge: int) -> SampledEdge | None:
         """Return the edge with the index ``edge`` and a sample that takes it; None if no sample is found.
 
-        The prime implicants of the guard are tried in order, until a sample is found for one.
+        The prime implicants of the guard are tried in order, until a sample is found for one. The
+        automaton has no registers.
         """
         if edge not in self._cache:
             self._cache[edge] = self._search(edge)
@@ -74,8 +86,12 @@ class Moves:
         """Return the moves of a shortest path that begins in the state ``start`` and ends with a certain edge.
 
         ``is_last`` gets the index of an edge, and says whether the path may end with this edge. The
-        path has at least one move. Return None if there is no such path with samples.
+        path has at least one move. Return None if there is no such path with samples. With registers,
+        the path begins in state 0, and need not be a shortest one.
         """
+        if self.fspa.registers:
+            assert start == 0, "registers remember how a state was reached"
+            return self.traces.trace_to(is_last)
         predecessors: dict[int, tuple[int, SampledEdge] | None] = {start: None}
         queue = deque([start])
         while queue:

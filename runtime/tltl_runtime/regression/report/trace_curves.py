@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from itertools import islice
 from typing import Final, Literal
 
 from tltl_runtime.game.episode import RecordedEpisode
@@ -82,5 +83,5 @@ def _atom_values(fspa: Fspa, name: str, data: bytes, steps: int) -> Iterator[tup
     """Yield the values of all atoms at each of the first ``steps`` samples of a trace."""
     samples = monitors.Samples(fspa, None, [])
     read = traces.read_trace(io.BytesIO(traces.as_text(data, name, fspa.signals)), name, fspa.signals, fspa.clock_s)
-    for number, sample in zip(range(1, steps + 1), read, strict=False):
-        yield samples.atom_values(sample, number)
+    for values in samples.of_trace(list(islice(read, steps))):
+        yield values.atoms
