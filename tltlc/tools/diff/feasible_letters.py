@@ -34,7 +34,7 @@ class FeasibleLetters:
         self._never = never
         self.impossible: dict[NamedLiterals, None] = {}
         self._searches_left = _MOST
-        self._joint = _joint_automaton(a, b)
+        self._joint = joint_automaton(a, b)
         self._finder = None if self._joint is None else SampleFinder(self._joint)
 
     def feasible_trace(self, trace: Trace | None, accepting: Fspa, rejecting: Fspa, work: int) -> Trace | None:
@@ -65,7 +65,7 @@ class FeasibleLetters:
         return obstacles
 
 
-def _joint_automaton(a: Fspa, b: Fspa) -> Fspa | None:
+def joint_automaton(a: Fspa, b: Fspa) -> Fspa | None:
     """Return an automaton that has the atoms of both automata, with params replaced by their values.
 
     Only its atoms, signals and exclusive groups are meaningful. The range of a signal that both read

@@ -61,8 +61,12 @@ def spec_added(name: str, place: Label) -> Diagnostic:
 
 
 def traces_changed(pair: SpecPair, place: Label) -> Diagnostic:
-    """Return TLT0753: a spec accepts different traces than before."""
+    """Return TLT0753: a spec accepts different traces than before, or this was not decided."""
     name, comparison = pair.b.name, pair.comparison
+    if comparison.relation == "undecided" and comparison.only_a is None:
+        title = f"it was not decided whether `{name}` still accepts the traces that it accepted before"
+        help_ = "its atoms remember the trace so far: judge recorded traces by both versions"
+        return Diagnostic("TLT0753", title, (place,), help_, CHANGED)
     if comparison.only_a is None:
         assert comparison.only_b is not None
         title = f"`{name}` is looser: it accepts traces that it did not accept before"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Vocabulary
 
-Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
+Relation = Literal["equivalent", "stricter", "looser", "incomparable", "undecided"]
 
 _STEPS_OF_A_PAIR: Final = 100
 """A comparison counts at least this many steps of work for each pair of exclusive atoms."""
@@ -40,8 +40,10 @@ class Comparison:
 
     ``stricter`` means that A accepts every trace that B accepts, but not vice versa; ``looser`` is
     the opposite. ``incomparable`` means that each accepts a trace that the other does not.
+    ``undecided`` is possible only if atoms remember the trace so far: then no trace was found that
+    shows a difference in one direction, but there may be one.
     ``only_a`` is a trace that only A accepts, and ``only_b`` a trace that only B accepts; over
-    finite traces, they are shortest.
+    finite traces and without registers, they are shortest.
 
     For each name in ``split_names``, A and B have different atoms with this name; traces call them
     ``NAME of A`` and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample
@@ -91,6 +93,7 @@ def compare(
         )
         return replace(beginnings, relation=None, only_a=None, only_b=None, beginnings=beginnings)
     split_names = () if by_name else different_atoms(a, b)
+    originals = a, b
     a, b = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
     own_groups = _own_groups(a, b)
     groups = _merge((*own_groups, *exclusive), {atom.name for fspa in (a, b) for atom in fspa.atoms})
@@ -101,10 +104,22 @@ def compare(
     impossible: dict[NamedLiterals, None] = {}
     if feasible_only and (only_a or only_b):
         from tltlc.tools.diff.feasible_letters import FeasibleLetters
+        from tltlc.tools.diff.real_traces import own_registers, with_register_signals
 
-        letters = FeasibleLetters(a, b, never)
+        view_a, view_b = a, b
+        if a.registers or b.registers:
+            own = own_registers(split_names, *originals)
+            view_a, view_b = with_register_signals(a, own, OF_A), with_register_signals(b, own, OF_B)
+        letters = FeasibleLetters(view_a, view_b, never)
         only_a, only_b = letters.feasible_trace(only_a, a, b, work), letters.feasible_trace(only_b, b, a, work)
         impossible = letters.impossible
+    if (a.registers or b.registers) and (only_a or only_b):
+        from tltlc.tools.diff.real_traces import confirm
+
+        exclusive_names = [group.names for group in groups]
+        only_a, only_b, is_decided = confirm(originals, (a, b), (only_a, only_b), exclusive_names, by_name=by_name)
+        if not is_decided:
+            return Comparison("undecided", only_a, only_b, split_names, tuple(impossible), groups)
     relation: Relation = (
         ("equivalent" if only_b is None else "looser")
         if only_a is None
@@ -170,6 +185,10 @@ def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ..
             (difference := value_difference(meaning_a, meaning_b)) and difference.differs_in_truth
         ):
             names.append(atom.name)
+    if a.registers or b.registers:
+        from tltlc.tools.diff.real_traces import with_derived
+
+        return with_derived(names, a, b)
     return tuple(names)
 
 

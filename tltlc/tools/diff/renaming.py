@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from tltlc.core.record import replace
@@ -23,7 +23,7 @@ from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
-    from tltlc.resolve.spec import Atom
+    from tltlc.resolve.spec import Atom, Register
     from tltlc.resolve.spec import Param as SpecParam
 
 
@@ -32,7 +32,7 @@ def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
 
     An added atom counts as renamed if a removed atom has the same expression. The names of params in
     the expressions may differ. Each removed atom gives its name to one added atom at most. Only the
-    names in ``atoms`` change; the formulas keep the new ones.
+    names in ``atoms`` and in the updates of registers change; the formulas keep the new ones.
     """
     names, new_names = {atom.name for atom in old.atoms}, {atom.name for atom in new.atoms}
     removed: dict[object, Atom] = {}
@@ -40,10 +40,16 @@ def with_old_atom_names(old: Fspa, new: Fspa) -> Fspa:
         if atom.name not in new_names:
             removed.setdefault(_key(atom.expression, old), atom)
     atoms: list[Atom] = []
+    old_names: dict[str, str] = {}
     for atom in new.atoms:
         known = atom if atom.name in names else removed.pop(_key(atom.expression, new), atom)
         atoms.append(replace(atom, base=known.base, arguments=known.arguments))
-    return replace(new, atoms=tuple(atoms))
+        old_names[atom.name] = known.name
+
+    def rename(leaf: ExpressionLeaf) -> ExpressionLeaf:
+        return AtomValue(old_names[leaf.name]) if isinstance(leaf, AtomValue) else leaf
+
+    return replace(new, atoms=tuple(atoms), registers=_with_leaves(new.registers, rename))
 
 
 def new_signal_names(old: Fspa, new: Fspa) -> dict[str, str]:
@@ -67,7 +73,9 @@ def new_signal_names(old: Fspa, new: Fspa) -> dict[str, str]:
         likely = {
             before: after
             for before, after in signal_pairs
-            if before not in new_types and after not in types and types[before] == new_types[after]
+            if before in types.keys() - new_types.keys()
+            and after in new_types.keys() - types.keys()
+            and types[before] == new_types[after]
         }
         is_one_to_one = len(set(likely.values())) == len(likely)
         if likely and is_one_to_one and _key(_rename_signals(old_expression, likely), old) == _key(new_expression, new):
@@ -82,11 +90,20 @@ def rename_signals(fspa: Fspa, names: Mapping[str, str]) -> Fspa:
     return replace(
         fspa,
         atoms=tuple(replace(atom, expression=_rename_signals(atom.expression, names)) for atom in fspa.atoms),
+        registers=tuple(
+            replace(register, update=_rename_signals(register.update, names)) for register in fspa.registers
+        ),
         signals=tuple(
             replace(signal, base=names[signal.name], arguments=()) if signal.name in names else signal
             for signal in fspa.signals
         ),
     )
+
+
+def _with_leaves(
+    registers: tuple[Register, ...], change: Callable[[ExpressionLeaf], ExpressionLeaf]
+) -> tuple[Register, ...]:
+    return tuple(replace(register, update=replace_leaves(register.update, change)) for register in registers)
 
 
 def _rename_signals(expression: Expression, names: Mapping[str, str]) -> Expression:

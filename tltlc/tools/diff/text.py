@@ -25,12 +25,17 @@ _RELATIONS: Final = {
     "stricter": ("B is stricter than A", "A also accepts every trace that B accepts"),
     "looser": ("B is looser than A", "B also accepts every trace that A accepts"),
     "incomparable": ("B accepts different traces than A", "each accepts some that the other does not"),
+    "undecided": (
+        "it was not decided whether B accepts the same traces as A",
+        "their atoms remember the trace so far, and the search for a trace that tells them apart is not complete",
+    ),
 }
 _BREAKING: Final[Mapping[Relation | None, str]] = {
     "equivalent": "The same beginnings of traces break both for good, if any do.",
     "stricter": "Every beginning of a trace that breaks A for good also breaks B, and some others break only B.",
     "looser": "Every beginning of a trace that breaks B for good also breaks A, and some others break only A.",
     "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
+    "undecided": "It was not decided whether the same beginnings of traces break both for good.",
 }
 """What to print about the beginnings of traces that violate A or B.
 
@@ -72,6 +77,9 @@ def _pair(pair: SpecPair) -> Iterator[str]:
         yield f"  {_BREAKING[comparison.beginnings.relation]}"
     else:
         summary, meaning = _RELATIONS[comparison.relation]
+        if comparison.relation == "undecided" and (comparison.only_a or comparison.only_b):
+            side, other = ("A", "B") if comparison.only_a else ("B", "A")
+            summary, meaning = f"{side} accepts a trace that {other} does not", "the opposite was not decided"
         if comparison.relation == "equivalent":
             summary += ", but something else differs" if pair.differences else ", and nothing else differs"
         yield f"{name}\n  {summary}{f': {meaning}' if meaning else ''}."

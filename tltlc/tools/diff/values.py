@@ -10,11 +10,12 @@ from tltlc.core.record import record
 from tltlc.expression.tree import Const, Expression, Op, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
+from tltlc.resolve.spec import Signal
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.range_proof.region import Box, Variable
-    from tltlc.resolve.spec import Param, Signal, Vocabulary
+    from tltlc.resolve.spec import Param, Vocabulary
 
 _ROUNDING: Final = 1e-9
 """Values that differ by no more than this count as equal."""
@@ -22,7 +23,10 @@ _ROUNDING: Final = 1e-9
 
 @record
 class Meaning:
-    """What determines the value of an atom: its expression, and the signals and params in the expression."""
+    """What determines the value of an atom: its expression, and the signals and params in the expression.
+
+    Registers count as signals.
+    """
 
     expression: Expression
     signals: tuple[Signal, ...]
@@ -67,7 +71,8 @@ class ValueDifference:
 
 def meaning(vocabulary: Fspa | Vocabulary, atom: int) -> Meaning:
     """Return the meaning of an atom; ``atom`` is its index in an automaton or vocabulary."""
-    return meaning_of(vocabulary.atoms[atom].expression, vocabulary.signals, vocabulary.params)
+    registers = (Signal(each.name, "number", each.low, each.high) for each in vocabulary.registers)
+    return meaning_of(vocabulary.atoms[atom].expression, (*vocabulary.signals, *registers), vocabulary.params)
 
 
 def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tuple[Param, ...]) -> Meaning:

@@ -23,6 +23,7 @@ from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.pipeline import CompileOptions, Session
+from tltlc.resolve.derived_atoms import names_read
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding
@@ -59,7 +60,7 @@ def vocabulary_of_library(library: SourceFile, columns: Collection[str], options
     """Return the atoms of a library that can be computed from the columns of the traces.
 
     Candidates are the predicates and `bool` signals of the library, with entities as arguments, and
-    the atoms of the library's own specs.
+    the atoms of the library's own specs. Atoms that remember the trace so far are left out.
 
     Raises:
         TltlError: the library has an error; TLT0760, none of its atoms can be read.
@@ -70,7 +71,13 @@ def vocabulary_of_library(library: SourceFile, columns: Collection[str], options
     names = session.resolution.env.scope.names
     missing = tuple(name for name in _entities(columns) if name not in names and _declares(f"entity {name}\n"))
     own = [name for name, binding in names.items() if binding.kind == "entity"]
-    spec_atoms = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
+    # Candidates are about one sample: what an atom remembers would be changed by each change of a trace.
+    spec_atoms = [
+        atom.name
+        for spec in session.resolution.program.specs
+        for atom in spec.atoms
+        if not {register.name for register in spec.registers}.intersection(names_read(atom.expression))
+    ]
 
     extended = _with_entities(library, missing)
     module = _module(extended)

@@ -1,4 +1,4 @@
-"""Search traces of automata with registers: run the automata on samples, and try sequence after sequence.
+"""Search traces of automata with registers: run the automata on inputs, and try sequence after sequence.
 
 Which values registers can have depends on all samples before, so a path through an automaton need not
 be a trace. This search takes only steps that a monitor takes. Its work is bounded: it may find no
@@ -8,9 +8,9 @@ trace although there is one.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, Union
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
@@ -19,12 +19,17 @@ from tltlc.monitor.guards import holds
 from tltlc.monitor.samples import Samples, check_exclusive
 
 if TYPE_CHECKING:
+    from tltlc.automaton.compare import Letter
+    from tltlc.monitor.samples import SampleValues
     from tltlc.monitor.traces import TraceSample
+
+    TraceInput = Union[TraceSample, Letter]
+    """A sample, or the names of the atoms that hold."""
 
 _SINGLE_STEPS: Final = 8_000
 """The most steps that the search takes one by one, in all sequences together."""
 _HELD_STEPS: Final = 40_000
-"""The most steps that the search takes after that, while it repeats each sample until something changes."""
+"""The most steps that the search takes after that, while it repeats each input until something changes."""
 _FINAL: Final = ("satisfied", "violated")
 
 
@@ -37,65 +42,87 @@ class _Configuration(NamedTuple):
 
 class _Step(NamedTuple):
     edges: tuple[int, ...]
-    truth: tuple[tuple[bool, ...], ...]
+    letter: Letter
     after: _Configuration
 
 
 @record
 class Position:
-    """Where a trace has led: after the trace to ``parent``, the sample with the index ``sample`` came ``times`` times.
+    """Where a trace has led: after the trace to ``parent``, the input with the index ``number`` came ``times`` times.
 
     ``edges`` has the edge that each automaton took at the last step, as its index.
     """
 
     parent: Position | None
-    sample: int
+    number: int
     times: int
     edges: tuple[int, ...]
     configuration: _Configuration
 
     def trace(self) -> tuple[int, ...]:
-        """Return the indices of the samples of the whole trace."""
+        """Return the indices of the inputs of the whole trace."""
         runs: list[tuple[int, int]] = []
         position: Position | None = self
         while position is not None and position.parent is not None:
-            runs.append((position.sample, position.times))
+            runs.append((position.number, position.times))
             position = position.parent
-        return tuple(sample for sample, times in reversed(runs) for _ in range(times))
+        return tuple(number for number, times in reversed(runs) for _ in range(times))
 
 
 class MemorySearch:
-    """Runs one or more automata together on traces over a list of samples.
+    """Runs one or more automata together on traces of ``inputs``.
 
-    Each of ``samples`` has a value for every signal of the automata.
+    The inputs are samples with a value for every signal of the automata, or letters. A letter names
+    the atoms that hold; those that follow from others are computed. ``names`` has the names of the
+    atoms of each automaton in letters, by default their own. No two atoms of a group in ``exclusive``
+    may hold together. ``tried_all`` is true once all traces over the inputs have been tried.
     """
 
-    def __init__(self, automata: Sequence[Fspa], samples: Sequence[TraceSample]) -> None:
-        self.samples = tuple(samples)
+    def __init__(
+        self,
+        automata: Sequence[Fspa],
+        inputs: Sequence[TraceInput],
+        names: Sequence[Sequence[str]] | None = None,
+        exclusive: Sequence[Collection[str]] = (),
+    ) -> None:
+        self.inputs = tuple(inputs)
+        self.tried_all = False
         self._automata = tuple(automata)
+        self._names = names or [[atom.name for atom in fspa.atoms] for fspa in automata]
+        self._exclusive = exclusive
         self._values = tuple(Samples(fspa, None, []) for fspa in automata)
         self._leaving = tuple(_leaving(fspa) for fspa in automata)
 
     def positions(self) -> Iterator[Position]:
         """Yield the ends of traces: at first in the order of their lengths, until the work is done.
 
-        If that leaves traces untried, also yield traces that repeat each sample until the truth of an
+        If that leaves traces untried, also yield traces that repeat each input until the truth of an
         atom or the state of an automaton changes.
         """
         count = 0
         for count, position in enumerate(self._single_steps(), start=1):
             yield position
             if count == _SINGLE_STEPS:
-                break
-        if count == _SINGLE_STEPS:
-            yield from islice(self._held_steps(), _HELD_STEPS)
+                yield from islice(self._held_steps(), _HELD_STEPS)
+                return
+        self.tried_all = True
 
     def first_positions(self) -> Iterator[Position]:
-        """Yield the ends of all traces with one sample."""
+        """Yield the ends of all traces with one step."""
         start = self._start()
-        for sample in range(len(self.samples)):
-            if step := self._step(start.configuration, sample):
-                yield Position(start, sample, 1, step.edges, step.after)
+        for number in range(len(self.inputs)):
+            if step := self._step(start.configuration, number):
+                yield Position(start, number, 1, step.edges, step.after)
+
+    def letters(self, position: Position) -> tuple[Letter, ...]:
+        """Return the names of the atoms that hold at each step of the trace to a position."""
+        configuration, letters = self._start().configuration, []
+        for number in position.trace():
+            step = self._step(configuration, number)
+            assert step is not None, "the search has taken this step"
+            letters.append(step.letter)
+            configuration = step.after
+        return tuple(letters)
 
     def _start(self) -> Position:
         states = tuple(0 for _ in self._automata)
@@ -106,11 +133,11 @@ class MemorySearch:
         seen, queue = {self._key(start.configuration)}, deque([start])
         while queue:
             before = queue.popleft()
-            for sample in range(len(self.samples)):
-                step = self._step(before.configuration, sample)
+            for number in range(len(self.inputs)):
+                step = self._step(before.configuration, number)
                 if step is None:
                     continue
-                position = Position(before, sample, 1, step.edges, step.after)
+                position = Position(before, number, 1, step.edges, step.after)
                 yield position
                 key = self._key(step.after)
                 if key not in seen:
@@ -122,48 +149,58 @@ class MemorySearch:
         seen, queue = {self._key(start.configuration)}, deque([start])
         while queue:
             before = queue.popleft()
-            for sample in range(len(self.samples)):
-                for position, is_turn in self._held(before, sample):
+            for number in range(len(self.inputs)):
+                for position, is_turn in self._held(before, number):
                     yield position
                     key = self._key(position.configuration)
                     if is_turn and key not in seen:
                         seen.add(key)
                         queue.append(position)
 
-    def _held(self, before: Position, sample: int) -> Iterator[tuple[Position, bool]]:
-        """Yield the positions while a sample repeats, until something changes or nothing ever will.
+    def _held(self, before: Position, number: int) -> Iterator[tuple[Position, bool]]:
+        """Yield the positions while an input repeats, until something changes or nothing ever will.
 
-        Each comes with whether another sample may follow.
+        Each comes with whether another input may follow.
         """
         configuration, previous, times = before.configuration, None, 0
         while True:
-            step = self._step(configuration, sample)
+            step = self._step(configuration, number)
             if step is None:
                 return
             times += 1
             is_still = step.after == configuration
-            has_changed = previous is not None and (step.truth, step.after.states) != previous
-            position = Position(before, sample, times, step.edges, step.after)
+            has_changed = previous is not None and (step.letter, step.after.states) != previous
+            position = Position(before, number, times, step.edges, step.after)
             yield position, times == 1 or has_changed or is_still
             if has_changed or is_still:
                 return
-            configuration, previous = step.after, (step.truth, step.after.states)
+            configuration, previous = step.after, (step.letter, step.after.states)
 
-    def _step(self, before: _Configuration, sample: int) -> _Step | None:
-        """Return a step, or None if a monitor rejects the sample."""
-        edges, truths, registers = [], [], []
-        for number, fspa in enumerate(self._automata):
+    def _step(self, before: _Configuration, number: int) -> _Step | None:
+        """Return a step, or None if a monitor rejects the input."""
+        edges, registers = [], []
+        letter: set[str] = set()
+        for index, fspa in enumerate(self._automata):
             try:
-                values = self._values[number].values(self.samples[sample], before.registers[number], 1)
+                values = self._sample_values(index, self.inputs[number], before.registers[index])
                 check_exclusive(fspa, values.atoms, 1)
             except MonitorError:
                 return None
-            leaving = self._leaving[number][before.states[number]]
+            leaving = self._leaving[index][before.states[index]]
             edges.append(next(edge for edge in leaving if holds(fspa.edges[edge].guard, values.atoms)))
-            truths.append(tuple([value > 0.0 for value in values.atoms]))
+            letter.update(name for name, value in zip(self._names[index], values.atoms, strict=True) if value > 0.0)
             registers.append(values.registers)
+        if any(len(letter.intersection(group)) > 1 for group in self._exclusive):
+            return None
         states = tuple(fspa.edges[edge].target for fspa, edge in zip(self._automata, edges, strict=True))
-        return _Step(tuple(edges), tuple(truths), _Configuration(states, tuple(registers)))
+        return _Step(tuple(edges), frozenset(letter), _Configuration(states, tuple(registers)))
+
+    def _sample_values(self, index: int, given: TraceInput, registers: tuple[float, ...]) -> SampleValues:
+        samples = self._values[index]
+        if isinstance(given, Mapping):
+            return samples.values(given, registers, 1)
+        names = self._names[index]
+        return samples.from_atoms([1.0 if names[atom] in given else -1.0 for atom in samples.given], registers, 1)
 
     def _key(self, configuration: _Configuration) -> object:
         """Return what two positions share if only one of them needs a continuation."""

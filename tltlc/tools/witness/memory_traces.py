@@ -17,7 +17,8 @@ class MemoryTraces:
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
-        self._search = MemorySearch((fspa,), candidate_samples(fspa))
+        self._samples = candidate_samples(fspa).samples
+        self._search = MemorySearch((fspa,), self._samples)
         self._positions = self._search.positions()
         self._first: dict[int, Position] = {}
 
@@ -52,7 +53,7 @@ class MemoryTraces:
 
     def moves(self, position: Position) -> tuple[SampledEdge, ...]:
         """Return the moves of the trace that leads to a position."""
-        return moves_of(self._fspa, [self._search.samples[sample] for sample in position.trace()])
+        return moves_of(self._fspa, [self._samples[number] for number in position.trace()])
 
 
 def moves_of(fspa: Fspa, trace: Sequence[dict[str, float]]) -> tuple[SampledEdge, ...]:
