@@ -247,7 +247,9 @@ class Context:
         return formula
 
 
-_SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a signal count the time"
+_SMALLER_BOUND: Final = (
+    "choose a smaller bound or a slower clock, or ask about the past, as in `time_holding(p) >= 60 s`"
+)
 _FEWER_USES: Final = "its size multiplies with each use inside another: nest fewer of them"
 _FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nest fewer of them"
 

@@ -79,3 +79,19 @@ def test_some_trace_of_one_step_meets_a_reported_goal(drawn: tuple[World, str]) 
     spec, reported = spec_and_findings(lasting_goal.check, text)
     for _ in reported:
         assert world.traces.satisfying(spec.spec.formula)[0]
+
+
+@pytest.mark.parametrize(
+    ("clause", "suggested"),
+    [
+        ("reach always for 3 s a", "time_holding(a) >= 3 s"),
+        ("reach (b then (always for 3 s (a or c)))", "time_holding(a or c) >= 3 s"),
+    ],
+)
+def test_the_suggested_goal_needs_the_whole_time(clause: str, suggested: str) -> None:
+    _, (finding,) = spec_and_findings(lasting_goal.check, spec(clause))
+    assert finding.help == f"ask how long it has held: `{suggested}`"
+    (fspa,) = compile_text(spec(f"reach {suggested}"))
+    monitor = Monitor(fspa)
+    sample = {"a": True, "b": False, "c": False}
+    assert [monitor.step(sample).done for _ in range(31)] == [False] * 30 + [True]

@@ -9,15 +9,16 @@ from collections.abc import Iterator
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, Unary
+from tltlc.grammar.tree import BinaryExpr, NumberExpr, Unary
 from tltlc.grammar.walk import operands
 from tltlc.logic.formula import FALSE, and_, weak_next
 from tltlc.resolve.spec import Conjunct
+from tltlc.resolve.units import time_units
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.goals import conjuncts
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
-_SUGGESTION = "let a signal count the time, and ask for enough time, as in `reach time_there >= 3 s`"
+_SUGGESTION = "ask how long it has held, as in `time_holding(there) >= 3 s`"
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -84,7 +85,15 @@ def _findings(goal: ScopedExpression) -> Iterator[RuleFinding]:
             lasting = part.with_tree(tree.operand)
             condition = lasting.text if holds else f"not {operand_text(lasting)}"
             message = f"it asks nothing after the end, so one step with `{condition}` is enough"
-            yield RuleFinding("this goal is met by one step", (Label(part.source, tree.span, message),), _SUGGESTION)
+            help_ = _suggestion(condition, tree.bound.high, lasting) if holds else _SUGGESTION
+            yield RuleFinding("this goal is met by one step", (Label(part.source, tree.span, message),), help_)
+
+
+def _suggestion(condition: str, time: NumberExpr, lasting: ScopedExpression) -> str:
+    """Return advice on what to write in place of a goal that ``condition`` holds for a ``time``."""
+    if time.unit not in time_units() or not lasting.depends_on_one_step():
+        return _SUGGESTION
+    return f"ask how long it has held: `time_holding({condition}) >= {lasting.source.slice(time.span)}`"
 
 
 RULE = LintRule("TLT0434", "warning", check)

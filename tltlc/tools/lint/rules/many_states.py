@@ -37,7 +37,11 @@ def _finding(spec: SpecView, states: int) -> RuleFinding:
         label = Label(
             worst.source, worst.span, f"this bound counts {worst.samples} samples, and each needs at least one state"
         )
-        return RuleFinding(title, (label,), "shorten it, choose a slower `clock`, or let a signal count the time")
+        return RuleFinding(
+            title,
+            (label,),
+            "shorten it, choose a slower `clock`, or ask about the past, as in `time_holding(p) >= 60 s`",
+        )
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember a lot"
     help_ = "split the spec, give an order with `then`, or declare atoms that never hold together `exclusive`"
