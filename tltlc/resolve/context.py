@@ -134,15 +134,29 @@ class Context:
         self._names: dict[int, tuple[str, ...]] = {}
         self._sizes: dict[Formula, int] = {}
 
-    def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
-        """Return the signal with these entities as its arguments, and record that it is used."""
+    def signal(self, info: SignalInfo, entities: tuple[str, ...], source: SourceFile, span: Span) -> Signal:
+        """Return the signal with these entities as its arguments, and record that it is used.
+
+        Raises ResolutionError (TLT0216) if a register has its name.
+        """
         signal = info.signal_of(entities)
+        if signal.name in self.registers:
+            raise _same_name_error(signal.name, source, span)
         return self.signals.setdefault(signal.name, signal)
 
-    def register(self, draft: RegisterDraft) -> None:
-        """Record a register that an atom or another register reads."""
-        self.registers.setdefault(draft.name, draft)
-        self.signals.setdefault(draft.name, Signal(draft.name, "number", draft.low, draft.high))
+    def register(self, draft: RegisterDraft, source: SourceFile, span: Span) -> None:
+        """Record a register that an atom or another register reads.
+
+        Raises ResolutionError (TLT0216) if a signal, or a register with another meaning, has its name.
+        """
+        known = self.signals.get(draft.name)
+        if known is not None and known.arguments:
+            raise _same_name_error(draft.name, source, span)
+        if self.registers.setdefault(draft.name, draft) != draft:
+            title = f"`{draft.name}` would stand for two different numbers"
+            raise problem("TLT0216", title, source, span, advice=_RENAME)
+        # The check of a definition with placeholders may have left a signal of this name without a range.
+        self.signals[draft.name] = Signal(draft.name, "number", draft.low, draft.high)
 
     def atom(
         self,
@@ -250,6 +264,15 @@ class Context:
 _SMALLER_BOUND: Final = "choose a smaller bound or a slower clock, or let a signal count the time"
 _FEWER_USES: Final = "its size multiplies with each use inside another: nest fewer of them"
 _FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nest fewer of them"
+
+
+_RENAME: Final = "two signals or predicates of different files have the same name: rename one of them"
+
+
+def _same_name_error(name: str, source: SourceFile, span: Span) -> ResolutionError:
+    base = name.split("(")[0]
+    title = f"`{name}` is both a value of the signal `{base}` and of the function `{base}`"
+    return problem("TLT0216", title, source, span, advice=f"rename the signal `{base}`")
 
 
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:

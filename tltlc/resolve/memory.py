@@ -6,6 +6,7 @@ that reads the register.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import inf, isinf
 from typing import Final
 
@@ -56,7 +57,7 @@ def past(expr: Unary, operand: Formula, env: Env) -> Formula:
     name = f"{expr.op} {operand_text(operand)}"
     if not env.symbolic:
         update = registers.once if expr.op == "once" else registers.historically
-        env.context.register(update(name, _value(operand, expr, env)))
+        _register(update(name, _value(operand, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
@@ -66,15 +67,14 @@ def since(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> Formula:
     _check_present(right, expr.right, env)
     name = f"({operand_text(left)} since {operand_text(right)})"
     if not env.symbolic:
-        env.context.register(registers.since(name, _value(left, expr, env), _value(right, expr, env)))
+        _register(registers.since(name, _value(left, expr, env), _value(right, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
 def _previously(operand: Formula, expr: Unary, env: Env) -> Formula:
     name = f"previously {operand_text(operand)}"
     if not env.symbolic:
-        kept = _kept(operand, _value(operand, expr, env), env)
-        env.context.register(registers.previously(name, kept))
+        _register(registers.previously(name, _kept(operand, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
@@ -120,6 +120,10 @@ def _atom(name: str, value: Expression, span: Span, env: Env) -> Formula:
     return logic.atom(name) if env.symbolic else env.context.atom(name, value, "", env.scope.source, span)
 
 
+def _register(draft: RegisterDraft, expr: Expr, env: Env) -> None:
+    env.context.register(draft, env.scope.source, expr.span)
+
+
 def _value(operand: Formula, expr: Expr, env: Env) -> Expression:
     """Return the robustness of an operand as an expression over its atoms, if it is not too large."""
     value = registers.robustness(operand)
@@ -144,17 +148,17 @@ def _check_depth(value: Expression | Condition, expr: Expr, env: Env) -> None:
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
 
 
-def _kept(operand: Formula, value: Expression, env: Env) -> str:
+def _kept(operand: Formula, expr: Expr, env: Env) -> str:
     """Return the name of the register that keeps the robustness of a formula for the next sample."""
     name = f"last {operand_text(operand)}"
-    env.context.register(registers.last(name, value, -1.0, 1.0, -1.0))
+    _register(registers.last(name, _value(operand, expr, env), -1.0, 1.0, -1.0), expr, env)
     return name
 
 
 def _time_since(operand: Formula, expr: Expr, env: Env) -> str:
     name = f"time_since({ascii_text(operand)})"
     step = registers.step_length(False)
-    env.context.register(registers.time_since(name, _truth(operand, expr, env), step, "steps"))
+    _register(registers.time_since(name, _truth(operand, expr, env), step, "steps"), expr, env)
     return name
 
 
@@ -197,21 +201,21 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     _check_present(operand, argument, env)
     name = f"{expr.name}({ascii_text(operand)})"
     is_time = expr.name != "times"
-    rate = _steps_per_second(expr, env) if is_time else 1.0
+    unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
         else:
-            kept, begun = _kept(operand, _value(operand, expr, env), env), _truth(operand, expr, env)
+            kept, begun = _kept(operand, expr, env), _truth(operand, expr, env)
             step = registers.step_length(False)
             draft = (
                 registers.time_holding(name, begun, kept, step, "steps")
                 if is_time
                 else registers.times(name, begun, kept)
             )
-            env.context.register(draft)
+            _register(draft, expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
-    read = Recall(name, rate, is_count=not is_time)
+    read = Recall(name, unit, is_count=not is_time)
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
@@ -227,8 +231,11 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     return up_to(open_value, maximum, text, Label(env.scope.source, limit.span))
 
 
-def _steps_per_second(expr: CallExpr, env: Env) -> float:
-    """Return how many samples a second has, at least approximately. Raises ResolutionError without a clock."""
+def _seconds_per_step(expr: CallExpr, env: Env) -> Fraction:
+    """Return the time between two samples in seconds, exactly as the clock was written if it has up to nine digits.
+
+    Raises ResolutionError (TLT0313) without a clock.
+    """
     period = env.context.clock_s
     if period is None and env.context.clock_failed:
         raise ResolutionError(None)
@@ -237,9 +244,7 @@ def _steps_per_second(expr: CallExpr, env: Env) -> float:
         if expr.name == "time_since":
             advice += ", or count steps: `once within 20 steps p`"
         raise problem("TLT0313", f"`{expr.name}` needs a clock", env.scope.source, expr.span, advice=advice)
-    rate = 1.0 / period
-    # A period such as 0.1 s is no double, but the rate of 10 Hz is: divide by that, so that 3 steps are 0.3 s.
-    return float(round(rate)) if round(rate) and abs(rate - round(rate)) < 1e-9 * rate else rate
+    return Fraction(period).limit_denominator(10**9)
 
 
 def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
@@ -254,17 +259,18 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     if value.depth > ARITHMETIC.depth:
         return value
     name = f"{expr.name}({value.text})"
-    result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=None)
+    call = (expr.name, (value.text,)) if value.is_bool else None
+    result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", None, None))
         return result
-    context = env.context
-    context.register(registers.first())
+    _register(registers.first(), expr, env)
     now, low, high = value.expression, _end(value.low), _end(value.high)
     before = Before(name)
     if expr.name == "previous":
-        kept = f"last {value.operand_text(CLOSED)}"
-        context.register(registers.last(kept, now, low, high, _inside(0.0, low, high)))
+        # The register of `previously p` keeps the robustness of p under another name, `last p`.
+        kept = f"last value of {value.operand_text(CLOSED)}"
+        _register(registers.last(kept, now, low, high, _inside(0.0, low, high)), expr, env)
         before = Before(kept)
     updates: dict[str, Expression] = {
         "previous": before,
@@ -275,7 +281,8 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     update = registers.at_first(now, updates[expr.name])
     unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
     kind = expr.name
-    context.register(RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update))  # type: ignore[arg-type]
+    draft = RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update)  # type: ignore[arg-type]
+    _register(draft, expr, env)
     return result
 
 

@@ -6,7 +6,7 @@ from math import ceil, isinf
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
-from tltlc.expression.tree import Const, Op
+from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.tree import Expr
 from tltlc.resolve import registers, units
 from tltlc.resolve.problem import ResolutionError, problem
@@ -21,13 +21,17 @@ def up_to(value: Quantity, maximum: float, text: str | None = None, limit: Label
     """
     read = value.recall
     assert read is not None, "a quantity that saturates"
-    steps = max(1, ceil(maximum * read.rate - 1e-9))
-    expression = registers.saturated(read.register, steps)
-    high = float(steps)
-    if read.rate != 1.0:
-        expression, high = Op("/", (expression, Const(read.rate))), steps / read.rate
+    steps = max(1, ceil(maximum / float(read.unit) - 1e-9))
+    expression: Expression = registers.saturated(read.register, steps)
+    # Multiply and divide by whole numbers, so that 3 steps of 0.15 s are exactly the number 0.45.
+    over, under = float(read.unit.numerator), float(read.unit.denominator)
+    if over != 1.0:
+        expression = Op("*", (expression, Const(over)))
+    if under != 1.0:
+        expression = Op("/", (expression, Const(under)))
+    high = steps * over / under
     known = None if limit is None else replace(read, limit=limit)
-    return replace(value, expression=expression, high=high, text=text or value.text, recall=known, depth=3)
+    return replace(value, expression=expression, high=high, text=text or value.text, recall=known, depth=4)
 
 
 def saturate(value: Quantity, other: Quantity) -> Quantity:
