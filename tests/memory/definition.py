@@ -399,7 +399,8 @@ class Definition:
                 return expr, scope
             if isinstance(declared, tree.PredicateDecl) and not predicates:
                 return expr, scope
-            expr, scope = declared.body, self._inside(expr, declared, scope)
+            inside = self._inside(expr, declared, scope)
+            expr, scope = declared.body, inside
 
     def _inside(self, use: NameExpr | CallExpr, declared: tree.LetDecl | tree.PredicateDecl, scope: Scope) -> Scope:
         key = (id(use), id(scope))

@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
+from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, depth
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -32,8 +32,13 @@ PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators with one operand that speak of the trace so far."""
 
 _OF_FORMULAS: Final = ("times", "time_since", "time_holding")
-_MOST_NESTED: Final = 32
+_MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
+_LONGEST: Final = 10_000
+"""About the most letters of a formula or a number that an operator or function of the past may have as its operand.
+
+They become a part of the names of registers and atoms, and so their length could double at each level of nesting.
+"""
 
 
 # --- operators --------------------------------------------------------------------------------------
@@ -43,9 +48,9 @@ def past(expr: Unary, operand: Formula, env: Env) -> Formula:
     """Return the formula of ``once p``, ``historically p``, ``previously p``, ``begins p`` or ``ends p``.
 
     ``operand`` is the formula of p. Raises ResolutionError: TLT0320 p speaks of the future, TLT0312 or
-    TLT0313 a window makes no sense or needs a clock.
+    TLT0313 a window makes no sense or needs a clock, TLT0315 or TLT0317 p is too large.
     """
-    _check_present(operand, expr.operand, env)
+    _check_operand(operand, expr.operand, env)
     if expr.bound is not None:
         return _window(expr, operand, env)
     if expr.op == "begins":
@@ -63,8 +68,8 @@ def past(expr: Unary, operand: Formula, env: Env) -> Formula:
 
 def since(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> Formula:
     """Return the formula of ``p since q``. Raises ResolutionError (TLT0320) if a side speaks of the future."""
-    _check_present(left, expr.left, env)
-    _check_present(right, expr.right, env)
+    _check_operand(left, expr.left, env)
+    _check_operand(right, expr.right, env)
     name = f"({operand_text(left)} since {operand_text(right)})"
     if not env.symbolic:
         _register(registers.since(name, _value(left, expr, env), _value(right, expr, env)), expr, env)
@@ -104,7 +109,8 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     return _atom(name, Op("/", (Op("-", margin), Const(border))), expr.span, env)
 
 
-def _check_present(operand: Formula, expr: Expr, env: Env) -> None:
+def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
+    """Check the operand of an operator or function of the past, before a name is made of its text."""
     if any(part.is_temporal for part in operand.walk()):
         raise problem(
             "TLT0320",
@@ -114,6 +120,19 @@ def _check_present(operand: Formula, expr: Expr, env: Env) -> None:
             "this speaks of what is still to come",
             advice="let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
         )
+    letters: dict[Formula, int] = {}
+    for part in operand.bottom_up():
+        letters[part] = len(part.name) + 2 + sum(letters[inner] for inner in part.args)
+    _check_length(letters[operand], expr, env)
+
+
+def _check_length(letters: int, expr: Expr, env: Env) -> None:
+    if letters > _LONGEST:
+        # Report this once for all definitions being expanded, since a chain of them would repeat it.
+        env.context.broken.update(env.context.expanding)
+        title = f"this has more than {_LONGEST:,} letters after each `let` is replaced by its formula"
+        advice = "let the game compute a part of it and supply it as a signal"
+        raise problem("TLT0315", title, env.scope.source, expr.span, advice=advice)
 
 
 def _atom(name: str, value: Expression, span: Span, env: Env) -> Formula:
@@ -128,7 +147,6 @@ def _value(operand: Formula, expr: Expr, env: Env) -> Expression:
     """Return the robustness of an operand as an expression over its atoms, if it is not too large."""
     value = registers.robustness(operand)
     _check_depth(value, expr, env)
-    env.context.count_arithmetic(value, env.scope.source, expr.span)
     return value
 
 
@@ -136,8 +154,6 @@ def _truth(operand: Formula, expr: Expr, env: Env) -> Condition:
     """Return the condition that an operand is true, if it is not too large."""
     condition = registers.truth(operand)
     _check_depth(condition, expr, env)
-    # The limit counts the parts of expressions, and a condition is none.
-    env.context.count_arithmetic(When(((condition, Const(0.0)),), Const(0.0)), env.scope.source, expr.span)
     return condition
 
 
@@ -186,11 +202,12 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
         title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
         advice = "let the game compute the value and supply it as a signal"
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
-    env.context.recalls += 1
+    outside = env.context.levels
+    env.context.recalls, env.context.levels = env.context.recalls + 1, level
     try:
         return _of_formula(expr, env) if most == 2 else _of_number(expr, env, level)
     finally:
-        env.context.recalls -= 1
+        env.context.recalls, env.context.levels = env.context.recalls - 1, outside
 
 
 def _of_formula(expr: CallExpr, env: Env) -> Quantity:
@@ -198,7 +215,7 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
 
     argument = expr.arguments[0].value
     operand = formula(argument, env)
-    _check_present(operand, argument, env)
+    _check_operand(operand, argument, env)
     name = f"{expr.name}({ascii_text(operand)})"
     is_time = expr.name != "times"
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
@@ -228,7 +245,7 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
         title = "this maximum cannot be reached" if maximum <= 0 else "this is no maximum"
         raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
     text = f"{name[:-1]}, {number_text(maximum)})"
-    return up_to(open_value, maximum, text, Label(env.scope.source, limit.span))
+    return up_to(open_value, maximum, limit, env, text, Label(env.scope.source, limit.span))
 
 
 def _seconds_per_step(expr: CallExpr, env: Env) -> Fraction:
@@ -258,6 +275,7 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
     if value.depth > ARITHMETIC.depth:
         return value
+    _check_length(len(value.text), argument, env)
     name = f"{expr.name}({value.text})"
     call = (expr.name, (value.text,)) if value.is_bool else None
     result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
