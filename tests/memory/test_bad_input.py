@@ -11,7 +11,8 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.monitor import Monitor
-from tltlc.pipeline import CompileOptions, Session, compile_text, with_params
+from tltlc.monitor.spec_tests import run_tests
+from tltlc.pipeline import CompileOptions, Session, compile_source, compile_text, with_params
 
 NAMES = "signal p: bool signal q: bool signal hp in [0, 10] signal d: length in [0 m, 9 m]\n"
 CLOCK = f"clock 10 Hz {NAMES}"
@@ -226,7 +227,7 @@ def test_the_check_of_an_unused_definition_leaves_no_register_without_a_range() 
     assert Session(SourceFile("<test>", text)).compiled().diagnostics == ()
 
 
-# --- params -------------------------------------------------------------------------------
+# --- params and tests -------------------------------------------------------------------------------
 
 
 def test_a_param_may_change_the_number_to_which_a_count_is_compared() -> None:
@@ -241,3 +242,21 @@ def test_a_param_may_change_the_number_to_which_a_count_is_compared() -> None:
     ):
         verdicts = [monitor.step({"p": number % 2 == 0}).verdict for number in range(20)]
         assert verdicts.index("violated") == 2 * changed
+
+
+def test_a_test_gives_the_atoms_from_which_others_follow() -> None:
+    text = f"""{CLOCK}
+    spec s {{ keep times(p) <= 2 reach time_holding(q) >= 3 s }}
+    test "counts" for s {{
+        step p step 3x not p step p step not p expect pending
+        step p expect violated
+    }}
+    test "holds" for s {{ step 30x q expect pending step q expect holding }}
+    """
+    compiled = compile_source(SourceFile("<test>", text))
+    assert [result.failure for result in run_tests(compiled.program, compiled.automata)] == [None, None]
+
+
+def test_a_test_cannot_give_what_follows_from_other_atoms() -> None:
+    (error,) = errors(f'{CLOCK} spec s = F times(p) > 2 test "t" for s {{ step times(p) > 2 expect satisfied }}')
+    assert (error.code, error.help) == ("TLT0209", "a step can name `p`")

@@ -6,7 +6,8 @@ from typing import Literal
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
-from tltlc.expression.tree import AtomValue, Expression, SignalValue, nodes
+from tltlc.expression.tree import AtomValue, Expression, nodes
+from tltlc.resolve import registers
 
 
 @record
@@ -39,26 +40,13 @@ def given_atoms(fspa: Fspa) -> tuple[int, ...]:
 
     ``times(seen) > 3`` follows from ``seen``. Without registers, no atom follows from others.
     """
-    from_atoms = registers_from_atoms(fspa)
-    return tuple(
-        index
-        for index, atom in enumerate(fspa.atoms)
-        if not (reads := set(_names_read(atom.expression))) or not reads <= from_atoms
-    )
+    following = registers.following_atoms(fspa.atoms, fspa.registers)
+    return tuple(index for index, atom in enumerate(fspa.atoms) if atom.name not in following)
 
 
 def registers_from_atoms(fspa: Fspa) -> frozenset[str]:
     """Return the names of the registers whose values follow from the values of the atoms so far."""
-    names: set[str] = set()
-    for register in fspa.registers:
-        if set(_names_read(register.update)) <= names:
-            names.add(register.name)
-    return frozenset(names)
-
-
-def _names_read(expression: Expression) -> list[str]:
-    """Return the names of the signals and registers that an expression reads."""
-    return [node.name for node in nodes(expression) if isinstance(node, SignalValue)]
+    return registers.from_atoms(fspa.registers)
 
 
 def _atoms_read(expression: Expression) -> list[str]:

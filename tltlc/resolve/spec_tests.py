@@ -11,6 +11,7 @@ from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.registers import following_atoms
 from tltlc.resolve.spec import Expect, RepeatedSample, Spec, Test
 from tltlc.resolve.values import Env
 
@@ -55,6 +56,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
 def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     source = env.scope.source
     names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
+    following = following_atoms(spec.atoms, spec.registers)
     values: dict[str, bool] = {}
     for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
@@ -63,6 +65,10 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
             verb = "has" if not names else "has the atoms" if len(names) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
+        if name in following:
+            given = ", ".join(f"`{atom.name}`" for atom in spec.atoms if atom.name not in following)
+            title = f"`{name}` follows from other atoms, here and in the steps before"
+            raise problem("TLT0209", title, source, literal_expr.span, advice=f"a step can name {given}")
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
