@@ -36,7 +36,11 @@ def test_a_name_is_split_into_its_base_and_arguments(name: str, base: str, argum
 
 @pytest.mark.parametrize(
     ("name", "sides"),
-    [("distance(s1) > 3", ("distance(s1)", ">", "3")), ("a - b < c * 2", ("a - b", "<", "c * 2"))],
+    [
+        ("distance(s1) > 3", ("distance(s1)", ">", "3")),
+        ("a - b < c * 2", ("a - b", "<", "c * 2")),
+        ("times(hp < 3) > 2", ("times(hp < 3)", ">", "2")),
+    ],
 )
 def test_the_name_of_a_comparison_knows_its_sides(name: str, sides: tuple[str, str, str]) -> None:
     (base, _) = split_name(name)
@@ -46,7 +50,7 @@ def test_the_name_of_a_comparison_knows_its_sides(name: str, sides: tuple[str, s
         assert comparison == name
 
 
-@pytest.mark.parametrize("name", ["near(s1)", "a<b", "a > b > c", "> 3"])
+@pytest.mark.parametrize("name", ["near(s1)", "a<b", "a > b > c", "> 3", "once (hp > 3)", "(p since (hp > 3))"])
 def test_other_names_are_no_comparisons(name: str) -> None:
     assert not isinstance(split_name(name)[0], ComparisonName)
 

@@ -7,7 +7,7 @@ from typing import Literal
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.expression.tree import AtomValue, Expression, nodes
-from tltlc.resolve.derived_atoms import derived_atoms
+from tltlc.resolve import registers
 
 
 @record
@@ -40,8 +40,13 @@ def given_atoms(fspa: Fspa) -> tuple[int, ...]:
 
     ``times(seen) > 3`` follows from ``seen``. Without registers, no atom follows from others.
     """
-    derived = derived_atoms(fspa.atoms, fspa.registers)
-    return tuple(index for index, atom in enumerate(fspa.atoms) if atom.name not in derived)
+    following = registers.following_atoms(fspa.atoms, fspa.registers)
+    return tuple(index for index, atom in enumerate(fspa.atoms) if atom.name not in following)
+
+
+def registers_from_atoms(fspa: Fspa) -> frozenset[str]:
+    """Return the names of the registers whose values follow from the values of the atoms so far."""
+    return registers.from_atoms(fspa.registers)
 
 
 def _atoms_read(expression: Expression) -> list[str]:

@@ -6,7 +6,7 @@ import re
 from typing import Final
 
 _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
-_COMPARISON: Final = re.compile(r"([^<>]+) ([<>]) ([^<>]+)")
+_BRACKETS: Final = {"(": 1, ")": -1}
 
 
 class ComparisonName(str):
@@ -62,5 +62,14 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
 
 
 def _whole(name: str) -> str:
-    comparison = _COMPARISON.fullmatch(name)
-    return ComparisonName(*comparison.groups()) if comparison else name
+    """Return a name, as a :class:`ComparisonName` if it has one comparison outside all brackets."""
+    depth, places = 0, []
+    for index, character in enumerate(name):
+        depth += _BRACKETS.get(character, 0)
+        if depth == 0 and character in "<>":
+            places.append(index)
+    if len(places) != 1:
+        return name
+    left, operator, right = name[: places[0]], name[places[0]], name[places[0] + 1 :]
+    is_comparison = left[:-1].strip() and right[1:].strip() and left.endswith(" ") and right.startswith(" ")
+    return ComparisonName(left[:-1], operator, right[1:]) if is_comparison else name

@@ -11,11 +11,10 @@ from math import isfinite
 from typing import Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.memory import given_atoms, schedule
+from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import AtomValue, Before, VariableKey
-from tltlc.resolve.derived_atoms import registers_from_atoms
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
@@ -53,7 +52,7 @@ class Samples:
         self.initial = tuple(register.initial for register in fspa.registers)
         self._order = schedule(fspa)
         self.given = given_atoms(fspa)
-        self._from_atoms = registers_from_atoms(fspa.registers)
+        self._from_atoms = registers_from_atoms(fspa)
         registers = [register.name for register in fspa.registers]
         atoms = [AtomValue(atom.name) for atom in fspa.atoms] if registers else []
         variables: tuple[VariableKey, ...] = (*self._names, *registers, *map(Before, registers), *atoms)

@@ -51,11 +51,11 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     """Run one test of a spec on the automaton of the spec, and return the result.
 
     At each ``step`` of the test, the atoms that the step names have the value 1, and all other
-    atoms -1. Atoms that follow from others, such as ``times(seen) > 3``, are computed. An ``expect``
-    is about the trace of all steps before it. The test ends with the first failure, which has the code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold
-    at the same step.
+    atoms -1, except those that follow from others (:func:`tltlc.automaton.memory.given_atoms`). An
+    ``expect`` is about the trace of all steps before it. The test ends with the first failure, which
+    has the code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
     """
-    monitor, given = Monitor(fspa), given_atoms(fspa)
+    monitor = Monitor(fspa)
     last: Step | None = None
     for item in test.items:
         if isinstance(item, Expect):
@@ -63,7 +63,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
             if failure is not None:
                 return TestResult(test, failure)
             continue
-        values = [1.0 if fspa.atoms[atom].name in item.holds else -1.0 for atom in given]
+        values = [1.0 if fspa.atoms[index].name in item.holds else -1.0 for index in given_atoms(fspa)]
         try:
             for _ in range(item.times):
                 before, registers = last, monitor.registers

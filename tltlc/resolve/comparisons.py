@@ -38,9 +38,10 @@ def comparison(expr: BinaryExpr, env: Env) -> Formula:
     comparison always or never true (TLT0310), if a range that is needed for scaling has an infinite
     end (TLT0311), or if the arithmetic of a side may overflow (TLT0319).
     """
-    left, right = quantity(expr.left, env), quantity(expr.right, env)
+    levels = env.context.levels
+    left, right = quantity(expr.left, env, levels), quantity(expr.right, env, levels)
     same_dimension(left, right, expr.right, env)
-    left, right = saturate(left, right), saturate(right, left)
+    left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
     left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     op = expr.op
     if left.is_constant and not right.is_constant:
@@ -90,7 +91,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
     always = x.low > c if op == ">" else x.high < c
     never = x.high <= c if op == ">" else x.low >= c
     if always or never:
-        if x.recall is not None and x.recall.limit is not None:
+        if x.recall is not None and x.recall.limit is not None and x.high <= c:
             raise too_small_error(x, x.recall.limit, c)
         holds = always != negated
         message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"

@@ -78,7 +78,8 @@ class Context:
       is true if a declaration of a clock is in error.
     - ``registers`` has the memory that any formula or predicate asked for, by name, each register
       after those that it reads at the same sample. ``signals`` has a signal in place of each, so that
-      its range is known. ``recalls`` counts the functions of the past around the current expression.
+      its range is known. ``recalls`` counts the functions of the past around the current expression, and
+      ``levels`` the operators around them.
     - ``signals`` and ``atoms`` have those in use, by full name, such as ``near(s1)``.
     - ``instances`` has the predicates to be checked.
     - ``values`` caches the values of signals, predicates, lets (named formulas), calls and
@@ -105,6 +106,7 @@ class Context:
         "expanding",
         "expansions",
         "instances",
+        "levels",
         "log",
         "params",
         "recalls",
@@ -123,7 +125,7 @@ class Context:
         self.signals: dict[str, Signal] = {}
         self.atoms: dict[str, Atom] = {}
         self.registers: dict[str, RegisterDraft] = {}
-        self.recalls = 0
+        self.recalls = self.levels = 0
         self.bounds: list[Bound] = []
         self.instances: dict[tuple[int, Any], Instance] = {}
         self.expanding: dict[int, str] = {}
@@ -134,15 +136,32 @@ class Context:
         self._names: dict[int, tuple[str, ...]] = {}
         self._sizes: dict[Formula, int] = {}
 
-    def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
-        """Return the signal with these entities as its arguments, and record that it is used."""
+    def signal(self, info: SignalInfo, entities: tuple[str, ...], source: SourceFile, span: Span) -> Signal:
+        """Return the signal with these entities as its arguments, and record that it is used.
+
+        Raises ResolutionError (TLT0216) if a register has its name.
+        """
         signal = info.signal_of(entities)
+        if signal.name in self.registers:
+            raise _same_name_error(signal.name, source, span)
         return self.signals.setdefault(signal.name, signal)
 
-    def register(self, draft: RegisterDraft) -> None:
-        """Record a register that an atom or another register reads."""
-        self.registers.setdefault(draft.name, draft)
-        self.signals.setdefault(draft.name, Signal(draft.name, "number", draft.low, draft.high))
+    def register(self, draft: RegisterDraft, source: SourceFile, span: Span) -> None:
+        """Record a register that an atom or another register reads.
+
+        Raises ResolutionError if a signal, or a register with another meaning, has its name (TLT0216), or
+        if the arithmetic of all atoms and registers together is too large (TLT0315).
+        """
+        known = self.signals.get(draft.name)
+        if known is not None and known.arguments:
+            raise _same_name_error(draft.name, source, span)
+        if draft.name not in self.registers:
+            self._arithmetic += self.count_arithmetic(draft.update, source, span, self._arithmetic)
+        if self.registers.setdefault(draft.name, draft) != draft:
+            title = f"`{draft.name}` would stand for two different numbers"
+            raise problem("TLT0216", title, source, span, advice=_RENAME)
+        # The check of a definition with placeholders may have left a signal of this name without a range.
+        self.signals[draft.name] = Signal(draft.name, "number", draft.low, draft.high)
 
     def atom(
         self,
@@ -176,7 +195,7 @@ class Context:
         """Return the number of nodes of an expression.
 
         Raises ResolutionError (TLT0315) if this number plus ``counted_before``, the number of nodes of
-        earlier atoms, exceeds the limit for all atoms.
+        earlier atoms and registers, exceeds the limit for all of them.
         """
         left = WORK["arithmetic of all atoms"] - counted_before
         size = sum(1 for _ in islice(nodes(expression), left + 1))
@@ -252,6 +271,15 @@ _SMALLER_BOUND: Final = (
 )
 _FEWER_USES: Final = "its size multiplies with each use inside another: nest fewer of them"
 _FEWER_EXPANSIONS: Final = "each one inside another multiplies their number: nest fewer of them"
+
+
+_RENAME: Final = "two signals or predicates of different files have the same name: rename one of them"
+
+
+def _same_name_error(name: str, source: SourceFile, span: Span) -> ResolutionError:
+    base = name.split("(")[0]
+    title = f"`{name}` is both a value of the signal `{base}` and of the function `{base}`"
+    return problem("TLT0216", title, source, span, advice=f"rename the signal `{base}`")
 
 
 def expansion_error(subject: str, source: SourceFile, span: Span, *, is_bound: bool = False) -> ResolutionError:

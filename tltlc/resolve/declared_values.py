@@ -46,7 +46,7 @@ def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
         info = env.context.signal_infos.get(declaration.name)
         if info is None:
             raise ResolutionError(None)
-        env.context.values[memo] = signal_value(env.context.signal(info, entities))
+        env.context.values[memo] = signal_value(env.context.signal(info, entities, env.scope.source, expr.span))
     value: Quantity = env.context.values[memo]
     return value
 

@@ -144,7 +144,7 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
         raise not_a_formula_error(expr, env)
     binding = lookup(expr, env, ("predicate", "let", "signal"), "predicate")
     if binding.kind == "predicate":
-        use = predicate(expr, binding, env)
+        use = predicate(expr, binding, env, env.context.levels)
         if env.symbolic:
             return logic.atom(use.value.text)
         return _atom(use.value, use.value.expression, use.doc, expr, env)
@@ -161,7 +161,7 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
 
 def _recalled_bool(expr: CallExpr, env: Env) -> Formula:
     """Return the atom of a bool that is recalled, as in ``previous(alarm)``."""
-    value = memory.recall(expr, env, 0)
+    value = memory.recall(expr, env, env.context.levels)
     if not value.is_bool:
         raise not_a_formula_error(expr, env)
     return _bool_atom(value, "", expr, env)
@@ -205,7 +205,7 @@ def _use_let(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> FormulaGe
                 env.context.check_size(formula, subject, argument_env.scope.source, expression.span)
             values[parameter.name] = formula
         else:
-            values[parameter.name] = argument_value(parameter, expression, argument_env, binding, 0)
+            values[parameter.name] = argument_value(parameter, expression, argument_env, binding, env.context.levels)
     try:
         return (yield _expand_let(declaration, binding, env.inside(binding.scope, values), expr.span, env))
     except ResolutionError as failure:

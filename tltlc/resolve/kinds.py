@@ -57,6 +57,9 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
             advice="for `if a, then b`, write `a implies b`; if both must hold at the same step, write `a and b`",
         )
     title, source = f"no {noun} `{use.name}` here", env.scope.source
+    if use.name in MEMORY_FUNCTIONS and isinstance(use, NameExpr):
+        argument = "p" if use.name in ("times", "time_since", "time_holding") else "x"
+        raise problem("TLT0201", title, source, span, advice=f"for the function, write `{use.name}({argument})`")
     gets_help = len(env.context.log) < _MOST_HINTS
     spaced = _split_operator_letters(use.name, env, kinds) if gets_help and noun == "predicate" else None
     if spaced:

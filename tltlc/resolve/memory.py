@@ -6,13 +6,14 @@ that reads the register.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import inf, isinf
 from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When, depth
+from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, depth
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -31,8 +32,13 @@ PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators with one operand that speak of the trace so far."""
 
 _OF_FORMULAS: Final = ("times", "time_since", "time_holding")
-_MOST_NESTED: Final = 32
+_MOST_NESTED: Final = 16
 """The most functions of the past that may stand inside each other."""
+_LONGEST: Final = 10_000
+"""About the most letters of a formula or a number that an operator or function of the past may have as its operand.
+
+They become a part of the names of registers and atoms, and so their length could double at each level of nesting.
+"""
 
 
 # --- operators --------------------------------------------------------------------------------------
@@ -42,9 +48,9 @@ def past(expr: Unary, operand: Formula, env: Env) -> Formula:
     """Return the formula of ``once p``, ``historically p``, ``previously p``, ``begins p`` or ``ends p``.
 
     ``operand`` is the formula of p. Raises ResolutionError: TLT0320 p speaks of the future, TLT0312 or
-    TLT0313 a window makes no sense or needs a clock.
+    TLT0313 a window makes no sense or needs a clock, TLT0315 or TLT0317 p is too large.
     """
-    _check_present(operand, expr.operand, env)
+    _check_operand(operand, expr.operand, env)
     if expr.bound is not None:
         return _window(expr, operand, env)
     if expr.op == "begins":
@@ -56,25 +62,24 @@ def past(expr: Unary, operand: Formula, env: Env) -> Formula:
     name = f"{expr.op} {operand_text(operand)}"
     if not env.symbolic:
         update = registers.once if expr.op == "once" else registers.historically
-        env.context.register(update(name, _value(operand, expr, env)))
+        _register(update(name, _value(operand, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
 def since(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> Formula:
     """Return the formula of ``p since q``. Raises ResolutionError (TLT0320) if a side speaks of the future."""
-    _check_present(left, expr.left, env)
-    _check_present(right, expr.right, env)
+    _check_operand(left, expr.left, env)
+    _check_operand(right, expr.right, env)
     name = f"({operand_text(left)} since {operand_text(right)})"
     if not env.symbolic:
-        env.context.register(registers.since(name, _value(left, expr, env), _value(right, expr, env)))
+        _register(registers.since(name, _value(left, expr, env), _value(right, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
 def _previously(operand: Formula, expr: Unary, env: Env) -> Formula:
     name = f"previously {operand_text(operand)}"
     if not env.symbolic:
-        kept = _kept(operand, _value(operand, expr, env), env)
-        env.context.register(registers.previously(name, kept))
+        _register(registers.previously(name, _kept(operand, expr, env)), expr, env)
     return _atom(name, SignalValue(name), expr.span, env)
 
 
@@ -104,7 +109,8 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     return _atom(name, Op("/", (Op("-", margin), Const(border))), expr.span, env)
 
 
-def _check_present(operand: Formula, expr: Expr, env: Env) -> None:
+def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
+    """Check the operand of an operator or function of the past, before a name is made of its text."""
     if any(part.is_temporal for part in operand.walk()):
         raise problem(
             "TLT0320",
@@ -114,17 +120,33 @@ def _check_present(operand: Formula, expr: Expr, env: Env) -> None:
             "this speaks of what is still to come",
             advice="let operators such as `eventually` and `until` stand outside, as in `eventually once p`",
         )
+    letters: dict[Formula, int] = {}
+    for part in operand.bottom_up():
+        letters[part] = len(part.name) + 2 + sum(letters[inner] for inner in part.args)
+    _check_length(letters[operand], expr, env)
+
+
+def _check_length(letters: int, expr: Expr, env: Env) -> None:
+    if letters > _LONGEST:
+        # Report this once for all definitions being expanded, since a chain of them would repeat it.
+        env.context.broken.update(env.context.expanding)
+        title = f"this has more than {_LONGEST:,} letters after each `let` is replaced by its formula"
+        advice = "let the game compute a part of it and supply it as a signal"
+        raise problem("TLT0315", title, env.scope.source, expr.span, advice=advice)
 
 
 def _atom(name: str, value: Expression, span: Span, env: Env) -> Formula:
     return logic.atom(name) if env.symbolic else env.context.atom(name, value, "", env.scope.source, span)
 
 
+def _register(draft: RegisterDraft, expr: Expr, env: Env) -> None:
+    env.context.register(draft, env.scope.source, expr.span)
+
+
 def _value(operand: Formula, expr: Expr, env: Env) -> Expression:
     """Return the robustness of an operand as an expression over its atoms, if it is not too large."""
     value = registers.robustness(operand)
     _check_depth(value, expr, env)
-    env.context.count_arithmetic(value, env.scope.source, expr.span)
     return value
 
 
@@ -132,8 +154,6 @@ def _truth(operand: Formula, expr: Expr, env: Env) -> Condition:
     """Return the condition that an operand is true, if it is not too large."""
     condition = registers.truth(operand)
     _check_depth(condition, expr, env)
-    # The limit counts the parts of expressions, and a condition is none.
-    env.context.count_arithmetic(When(((condition, Const(0.0)),), Const(0.0)), env.scope.source, expr.span)
     return condition
 
 
@@ -144,17 +164,17 @@ def _check_depth(value: Expression | Condition, expr: Expr, env: Env) -> None:
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
 
 
-def _kept(operand: Formula, value: Expression, env: Env) -> str:
+def _kept(operand: Formula, expr: Expr, env: Env) -> str:
     """Return the name of the register that keeps the robustness of a formula for the next sample."""
     name = f"last {operand_text(operand)}"
-    env.context.register(registers.last(name, value, -1.0, 1.0, -1.0))
+    _register(registers.last(name, _value(operand, expr, env), -1.0, 1.0, -1.0), expr, env)
     return name
 
 
 def _time_since(operand: Formula, expr: Expr, env: Env) -> str:
     name = f"time_since({ascii_text(operand)})"
     step = registers.step_length(False)
-    env.context.register(registers.time_since(name, _truth(operand, expr, env), step, "steps"))
+    _register(registers.time_since(name, _truth(operand, expr, env), step, "steps"), expr, env)
     return name
 
 
@@ -182,11 +202,12 @@ def recall(expr: CallExpr, env: Env, level: int) -> Quantity:
         title = f"functions of the past stand more than {_MOST_NESTED} deep inside each other"
         advice = "let the game compute the value and supply it as a signal"
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
-    env.context.recalls += 1
+    outside = env.context.levels
+    env.context.recalls, env.context.levels = env.context.recalls + 1, level
     try:
         return _of_formula(expr, env) if most == 2 else _of_number(expr, env, level)
     finally:
-        env.context.recalls -= 1
+        env.context.recalls, env.context.levels = env.context.recalls - 1, outside
 
 
 def _of_formula(expr: CallExpr, env: Env) -> Quantity:
@@ -194,24 +215,24 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
 
     argument = expr.arguments[0].value
     operand = formula(argument, env)
-    _check_present(operand, argument, env)
+    _check_operand(operand, argument, env)
     name = f"{expr.name}({ascii_text(operand)})"
     is_time = expr.name != "times"
-    rate = _steps_per_second(expr, env) if is_time else 1.0
+    unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
         else:
-            kept, begun = _kept(operand, _value(operand, expr, env), env), _truth(operand, expr, env)
+            kept, begun = _kept(operand, expr, env), _truth(operand, expr, env)
             step = registers.step_length(False)
             draft = (
                 registers.time_holding(name, begun, kept, step, "steps")
                 if is_time
                 else registers.times(name, begun, kept)
             )
-            env.context.register(draft)
+            _register(draft, expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
-    read = Recall(name, rate, is_count=not is_time)
+    read = Recall(name, unit, is_count=not is_time)
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
@@ -224,11 +245,14 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
         title = "this maximum cannot be reached" if maximum <= 0 else "this is no maximum"
         raise problem("TLT0303", title, env.scope.source, limit.span, advice=f"write {wanted}")
     text = f"{name[:-1]}, {number_text(maximum)})"
-    return up_to(open_value, maximum, text, Label(env.scope.source, limit.span))
+    return up_to(open_value, maximum, limit, env, text, Label(env.scope.source, limit.span))
 
 
-def _steps_per_second(expr: CallExpr, env: Env) -> float:
-    """Return how many samples a second has, at least approximately. Raises ResolutionError without a clock."""
+def _seconds_per_step(expr: CallExpr, env: Env) -> Fraction:
+    """Return the time between two samples in seconds, exactly as the clock was written if it has up to nine digits.
+
+    Raises ResolutionError (TLT0313) without a clock.
+    """
     period = env.context.clock_s
     if period is None and env.context.clock_failed:
         raise ResolutionError(None)
@@ -237,9 +261,7 @@ def _steps_per_second(expr: CallExpr, env: Env) -> float:
         if expr.name == "time_since":
             advice += ", or count steps: `once within 20 steps p`"
         raise problem("TLT0313", f"`{expr.name}` needs a clock", env.scope.source, expr.span, advice=advice)
-    rate = 1.0 / period
-    # A period such as 0.1 s is no double, but the rate of 10 Hz is: divide by that, so that 3 steps are 0.3 s.
-    return float(round(rate)) if round(rate) and abs(rate - round(rate)) < 1e-9 * rate else rate
+    return Fraction(period).limit_denominator(10**9)
 
 
 def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
@@ -253,18 +275,20 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
         raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
     if value.depth > ARITHMETIC.depth:
         return value
+    _check_length(len(value.text), argument, env)
     name = f"{expr.name}({value.text})"
-    result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=None)
+    call = (expr.name, (value.text,)) if value.is_bool else None
+    result = replace(value, expression=SignalValue(name), text=name, binding=CLOSED, depth=1, call=call)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", None, None))
         return result
-    context = env.context
-    context.register(registers.first())
+    _register(registers.first(), expr, env)
     now, low, high = value.expression, _end(value.low), _end(value.high)
     before = Before(name)
     if expr.name == "previous":
-        kept = f"last {value.operand_text(CLOSED)}"
-        context.register(registers.last(kept, now, low, high, _inside(0.0, low, high)))
+        # The register of `previously p` keeps the robustness of p under another name, `last p`.
+        kept = f"last value of {value.operand_text(CLOSED)}"
+        _register(registers.last(kept, now, low, high, _inside(0.0, low, high)), expr, env)
         before = Before(kept)
     updates: dict[str, Expression] = {
         "previous": before,
@@ -275,7 +299,8 @@ def _of_number(expr: CallExpr, env: Env, level: int) -> Quantity:
     update = registers.at_first(now, updates[expr.name])
     unit = str(units.si_unit(value.dimension) or "") if value.dimension else ""
     kind = expr.name
-    context.register(RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update))  # type: ignore[arg-type]
+    draft = RegisterDraft(name, kind, unit, low, high, _inside(0.0, low, high), update)  # type: ignore[arg-type]
+    _register(draft, expr, env)
     return result
 
 

@@ -67,7 +67,8 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         a, b = quantity(expr.left, env, depth), quantity(expr.right, env, depth)
         same_dimension(a, b, expr.right, env)
-        a, b = check_closed(saturate(a, b), expr.left, env), check_closed(saturate(b, a), expr.right, env)
+        a, b = saturate(a, b, expr.right, env), saturate(b, a, expr.left, env)
+        a, b = check_closed(a, expr.left, env), check_closed(b, expr.right, env)
         op = cast(ConditionOp, expr.op)
         return Condition(op, (a.expression, b.expression)), f"{a.text} {expr.op} {b.text}"
     if isinstance(expr, (NameExpr, CallExpr)):

@@ -3,44 +3,61 @@
 from __future__ import annotations
 
 from math import ceil, isinf
+from typing import Final
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
-from tltlc.expression.tree import Const, Op
+from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.tree import Expr
 from tltlc.resolve import registers, units
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.values import Env, Quantity, number_text
 
+MOST_STEPS: Final = 10**9
+"""The greatest maximum that a count or time may have, in steps."""
 
-def up_to(value: Quantity, maximum: float, text: str | None = None, limit: Label | None = None) -> Quantity:
+
+def up_to(
+    value: Quantity, maximum: float, expr: Expr, env: Env, text: str | None = None, limit: Label | None = None
+) -> Quantity:
     """Return a recalled quantity up to a maximum, which is rounded up to whole steps.
 
-    ``text`` is the spelling of the new quantity, by default the old one. ``limit`` is the place where
-    the maximum is written, if it is.
+    ``expr`` is the expression that gives the maximum, and ``text`` the spelling of the new quantity, by
+    default the old one. ``limit`` is the place where the maximum is written, if it is. Raises
+    ResolutionError (TLT0303) if the maximum is too large.
     """
     read = value.recall
     assert read is not None, "a quantity that saturates"
-    steps = max(1, ceil(maximum * read.rate - 1e-9))
-    expression = registers.saturated(read.register, steps)
-    high = float(steps)
-    if read.rate != 1.0:
-        expression, high = Op("/", (expression, Const(read.rate))), steps / read.rate
+    if maximum > MOST_STEPS * float(read.unit):
+        most = number_text(MOST_STEPS * float(read.unit)) + ("" if read.is_count else " s")
+        title = f"`{value.text}` would need a maximum above {most}"
+        advice = "choose a smaller number" if read.is_count else "choose a shorter time, or a slower clock"
+        raise problem("TLT0303", title, env.scope.source, expr.span, advice=advice)
+    steps = max(1, ceil(maximum / float(read.unit) - 1e-9))
+    expression: Expression = registers.saturated(read.register, steps)
+    # Multiply and divide by whole numbers, so that 3 steps of 0.15 s are exactly the number 0.45.
+    over, under = float(read.unit.numerator), float(read.unit.denominator)
+    if over != 1.0:
+        expression = Op("*", (expression, Const(over)))
+    if under != 1.0:
+        expression = Op("/", (expression, Const(under)))
     known = None if limit is None else replace(read, limit=limit)
-    return replace(value, expression=expression, high=high, text=text or value.text, recall=known, depth=3)
+    high = steps * over / under
+    return replace(value, expression=expression, high=high, text=text or value.text, recall=known, depth=4)
 
 
-def saturate(value: Quantity, other: Quantity) -> Quantity:
+def saturate(value: Quantity, other: Quantity, expr: Expr, env: Env) -> Quantity:
     """Give a recalled quantity that is compared with ``other`` the least maximum that keeps the comparison exact.
 
     This is twice the greatest value of ``other``, and for counts one more, so that the robustness has
     equal room on both sides. The quantity is returned as it is if it has a maximum, or if ``other``
-    has no greatest value.
+    has no greatest value. ``expr`` is the expression of ``other``. Raises ResolutionError (TLT0303) if
+    the maximum is too large.
     """
     if not is_open(value) or isinf(other.high):
         return value
     assert value.recall is not None, "an open quantity"
-    return up_to(value, 2 * max(other.high, 0.0) + value.recall.is_count)
+    return up_to(value, 2 * max(other.high, 0.0) + value.recall.is_count, expr, env)
 
 
 def is_open(value: Quantity) -> bool:
@@ -67,7 +84,7 @@ def check_closed(value: Quantity, expr: Expr, env: Env) -> Quantity:
 
 def too_small_error(value: Quantity, limit: Label, needed: float) -> ResolutionError:
     """Return the error for a comparison with a number that the written maximum of a quantity does not reach."""
-    text = number_text(2 * needed + 1) if value.dimension == units.PLAIN else f"{number_text(2 * needed)} s"
+    text = number_text(ceil(2 * needed + 1)) if value.dimension == units.PLAIN else f"{number_text(2 * needed)} s"
     title = f"the maximum of `{value.text}` is too small for this comparison"
     fixes = (replacement_fix(limit.source, limit.span, text),)
     advice = f"write `{text}`, or leave the maximum out"

@@ -235,3 +235,26 @@ def _maxima(expression: Expression, drafts: Mapping[str, RegisterDraft]) -> Iter
             draft, maximum = drafts.get(node.args[0].name), node.args[1]
             if draft is not None and draft.kind in SATURATING and isinstance(maximum, Const):
                 yield draft.name, maximum.value
+
+
+def following_atoms(atoms: Iterable[Atom], registers: Iterable[Register]) -> frozenset[str]:
+    """Return the names of the atoms that follow from the other atoms at this sample and those before.
+
+    ``times(seen) > 3`` follows from ``seen``.
+    """
+    known = from_atoms(registers)
+    return frozenset(atom.name for atom in atoms if (read := _names_read(atom.expression)) and read <= known)
+
+
+def from_atoms(registers: Iterable[Register]) -> frozenset[str]:
+    """Return the names of the registers whose values follow from the values of the atoms so far."""
+    names: set[str] = set()
+    for register in registers:
+        if _names_read(register.update) <= names:
+            names.add(register.name)
+    return frozenset(names)
+
+
+def _names_read(expression: Expression) -> set[str]:
+    """Return the names of the signals and registers that an expression reads."""
+    return {node.name for node in nodes(expression) if isinstance(node, SignalValue)}

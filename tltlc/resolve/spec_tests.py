@@ -10,9 +10,10 @@ from tltlc.diagnostics.diagnostic import replacement_fix
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
-from tltlc.resolve.derived_atoms import derived_atoms, sources
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.registers import following_atoms
+from tltlc.resolve.sources import sources
 from tltlc.resolve.spec import Expect, RepeatedSample, Spec, Test
 from tltlc.resolve.values import Env
 
@@ -57,7 +58,7 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
 def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     source = env.scope.source
     names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
-    derived = derived_atoms(spec.atoms, spec.registers)
+    following = following_atoms(spec.atoms, spec.registers)
     values: dict[str, bool] = {}
     for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
@@ -66,8 +67,8 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
             verb = "has" if not names else "has the atoms" if len(names) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
-        if name in derived:
-            raise _derived_atom_error(name, spec, source, literal_expr.span)
+        if name in following:
+            raise _following_atom_error(name, spec, source, literal_expr.span)
         if values.setdefault(name, holds) != holds:
             raise problem(
                 "TLT0217",
@@ -79,7 +80,7 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     return RepeatedSample(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
-def _derived_atom_error(name: str, spec: Spec, source: SourceFile, span: Span) -> ResolutionError:
+def _following_atom_error(name: str, spec: Spec, source: SourceFile, span: Span) -> ResolutionError:
     """Return the error for a ``step`` that names an atom which the monitor computes from others."""
     given = [f"`{atom}`" for atom in sources(name, spec.atoms, spec.registers)]
     title = f"`{name}` follows from the steps so far: a test cannot choose it"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from math import isinf
 from typing import Union
 
@@ -33,13 +34,12 @@ class Entity:
 class Recall:
     """That a quantity is the count or time in a register which saturates, with no maximum yet or a written one.
 
-    ``rate`` is how many units of the register one unit of the quantity has: the steps of a second, or
-    1. ``is_count`` marks a count. ``limit`` is the place where the maximum is written; None if the
-    quantity has no maximum yet.
+    ``unit`` is the size of one unit of the register: the seconds of a step, or 1. ``is_count`` marks a
+    count. ``limit`` is the place where the maximum is written; None if the quantity has no maximum yet.
     """
 
     register: str
-    rate: float
+    unit: Fraction
     is_count: bool
     limit: Label | None = None
 

@@ -14,8 +14,8 @@ from tltlc.automaton.compare import Letter, Trace
 from tltlc.automaton.memory import given_atoms
 from tltlc.core.record import replace
 from tltlc.expression.tree import AtomValue, Before, Op, SignalValue, nodes
-from tltlc.resolve.derived_atoms import names_read
 from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.sources import names_read
 from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 from tltlc.tools.diff.feasible_letters import joint_automaton
 from tltlc.tools.witness.candidate_samples import (

@@ -16,8 +16,8 @@ from tltlc.core.record import record
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, or_, rebuild
 from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
-from tltlc.resolve.derived_atoms import derived_atoms, sources
-from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.registers import SATURATING, following_atoms
+from tltlc.resolve.sources import sources
 from tltlc.resolve.spec import Register
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
@@ -302,7 +302,7 @@ def _shown(fspa: Fspa, move: SampledEdge) -> Implicant:
     """
     if not fspa.registers:
         return move.prime
-    derived = derived_atoms(fspa.atoms, fspa.registers)
+    derived = following_atoms(fspa.atoms, fspa.registers)
     names = {fspa.atoms[atom].name for atom, _ in move.prime}
     origins = {origin for name in names & derived for origin in sources(name, fspa.atoms, fspa.registers)}
     needed = {index for index, each in enumerate(fspa.atoms) if each.name in names | origins}

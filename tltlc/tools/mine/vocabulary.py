@@ -23,10 +23,10 @@ from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.pipeline import CompileOptions, Session
-from tltlc.resolve.derived_atoms import names_read
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding
+from tltlc.resolve.sources import names_read
 from tltlc.resolve.spec import Vocabulary
 from tltlc.tools.mine.column_diagnostics import first_names
 

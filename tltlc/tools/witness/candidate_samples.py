@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.automaton.memory import given_atoms
 from tltlc.core.record import record, replace
-from tltlc.resolve.derived_atoms import names_read
 from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.sources import names_read
 from tltlc.resolve.spec import Register, Signal
 from tltlc.tools.witness.samples import SampleFinder, UnsatisfiedLiterals
 

@@ -1,0 +1,198 @@
+"""Monitors of specs about the trace so far agree with the definition, which looks at the whole trace each time."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Sequence
+from math import inf, nan
+from random import Random
+
+import pytest
+from hypothesis import given
+
+from tests.fuzzing import SEEDS, times
+from tests.memory.definition import Definition, formula
+from tests.memory.runs import check_seed, random_case, random_params, random_trace
+from tltlc.automaton.memory import given_atoms
+from tltlc.core.source import SourceFile
+from tltlc.grammar.parser import parse
+from tltlc.monitor.monitor import Monitor
+from tltlc.monitor.samples import MonitorError
+from tltlc.pipeline import compile_text, decode_artefact, encode_artefact
+
+BOOLS = "clock 2 Hz signal p: bool signal q: bool "
+
+
+def samples_of(p: str, q: str = "") -> list[dict[str, float]]:
+    """Return a trace: ``1`` where p or q is true, ``.`` where it is false."""
+    return [{"p": float(a == "1"), "q": float(b == "1")} for a, b in zip(p, q or p, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("text", "p", "q", "holds"),
+    [
+        ("once p", "..1..", ".....", "..111"),
+        ("historically p", "11.11", ".....", "11..."),
+        ("previously p", "1.1..", ".....", ".1.1."),
+        ("previously not p", "1.1..", ".....", "..1.1"),
+        ("begins p", "11.1.", ".....", "1..1."),
+        ("ends p", "11.1.", ".....", "..1.1"),
+        ("p since q", "11.11", "..1..", "..111"),
+        ("p since q", "1111.", ".....", "....."),
+        ("p since q", "1.111", "1....", "1...."),
+        ("once within 0 steps p", ".1...", ".....", ".1..."),
+        ("once within 2 steps p", ".1....", "......", ".111.."),
+        ("once within 1.1 s p", ".1....", "......", ".1111."),
+        ("historically for 1 steps p", ".1.11", ".....", ".1.11"),
+        ("historically for 2 steps p", "1.111", ".....", "1..11"),
+        ("historically for 1.1 s p", "111.1111", "........", "111...11"),
+        ("times(p) >= 2", "1.11.", ".....", "..111"),
+        ("times(p, 2) >= 2", "1.1.1", ".....", "..111"),
+        ("time_since(p) <= 0.5 s", "..1...", "......", "..11.."),
+        ("time_since(p) >= 1 s", "..1...", "......", "11..11"),
+        ("time_holding(p) >= 1 s", "111.1111", "........", "..1...11"),
+        ("time_holding(p) < 0.5 s", "11..1", ".....", "1.111"),
+        ("previous(p)", "1.1..", ".....", "11.1."),
+        ("initial(p)", "1.1..", ".....", "11111"),
+        ("highest(p)", ".1.", "...", ".11"),
+        ("lowest(p)", "1.1", "...", "1.."),
+    ],
+)
+def test_the_definition_and_the_monitor_hold_where_the_language_says(text: str, p: str, q: str, holds: str) -> None:
+    samples, source = samples_of(p, q), f"{BOOLS} spec s = G ({text})"
+    definition = Definition(parse(SourceFile("<test>", source))[0], samples, {})
+    meaning = formula(text)
+    truth = [definition.holds(meaning, i) for i in range(len(samples))]
+    assert "".join(".1"[value] for value in truth) == holds
+    # At each sample, the automaton of `F (here and p)` accepts exactly if p holds here.
+    (fspa,) = compile_text(f"{BOOLS} signal here: bool spec s = F (here and ({text}))")
+    accepted = []
+    for i in range(len(samples)):
+        monitor = Monitor(fspa)
+        steps = [monitor.step({**sample, "here": float(j == i)}) for j, sample in enumerate(samples)]
+        accepted.append(steps[-1].accepting)
+    assert accepted == truth
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "expected"),
+    [
+        ("times(p) > 1", "1.1.1.1", [0, 0, 0.5, 0.5, 1, 1, 1]),
+        ("time_since(p) > 1 s", "1.....", [-1, -0.5, 0, 0.5, 1, 1]),
+        ("time_since(p) > 1 s", "..", [1, 1]),
+        ("time_holding(p) > 1 s", "111111.", [-1, -0.5, 0, 0.5, 1, 1, -1]),
+        ("once within 1 steps p", "1...", [1, 1 / 3, -1 / 3, -1]),
+        ("historically for 1 steps p", "11.1", [1, 1, -1, 1]),
+        ("once not p", "1.", [-1, 1]),
+    ],
+)
+def test_counts_times_and_windows_are_scaled(text: str, values: str, expected: Sequence[float]) -> None:
+    (fspa,) = compile_text(f"{BOOLS} spec s = G ({text})")
+    monitor = Monitor(fspa)
+    found = []
+    for sample in samples_of(values):
+        monitor.step(sample)
+        found.append(monitor.values[0])
+    assert found == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("clock", ["0.15 s", "0.03 s", "0.07 s", "150 ms", "20 Hz", "0.9 s"])
+def test_a_time_of_whole_steps_is_reached_after_that_many_steps(clock: str) -> None:
+    number, unit = clock.split()
+    for steps in range(1, 60):
+        seconds = {"s": steps * float(number), "ms": steps * float(number) / 1000, "Hz": steps / float(number)}[unit]
+        (fspa,) = compile_text(f"clock {clock} signal p: bool spec s = F time_holding(p) >= {seconds:.9g} s")
+        monitor = Monitor(fspa)
+        verdicts = [monitor.step({"p": True}).verdict for _ in range(steps + 2)]
+        assert verdicts.index("satisfied") == steps
+
+
+@times(300)
+@given(SEEDS)
+def test_monitors_agree_with_the_definition(seed: int) -> None:
+    check_seed(seed)
+
+
+@pytest.mark.slow
+def test_monitors_agree_with_the_definition_on_a_hundred_thousand_runs() -> None:
+    for seed in range(12_500):
+        check_seed(seed, traces=8)
+
+
+@times(150)
+@given(SEEDS)
+def test_an_artefact_and_a_pickle_give_the_same_automaton_and_runs(seed: int) -> None:
+    case = random_case(seed)
+    if case is None:
+        return
+    random = Random(seed)
+    samples, params = random_trace(random), random_params(random, case.fspa)
+    document = encode_artefact(case.fspa)
+    for copy in (decode_artefact(document, "copy"), pickle.loads(pickle.dumps(case.fspa))):
+        assert copy == case.fspa
+        assert [atom.opposite for atom in copy.atoms] == [atom.opposite for atom in case.fspa.atoms]
+        first, second = Monitor(case.fspa, params), Monitor(copy, params)
+        for sample in samples:
+            assert first.step(sample) == second.step(sample)
+            assert (first.values, first.registers) == (second.values, second.registers)
+
+
+@times(150)
+@given(SEEDS)
+def test_the_values_of_the_given_atoms_give_the_same_steps_as_the_signals(seed: int) -> None:
+    case = random_case(seed)
+    if case is None:
+        return
+    random = Random(seed)
+    params = random_params(random, case.fspa)
+    by_signals, by_atoms = Monitor(case.fspa, params), Monitor(case.fspa, params)
+    given_ = given_atoms(case.fspa)
+    for sample in random_trace(random):
+        step = by_signals.step(sample)
+        assert by_atoms.step_atoms([by_signals.values[index] for index in given_]) == step
+        assert by_atoms.values == by_signals.values
+
+
+@times(100)
+@given(SEEDS)
+def test_a_failed_sample_changes_nothing_and_a_reset_forgets_all(seed: int) -> None:
+    case = random_case(seed)
+    if case is None or not case.fspa.signals:
+        return
+    random = Random(seed)
+    samples = random_trace(random)
+    steady, troubled = Monitor(case.fspa), Monitor(case.fspa)
+    initial = troubled.registers
+    for _ in range(2):
+        for sample in samples:
+            name = random.choice(case.fspa.signals).name
+            bad = {**sample, name: random.choice((nan, inf, -inf))}
+            if random.random() < 0.5:
+                del bad[name]
+            before = troubled.registers
+            with pytest.raises(MonitorError):
+                troubled.step(bad)
+            assert troubled.registers == before
+            assert troubled.step(sample) == steady.step(sample)
+            assert troubled.registers == steady.registers
+        troubled.reset()
+        steady.reset()
+        assert troubled.registers == initial
+
+
+def test_a_sample_with_two_exclusive_atoms_changes_no_register() -> None:
+    (fspa,) = compile_text(f"{BOOLS} exclusive p, q spec s = G (times(p) <= 2 and once q)")
+    monitor = Monitor(fspa)
+    monitor.step({"p": True, "q": False})
+    before = monitor.registers
+    with pytest.raises(MonitorError):
+        monitor.step({"p": True, "q": True})
+    assert monitor.registers == before
+
+
+def test_previous_values_and_previous_truth_of_one_name_are_kept_apart() -> None:
+    (fspa,) = compile_text(f"{BOOLS} spec s = G (previous(p) implies previously p)")
+    monitor = Monitor(fspa)
+    assert [monitor.step(sample).verdict for sample in samples_of("..1.")] == ["holding"] * 4
+    monitor.reset()
+    assert [monitor.step(sample).verdict for sample in samples_of("1.")] == ["violated"] * 2
