@@ -5,18 +5,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 from random import Random
 
-NAMES = ["a", "b", "near", "x", "in", "at", "as", "step", "expect", "within", "for", "after", "s", "m", "position.x"]
+NAMES = [
+    "a",
+    "b",
+    "near",
+    "x",
+    "in",
+    "at",
+    "as",
+    "step",
+    "expect",
+    "within",
+    "for",
+    "after",
+    "since",
+    "s",
+    "m",
+    "position.x",
+]
 """Names. Most of them are keywords or units in other places."""
 
 PREFIXES = {
     **dict.fromkeys(("not", "!", "¬"), ()),
     **dict.fromkeys(("eventually", "F", "<>", "◇"), ("within 3 steps", "within 1 step", "[0,20]", "[ 2 , 3 s ]")),
     **dict.fromkeys(("always", "G", "[]", "□"), ("for 3 steps", "for 1 step", "for 2 s", "[0,0]", "[0 ,19 steps]")),
+    "once": ("within 3 steps", "within 2 s"),
+    "historically": ("for 3 steps", "for 2 s"),
+    **dict.fromkeys(("previously", "begins", "ends"), ()),
     **dict.fromkeys(("next", "X", "○", "weak_next", "N"), ("after 3 steps",)),
 }
 INFIXES = (
     *("and", "&", "&&", "∧", "or", "|", "||", "∨", "implies", "->", "⇒", "→", "iff", "<->", "⇔", "↔"),
-    *("until", "U", "𝒰", "weak_until", "W", "release", "R", "strong_release", "M"),
+    *("until", "U", "𝒰", "weak_until", "W", "release", "R", "strong_release", "M", "since"),
 )
 ARITHMETIC = ("+", "-", "*", "/", "^")
 NUMBERS = ["1", "0.5", "2e-3", "20 m", "5%", "20 m / s", "3 km/h", "9.81 m/s^2"]
@@ -142,7 +162,7 @@ def number(random: Random, depth: int) -> list[str]:
             return ["-", *number(random, 0)]
         case 3:
             arguments = [number(random, depth - 1) for _ in range(random.randint(1, 4))]
-            return [random.choice(["min", "clamp"]), "(", *commas(arguments), ")"]
+            return [random.choice(["min", "clamp", "previous"]), "(", *commas(arguments), ")"]
         case 4:
             return ["(", *number(random, depth - 1), ")"]
         case _:

@@ -33,6 +33,9 @@ BOUNDS = [
     ("weak_next after 1 s (p)", "N after 1 s (p)", "N after 1 s (p)", "N after 1 s (p)"),
     ("F[2,3] p", "F[2,3] p", "<>[2,3] p", "◇[2,3] p"),
     ("G[1 s, 2 s] (p)", "G[1 s, 2 s](p)", "[][1 s, 2 s](p)", "□[1 s, 2 s](p)"),
+    ("once within 3 steps p", "once within 3 steps p", "once within 3 steps p", "once within 3 steps p"),
+    *[(past, past, past, past) for past in ("historically for 2 s (p)", "previously (p)", "begins p", "ends once p")],
+    ("p since not p", "p since !p", "p since !p", "p since ¬p"),
     ("G[0,2 s] p", "G[0,2 s] p", "[][0,2 s] p", "□[0,2 s] p"),
 ]
 """Bounds in words, letters, symbols and Unicode. The four texts of a row are the same formula."""
@@ -76,7 +79,9 @@ def test_bounds_are_written_in_each_style(row: tuple[str, ...]) -> None:
         assert formula(spelling) == formula(row[0])
 
 
-@pytest.mark.parametrize("name", ["x", "in", "at", "as", "for", "within", "after", "step", "expect", "s", "m", "steps"])
+@pytest.mark.parametrize(
+    "name", ["x", "in", "at", "as", "for", "within", "after", "since", "step", "expect", "s", "m", "steps"]
+)
 @pytest.mark.parametrize("style", STYLES)
 def test_a_contextual_keyword_can_be_a_name_in_each_style(name: str, style: str) -> None:
     text = (

@@ -11,7 +11,7 @@ from tltlc.grammar import tree
 
 _STEPS: Final = (None, "step", "steps")
 _WHOLE: Final = re.compile("[0-9]{1,9}")
-_WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after"}
+_WORD: Final = {"F": "within", "G": "for", "X": "after", "N": "after", "once": "within", "historically": "for"}
 
 
 @record
@@ -34,7 +34,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
 
     ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
     mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
-    brackets. Neither can ``after``. ``number`` returns a number as the source spells it.
+    brackets. Neither can ``after``, or the bound of an operator about the past. ``number`` returns a number as the source spells it.
     """
     bound = node.bound
     if bound is None:

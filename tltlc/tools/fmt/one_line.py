@@ -12,7 +12,7 @@ from tltlc.tools.fmt.bounds import Number, bound_forms
 from tltlc.tools.fmt.page import WIDTH
 from tltlc.tools.fmt.style import Style
 
-_LEVEL: Final = {"-": "+", "/": "*", "W": "U", "R": "U", "M": "U"}
+_LEVEL: Final = {"-": "+", "/": "*", "W": "U", "R": "U", "M": "U", "since": "U"}
 """Maps each operator to one that represents all operators of the same precedence."""
 
 _PER: Final = ("s", "h", "ms", "min")

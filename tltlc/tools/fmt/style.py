@@ -10,7 +10,10 @@ from tltlc.grammar import tree
 from tltlc.logic.formula import FormulaOp
 from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Spelling
 
-_ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
+_PAST: Final = ("once", "historically", "previously", "begins", "ends")
+"""The operators about the past, which have no letters or symbols."""
+
+_INFIX: Final = {**{op: f" {op} " for op in ("then", "since", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
 
 
 @record
@@ -45,7 +48,7 @@ class Style:
             spelling = f"{(self.letters or self.prefix)[node.op].rstrip()}{bound['brackets']} "
         return (
             spelling.rstrip()
-            if isinstance(node.operand, tree.GroupExpr) and not self.space_before_bracket
+            if isinstance(node.operand, tree.GroupExpr) and not self.space_before_bracket and node.op not in _PAST
             else spelling
         )
 
@@ -60,7 +63,11 @@ def _style(
     """
     prefix, infix, constants = (_by_text(table) for table in (notation.prefix, notation.infix, notation.constants))
     return Style(
-        {"-": "-", **prefix}, {**_ARITHMETIC, **infix, **extra_infix}, constants, notation.space_before_bracket, letters
+        {"-": "-", **{op: f"{op} " for op in _PAST}, **prefix},
+        {**_INFIX, **infix, **extra_infix},
+        constants,
+        notation.space_before_bracket,
+        letters,
     )
 
 
