@@ -18,7 +18,7 @@
 
 (defconst tltl-mode--operators
   '("not" "and" "or" "implies" "iff" "then" "eventually" "always" "next" "weak_next" "until" "weak_until" "release"
-    "strong_release" "F" "G" "X" "N" "U" "W" "R" "M"))
+    "strong_release" "once" "historically" "previously" "begins" "ends" "F" "G" "X" "N" "U" "W" "R" "M"))
 
 (defconst tltl-mode--colours
   `((,(regexp-opt (append tltl-mode--declarations tltl-mode--clauses) 'symbols) . font-lock-keyword-face)
@@ -26,6 +26,7 @@
     (,(regexp-opt '("true" "false" "inf") 'symbols) . font-lock-constant-face)
     ;; Words that may also be names: they have a colour only at the start of a line.
     ("^\\s-*\\(step\\|expect\\)\\_>" 1 font-lock-keyword-face)
+    ("[[:alnum:]_)%]\\s-+\\(since\\)\\s-+[[:alnum:]_(!]" 1 font-lock-builtin-face)
     ("\\_<\\(?:spec\\|predicate\\|let\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-function-name-face)
     ("\\_<\\(?:signal\\|param\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-variable-name-face)
     ("\\(?:\\_<expect\\|\\_<judge\\s-+at\\|\\_<semantics\\)\\s-+\\([a-z]+\\)" 1 font-lock-constant-face)))

@@ -15,7 +15,7 @@ from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, VERDICTS
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tables import load
-from tltlc.resolve.scope import FUNCTIONS
+from tltlc.resolve.scope import FUNCTIONS, MEMORY_FUNCTIONS
 from tltlc.resolve.units import TYPES
 
 ROOT = Path(__file__).parents[2]
@@ -95,7 +95,7 @@ def test_every_unit_has_its_scope(unit: str) -> None:
     ("text", "words"),
     [
         *((f"signal n: {type_}", (type_,)) for type_ in (*TYPES, "entity")),
-        *((f"{function}(", (function,)) for function in FUNCTIONS),
+        *((f"{function}(", (function,)) for function in (*FUNCTIONS, *MEMORY_FUNCTIONS)),
         *((f"expect {verdict}", ("expect", verdict)) for verdict in (*VERDICTS, "progress", "state")),
         ("judge at goal", ("at", "goal")),
         ("judge at limit", ("at", "limit")),
@@ -104,6 +104,9 @@ def test_every_unit_has_its_scope(unit: str) -> None:
         ("F within 3 steps p", ("within",)),
         ("G for 3 steps p", ("for",)),
         ("X after 3 steps p", ("after",)),
+        ("a since b", ("since",)),
+        ("(a) since (b)", ("since",)),
+        ("once within 5 s p", ("once", "within")),
         ("in [0, 1]", ("in",)),
         ("all x in (a)", ("in",)),
         ("step 3x a", ("step", "x")),
@@ -116,7 +119,7 @@ def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> 
 
 
 def test_all_contextual_keywords_are_tested() -> None:
-    assert {"after", "as", "at", "expect", "for", "in", "step", "x", "within"} == set(load().soft)
+    assert {"after", "as", "at", "expect", "for", "in", "since", "step", "x", "within"} == set(load().soft)
 
 
 @pytest.mark.slow

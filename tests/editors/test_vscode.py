@@ -203,6 +203,7 @@ signal third: bool
 signal atom: bool
 signal value(x: entity): number
 spec another = F goal
+clock 10 Hz
 """
 
 

@@ -8,6 +8,7 @@ syntax keyword tltlClause reach keep avoid require level limit judge semantics t
 syntax keyword tltlClause all any when otherwise
 syntax keyword tltlOperator not and or implies iff then eventually always next weak_next until weak_until
 syntax keyword tltlOperator release strong_release F G X N U W R M
+syntax keyword tltlOperator once historically previously begins ends
 syntax keyword tltlConstant true false inf
 syntax match tltlConstant "\v[⊤⊥]"
 syntax match tltlOperator "\v[-+*/^=<>!&|¬∧∨⇒→⇔↔◇□○𝒰≤≥]|\[\]"
@@ -20,11 +21,12 @@ syntax match tltlConstant "\v%(<judge\s+at\s+)@20<=%(goal|limit)>"
 syntax match tltlConstant "\v%(<semantics\s+)@20<=%(finite|infinite)>"
 syntax match tltlWord "\v%(<judge\s+)@20<=at>"
 syntax match tltlWord "\v<%(within|for|after)>\ze\s*\d"
+syntax match tltlOperator "\v<since>\ze\s+%(%(and|or|implies|iff|then|until|weak_until|release|strong_release|since|in|[UWRM])>)@!%(\a|[_(!¬◇□○⊤⊥[:digit:]])"
 syntax match tltlWord "\v<in>\ze\s*[\[(]"
 syntax match tltlWord "\v<as>\ze\s+%(\a|_)"
 syntax match tltlWord "\v%(\"\s*)@8<=<for>\ze\s+%(\a|_)"
 syntax match tltlType "\v:\s*\zs<%(number|ratio|length|time|speed|angle|bool|entity|formula)>%(\s*[.(<>+*/^-])@!"
-syntax match tltlFunction "\v<%(min|max|abs|clamp|sqrt|exp|tanh)>\ze\s*\("
+syntax match tltlFunction "\v<%(min|max|abs|clamp|sqrt|exp|tanh|times|time_since|time_holding|previous|initial|highest|lowest)>\ze\s*\("
 
 syntax match tltlNumber "\v<\d+%(\.\d+)?%([eE][+-]?\d+)?%(x>)?" nextgroup=tltlUnit skipwhite
 syntax match tltlUnit contained "\v\%|%(steps|step|deg|min|rad|Hz|cm|km|ms|h|m|s)>%(\.\a)@!"

@@ -5,7 +5,7 @@ import { byId, element, prose } from "./dom.js";
 const TOKEN = /\/\/\/[^\n]*|\/\/[^\n]*|"[^"\n]*"?|\d+(?:\.\d+)?|[A-Za-z_][A-Za-z0-9_]*|\s+|[^\s]/g;
 /** Characters; colouring a longer text would take too long at each keystroke. */
 const MOST_COLOURED = 50_000;
-const BEFORE_BOUND = new Set(["eventually", "always", "next"]);
+const BEFORE_BOUND = new Set(["eventually", "always", "next", "once", "historically"]);
 
 let words = new Set();
 let units = new Set();
