@@ -100,3 +100,42 @@ def test_a_missing_range_is_not_mentioned() -> None:
     assert hover_text("most: l", text).endswith("A length constant, 2 m.")
     assert hover_text("far", text).endswith("supplied by the game as metres.")
     assert hover_text("most_of", text).endswith("supplied by the game as metres; its range is [0 m, inf].")
+
+
+PAST = """\
+clock 10 Hz
+signal seen: bool
+signal hp in [0, 9]
+predicate falling in [-1, 1] = clamp(previous(hp) - hp, -1, 1)
+spec s {
+    keep times(seen) <= 3 and hp >= 1
+    keep once within 2 s seen implies time_since(seen) < 4 s
+    keep (seen since begins seen)
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("at", "parts"),
+    [
+        (
+            "times(seen)",
+            ["`times(p)` or `times(p, MAXIMUM)`", "How often p has begun to hold", "In `s`, it stops at 7."],
+        ),
+        ("time_since(seen)", ["in s", "In `s`, it stops at 80 steps."]),
+        ("previous(hp)", ["at the sample before"]),
+        ("once within", ["`once p` or `once within 5 s p`", "held before"]),
+        ("2 s seen", ["20 steps"]),
+        ("since begins", ["`p since q`"]),
+        ("begins", ["`begins p`"]),
+        ("seen since", ["signal seen: bool"]),
+    ],
+)
+def test_words_about_the_past_are_explained(at: str, parts: list[str]) -> None:
+    text = hover_text(at, PAST)
+    assert all(part in text for part in parts), text
+
+
+def test_a_declaration_with_the_name_of_a_function_is_described_instead() -> None:
+    text = "signal times(x: entity): bool\nentity a\nspec s { keep times(a) }\n"
+    assert "signal times(x: entity): bool" in hover_text("times(a)", text)

@@ -10,6 +10,7 @@ from typing import Final
 from lsprotocol import types
 
 from tltlc.core.source import Span
+from tltlc.grammar import past_words
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, JUDGE, SEMANTICS, TEST_ITEMS, VERDICTS
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
@@ -22,6 +23,7 @@ from tltlc.interfaces.lsp.positions import range_of
 from tltlc.io.files import is_file, unsaved_texts
 from tltlc.resolve import units
 from tltlc.resolve.imports import standard_library
+from tltlc.resolve.registers import following_atoms
 from tltlc.resolve.scope import FUNCTIONS, Binding
 
 _ItemKind = types.CompletionItemKind
@@ -93,7 +95,10 @@ def _keywords(allowed: Iterable[str], place: Cursor) -> Iterator[types.Completio
             word = spellings[terminal]
             # After a colon, `entity` is a type, and does not begin a declaration.
             form = _FORMS.get(word) if place.last != "COLON" else None
-            yield types.CompletionItem(word, kind=_ItemKind.Keyword, detail=form.replace("`", "") if form else None)
+            past = past_words.OPERATORS.get(word)
+            detail = form.replace("`", "") if form else " or ".join(past.forms) if past else None
+            documentation = past.meaning if past else None
+            yield types.CompletionItem(word, kind=_ItemKind.Keyword, detail=detail, documentation=documentation)
 
 
 def _units(place: Cursor) -> Iterator[types.CompletionItem]:
@@ -190,6 +195,10 @@ def _expression_names(document: Document, place: Cursor) -> Iterator[types.Compl
         yield from _atoms(document, place.around)
     yield from _visible_names(document, ("predicate", "let", "signal", "param"))
     yield from (types.CompletionItem(name, kind=_ItemKind.Operator, detail="function") for name in FUNCTIONS)
+    for name, word in past_words.FUNCTIONS.items():
+        if name not in document.scope.names:
+            detail = " or ".join(word.forms)
+            yield types.CompletionItem(name, kind=_ItemKind.Operator, detail=detail, documentation=word.meaning)
     if call:
         yield from _visible_names(document, ("entity",))
 
@@ -219,14 +228,15 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield completions for the atoms of the spec that the ``test`` block around the cursor is for.
+    """Yield completions for the atoms that a step of the ``test`` block around the cursor can name.
 
     ``block`` contains the tokens from the start of the block up to the cursor.
     """
     name = next((block[at + 1].text for at, token in enumerate(block[:-1]) if token.text == "for"), "")
     for spec in document.resolution.program.specs:
         if spec.name == name:
-            for atom in spec.atoms:
+            following = following_atoms(spec.atoms, spec.registers)
+            for atom in (atom for atom in spec.atoms if atom.name not in following):
                 yield types.CompletionItem(
                     atom.name, kind=_ItemKind.Event, detail=f"atom of {name}", documentation=atom.doc or None
                 )

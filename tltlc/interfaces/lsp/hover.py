@@ -15,6 +15,7 @@ from tltlc.interfaces.lsp.declaration_text import spec_markdown, symbol_markdown
 from tltlc.interfaces.lsp.document import Document
 from tltlc.interfaces.lsp.durations import durations, steps_text
 from tltlc.interfaces.lsp.lenses import figures_text
+from tltlc.interfaces.lsp.past_hover import past_word
 from tltlc.interfaces.lsp.positions import range_of
 from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 from tltlc.logic import formula as build
@@ -36,6 +37,7 @@ def hover(document: Document, offset: int, analysis: DocumentAnalysis | None, en
     """
     description = (
         _name(document, offset, analysis)
+        or past_word(document, offset)
         or _operator(document, offset)
         or _duration(document, offset)
         or _keyword(document, offset)

@@ -19,6 +19,7 @@ from tltlc.io.project import project_for
 from tltlc.io.spec_file import STDIN
 from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import CompileOptions
+from tltlc.resolve.registers import following_atoms
 from tltlc.tools.explain.explanation import Explanation, explain
 from tltlc.tools.explain.sections import failure_texts
 from tltlc.tools.explain.values import json_values
@@ -98,13 +99,14 @@ def _spec(
     explanation = json_values(source_explanation)
     svg, note = picture(fspa, notation)
     leads = {row["id"]: row["leads"] for row in explanation["states"]}
+    following = following_atoms(fspa.atoms, fspa.registers)
     return {
         "name": fspa.name,
         "doc": fspa.doc,
         "formula": {name: formula_text(fspa, name) for name in NOTATIONS},
         "explanation": explanation,
         "failures": list(failure_texts(source_explanation)),
-        "atoms": [{"name": atom.name, "doc": atom.doc} for atom in fspa.atoms],
+        "atoms": [{"name": atom.name, "doc": atom.doc, "follows": atom.name in following} for atom in fspa.atoms],
         "exclusive": [[fspa.atoms[index].name for index in group] for group in fspa.exclusive],
         "signals": signal_values(fspa),
         "states": [

@@ -61,9 +61,11 @@ function rowOf(mode, columns, letter, index) {
   );
 }
 
-function toggle({ name }, letter, index) {
+function toggle({ name, follows }, letter, index) {
   return element("input", {
     type: "checkbox",
+    // The atoms of the steps so far decide whether this one holds.
+    disabled: follows,
     "aria-label": `${name} at step ${index + 1}`,
     change: (event) => {
       letter.atoms = letter.atoms.filter((other) => other !== name).concat(event.target.checked ? [name] : []);
@@ -89,8 +91,9 @@ function setter({ name, type, slider, low, high }, letter, index) {
 
 function fill(row, letter, step, mode, columns) {
   row.querySelectorAll("td.input").forEach((cell, index) => {
-    const { name } = columns[index];
-    const value = mode === "atoms" ? letter.atoms.includes(name) : (letter.signals?.[name] ?? 0);
+    const { name, follows } = columns[index];
+    const holds = follows ? step?.values?.[index] > 0 : letter.atoms.includes(name);
+    const value = mode === "atoms" ? holds : (letter.signals?.[name] ?? 0);
     for (const input of cell.querySelectorAll("input")) {
       if (input.type === "checkbox") input.checked = Boolean(value);
       else if (input !== document.activeElement) input.value = input.type === "number" ? shown(value) : value;

@@ -1,0 +1,47 @@
+"""The operators and functions about the trace so far, with their syntax and meaning."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+
+class PastWord(NamedTuple):
+    """The forms in which a word is written, and what it means in a sentence."""
+
+    forms: tuple[str, ...]
+    meaning: str
+
+
+OPERATORS: Final = {
+    "once": PastWord(("once p", "once within 5 s p"), "p holds now or has held before (within this time)."),
+    "historically": PastWord(
+        ("historically p", "historically for 3 s p"),
+        "p holds now and has held at all samples before (of this time).",
+    ),
+    "previously": PastWord(("previously p",), "p held at the sample before; false at the first sample."),
+    "begins": PastWord(("begins p",), "p holds now, and did not at the sample before."),
+    "ends": PastWord(("ends p",), "p held at the sample before, and does not now."),
+    "since": PastWord(("p since q",), "q holds now, or has held before and p has held ever since."),
+}
+"""The operators by their words."""
+
+FUNCTIONS: Final = {
+    "times": PastWord(
+        ("times(p)", "times(p, MAXIMUM)"), "How often p has begun to hold: a count, which stops at its maximum."
+    ),
+    "time_since": PastWord(
+        ("time_since(p)", "time_since(p, MAXIMUM)"),
+        "The time since p last held, in s: 0 where it holds, the maximum if it never has.",
+    ),
+    "time_holding": PastWord(
+        ("time_holding(p)", "time_holding(p, MAXIMUM)"),
+        "The time since p began to hold, in s, up to a maximum: 0 where it begins, and where it does not hold.",
+    ),
+    "previous": PastWord(
+        ("previous(x)",), "The value of x at the sample before; at the first sample, its value there."
+    ),
+    "initial": PastWord(("initial(x)",), "The value of x at the first sample."),
+    "highest": PastWord(("highest(x)",), "The greatest value of x so far."),
+    "lowest": PastWord(("lowest(x)",), "The least value of x so far."),
+}
+"""The functions by their names, which are not reserved."""
