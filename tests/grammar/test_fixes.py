@@ -171,3 +171,39 @@ def test_the_fix_of_a_clause_gives_the_intended_clause(clause: str, meant: str) 
 )
 def test_the_fix_of_a_declaration_gives_the_intended_declaration(text: str, meant: str) -> None:
     assert fixed_text(f"{text}\nentity last\n") == f"{meant}\nentity last\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "renamed"),
+    [
+        (
+            "signal once: bool\nspec s { keep once and not once }",
+            "signal once_: bool\nspec s { keep once_ and not once_ }",
+        ),
+        (
+            "signal ends in [0, 1] signal ends_: bool spec s = F ends > 0.5",
+            "signal ends_2 in [0, 1] signal ends_: bool",
+        ),
+        (
+            "entity e predicate begins(x: entity) = 1 spec s = F begins(e)",
+            "predicate begins_(x: entity) = 1 spec s = F begins_(e)",
+        ),
+        (
+            'signal once: bool spec s = F once test "t" for s { step once expect satisfied }',
+            "step once_ expect satisfied",
+        ),
+    ],
+)
+def test_a_name_that_became_a_word_is_renamed_in_the_whole_file(text: str, renamed: str) -> None:
+    source = SourceFile("a.tltl", text)
+    error, *_ = parse(source)[1]
+    assert (error.code, len(error.fixes)) == ("TLT0106", 1)
+    fixed = apply_edits(source, error.fixes[0].edits)
+    assert not parse(fixed)[1]
+    assert renamed in fixed.text
+
+
+@pytest.mark.parametrize("use", ["once a", "once (a)", "once within 3 steps a", "once not a"])
+def test_a_word_that_is_an_operator_elsewhere_is_not_renamed(use: str) -> None:
+    error, *_ = parse(SourceFile("a.tltl", f"signal once: bool signal a: bool spec s = {use}"))[1]
+    assert (error.code, error.fixes) == ("TLT0106", ())

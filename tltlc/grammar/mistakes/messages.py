@@ -12,7 +12,7 @@ from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar import lalr
+from tltlc.grammar import lalr, past_words
 from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
@@ -33,6 +33,7 @@ from tltlc.grammar.mistakes.parse_failure import (
     quote_token,
 )
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
+from tltlc.grammar.mistakes.renaming import word_of_the_past
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, span_of, suggest_rewrite, text_of
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
@@ -189,6 +190,8 @@ def _reserved_word(failure: ParseFailure) -> Diagnostic | None:
     help_ = f"choose another name, for example `{token.text.lower()}_`"
     if failure.previous_token and failure.previous_token.type == "IMPORT":
         help_ = f'name the file: `import "{token.text}.tltl"`'
+    elif token.text in past_words.OPERATORS:
+        return word_of_the_past(failure)
     return failure.error("TLT0106", f"`{token.text}` is a reserved word, not a name", help_)
 
 
