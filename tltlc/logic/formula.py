@@ -14,17 +14,36 @@ from weakref import WeakValueDictionary
 from tltlc.core.names import ComparisonName
 
 FormulaOp = Literal[
-    "true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M"
+    "true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M", "F[]", "G[]"
 ]
+"""The operators. Those with a bound, ``F[]`` and ``G[]``, stand only in formulas that are still being resolved."""
 
-UNARY_TEMPORAL: Final = ("X", "N", "F", "G")
+UNARY_TEMPORAL: Final = ("X", "N", "F", "G", "F[]", "G[]")
 BINARY_TEMPORAL: Final = ("U", "W", "R", "M")
+
+
+class BoundName(str):
+    """The name of a bounded operator: its bound, from ``low`` to ``high`` steps."""
+
+    __slots__ = ("high", "low")
+    low: int
+    high: int
+
+    def __new__(cls, low: int, high: int) -> BoundName:
+        """Make the name of the bound [low, high]."""
+        name = super().__new__(cls, f"[{low},{high}]")
+        name.low, name.high = low, high
+        return name
+
+    def __getnewargs__(self) -> tuple[int, int]:  # type: ignore[override]
+        return self.low, self.high
 
 
 class Formula:
     """A formula: its outermost operator ``op``, its operands ``args``, and the ``name`` of an atom.
 
-    Use the functions of this module to make formulas. The name is empty if the formula is no atom.
+    Use the functions of this module to make formulas. The name of a bounded operator is its bound. All
+    other formulas but atoms have an empty name.
     An ``and`` has two or more operands, none of which is an ``and`` again; the same is true of
     ``or``.
     """
@@ -194,6 +213,19 @@ def eventually(operand: Formula) -> Formula:
 def always(operand: Formula) -> Formula:
     """Return ``G operand``: the operand holds now and at every later sample of the trace."""
     return _intern("G", (operand,))
+
+
+def bounded(op: Literal["F[]", "G[]"], low: int, high: int, operand: Formula) -> Formula:
+    """Return ``F[low,high] operand`` or ``G[low,high] operand``, as one node.
+
+    Automata are built from formulas without such nodes: :func:`tltlc.resolve.unfolding.unfold`.
+    """
+    return _intern(op, (operand,), BoundName(low, high))
+
+
+def bound_of(node: Formula) -> BoundName | None:
+    """Return the bound of a bounded operator, None for any other formula."""
+    return node.name if isinstance(node.name, BoundName) else None
 
 
 def until(left: Formula, right: Formula) -> Formula:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain, combinations, product
 
-from tltlc.logic.formula import Formula
+from tltlc.logic.formula import Formula, bound_of
 
 
 def holds(formula: Formula, trace: Sequence[Collection[str]], position: int = 0) -> bool:
@@ -89,6 +89,11 @@ def _holds_at(node: Formula, operands: list[list[bool]], trace: Sequence[Collect
             return all(b[j] or any(a[k] for k in range(i, j)) for j in range(i, n))
         case "M":
             return any(a[j] and all(b[k] for k in range(i, j + 1)) for j in range(i, n))
+        case "F[]" | "G[]":
+            bound = bound_of(node)
+            assert bound is not None, "a bounded operator"
+            window = a[i + bound.low : i + bound.high + 1]
+            return any(window) if node.op == "F[]" else all(window)
 
 
 def _robustness(node: Formula, operands: list[float]) -> float:

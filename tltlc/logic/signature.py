@@ -78,6 +78,8 @@ def _bits(node: Formula, operands: list[int]) -> int:
             return b | a & _weak_next(b | a & _weak_next(a | b))
         case "R":
             return b & (a | _weak_next(b & (a | _weak_next(b))))
+        case _:
+            raise ValueError(f"{node} still has a bound")
 
 
 def _weak_next(bits: int) -> int:

@@ -1,26 +1,24 @@
-"""Expand temporal operators with bounds: ``F[0,2] p`` becomes ``p | X(p | X p)``."""
+"""Resolve the bounds of temporal operators, such as ``within 5 s`` and ``[0,20]``, to numbers of steps."""
 
 from __future__ import annotations
 
-from tltlc.grammar.tree import Unary
-from tltlc.logic.formula import Formula, always, and_, eventually, next_, or_, weak_next
+from tltlc.grammar.tree import TemporalInterval, Unary
+from tltlc.logic.formula import Formula, always, bounded, eventually, next_, weak_next
 from tltlc.resolve.constants import samples
-from tltlc.resolve.context import LARGEST_EXPANSION, expansion_error
 from tltlc.resolve.problem import problem
 from tltlc.resolve.spec import Bound
 from tltlc.resolve.values import Env
 
 
-def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
-    """Return the bounded operator of ``expr``, applied to ``operand``, as a formula without bounds.
+def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
+    """Return the bounded operator of ``expr``, applied to ``operand``.
 
-    ``F`` expands to ``X`` (strong next), so ``F[a,b] p`` is false past the end of the trace. ``G``
-    expands to ``N`` (weak next), so ``G[a,b] p`` requires nothing there. ``within n`` means
-    ``[0,n]``, ``for n`` means ``[0,n-1]``, and ``next after n`` means n times ``next``. If
-    ``env.unbounded`` is set, the bound of ``F`` or ``G`` is left out instead.
+    ``within n`` means ``[0,n]``, ``for n`` means ``[0,n-1]``, and ``next after n`` means n times
+    ``next``, which is ``F[n,n]``. If ``env.unbounded`` is set, the bound of ``F`` or ``G`` is left out
+    instead.
 
     Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
-    without a clock, TLT0315 if the formula becomes too large.
+    without a clock.
     """
     bound = expr.bound
     assert bound is not None
@@ -39,17 +37,16 @@ def expand_bound(expr: Unary, operand: Formula, env: Env) -> Formula:
     if low > high:
         advice = "write the smaller number first, e.g. `[0, 20]`"
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
-    subject = f"the bound of `{source.slice(expr.op_span)}`"
-    if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
-        raise expansion_error(subject, source, bound.span, is_bound=True)
-    env.context.bounds.append(Bound(high, source, bound.span))
-    result = operand
-    join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
-    for _ in range(high - low):
-        result = join(operand, step(result))
-    for _ in range(low):
-        result = step(result)
-    return env.context.check_size(result, subject, source, bound.span, is_bound=True)
+    node = bounded("F[]" if expr.op in ("F", "X") else "G[]", low, high, operand)
+    note_bound(node, high, bound, env, source.slice(expr.op_span))
+    return node
+
+
+def note_bound(node: Formula, steps: int, bound: TemporalInterval, env: Env, operator: str) -> None:
+    """Record where the bound of a bounded operator is written; ``operator`` is its word."""
+    place = Bound(steps, env.scope.source, bound.span, operator)
+    env.context.bounds.append(place)
+    env.context.bound_of.setdefault(node, place)
 
 
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:

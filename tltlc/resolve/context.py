@@ -87,7 +87,8 @@ class Context:
     - ``expanding`` maps the identity of a declaration to its name, for each let or predicate that is
       being expanded, outermost first.
     - ``broken`` has the identities of the declarations whose error has been reported.
-    - ``bounds`` has the bounds expanded so far.
+    - ``bounds`` has the bounds resolved so far, and ``bound_of`` the first bound of each bounded
+      operator.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
 
     The identity of an object is its ``id()``. A key of ``instances`` or ``values`` contains the
@@ -99,6 +100,7 @@ class Context:
         "_names",
         "_sizes",
         "atoms",
+        "bound_of",
         "bounds",
         "broken",
         "clock_failed",
@@ -127,6 +129,7 @@ class Context:
         self.registers: dict[str, RegisterDraft] = {}
         self.recalls = self.levels = 0
         self.bounds: list[Bound] = []
+        self.bound_of: dict[Formula, Bound] = {}
         self.instances: dict[tuple[int, Any], Instance] = {}
         self.expanding: dict[int, str] = {}
         self.broken: set[int] = set()

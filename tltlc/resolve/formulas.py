@@ -30,7 +30,7 @@ from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.resolve import memory
 from tltlc.resolve.arguments import match
-from tltlc.resolve.bounds import expand_bound
+from tltlc.resolve.bounds import bounded_operator
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
 from tltlc.resolve.declared_values import signal
@@ -40,6 +40,7 @@ from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.trampoline import FormulaGenerator, run_to_result
+from tltlc.resolve.unfolding import unfold
 from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown
 
@@ -64,7 +65,12 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 
 def formula(expr: Expr, env: Env) -> Formula:
-    """Return the formula of an expression; raise ResolutionError if it is not a formula."""
+    """Return the formula of an expression; raise ResolutionError if it is not a formula or too large."""
+    return unfold(with_bounds(expr, env), env.context)
+
+
+def with_bounds(expr: Expr, env: Env) -> Formula:
+    """Return the formula of an expression with its bounded operators; raise ResolutionError if it is not a formula."""
     return run_to_result(_formula(expr, env))
 
 
@@ -95,7 +101,7 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
         return (yield _resolve_once(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
-        return expand_bound(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
+        return bounded_operator(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
     if isinstance(expr, Unary) and expr.op in memory.PAST:
         operand = yield _formula(expr.operand, env)
         return memory.past(expr, operand, env)

@@ -26,10 +26,13 @@ from tltlc.expression.tree import (
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
+SAMPLES: Final = "samples"
+"""The name of the register that counts the samples so far."""
+
 FIRST: Final = "first sample"
 """The name of the register that is 1 before the first sample, and 0 from then on."""
 
-SATURATING: Final[tuple[RegisterKind, ...]] = ("times", "time_since", "time_holding")
+SATURATING: Final[tuple[RegisterKind, ...]] = ("times", "time_since", "time_holding", "samples", "age", "waiting")
 """The kinds of registers that stop at a maximum, which depends on the comparisons of a spec."""
 
 
@@ -49,7 +52,7 @@ class RegisterDraft:
         """Return the register, which stops at ``maximum`` if it is of a kind that saturates."""
         if self.kind not in SATURATING:
             return Register(self.name, self.kind, self.unit, self.low, self.high, self.initial, self.update)
-        initial = maximum if self.kind == "time_since" else 0.0
+        initial = maximum if self.kind in ("time_since", "age") else 0.0
         update = Op("min", (self.update, Const(maximum)))
         return Register(self.name, self.kind, self.unit, 0.0, maximum, initial, update)
 
@@ -104,6 +107,49 @@ def time_holding(name: str, operand: Condition, kept: str, step: Expression, uni
     both = Condition("and", (operand, holds(Before(kept))))
     update = When(((both, Op("+", (Before(name), step))),), Const(0.0))
     return RegisterDraft(name, "time_holding", unit, 0.0, None, 0.0, update)
+
+
+def samples() -> RegisterDraft:
+    """Return the register that counts the samples so far."""
+    return RegisterDraft(SAMPLES, "samples", "steps", 0.0, None, 0.0, Op("+", (Before(SAMPLES), Const(1.0))))
+
+
+def age(name: str, kept: str, step: Expression, unit: str) -> RegisterDraft:
+    """Return the register with the time from the latest sample before this one at which p held.
+
+    ``kept`` is the register that keeps the robustness of p.
+    """
+    update = When(((holds(Before(kept)), step),), Op("+", (Before(name), step)))
+    return RegisterDraft(name, "age", unit, 0.0, None, 0.0, update)
+
+
+def due(name: str, request: Expression, goal: Expression, strict: bool) -> RegisterDraft:
+    """Return the register that is above 0 while a request waits for its goal; it is the robustness of that.
+
+    If ``strict``, the goal must come after the request, at a later sample.
+    """
+    waits = When(((holds(Before(name)), Const(1.0)),), Const(-1.0))
+    missed = negated(goal)
+    if strict:
+        update = Op("max", (Op("min", (missed, waits)), request))
+    else:
+        update = Op("min", (missed, Op("max", (request, waits))))
+    return RegisterDraft(name, "due", "", -1.0, 1.0, -1.0, update)
+
+
+def waiting(name: str, request: Condition, goal: Condition, strict: bool, step: Expression) -> RegisterDraft:
+    """Return the register with the age of the oldest request that waits for its goal, plus one step.
+
+    It is 0 if no request waits.
+    """
+    older = (Condition(">", (Before(name), Const(0.0))), Op("+", (Before(name), step)))
+    new = (request, Const(1.0))
+    if strict:
+        older = (Condition("and", (older[0], Condition("not", (goal,)))), older[1])
+        cases: tuple[tuple[Condition, Expression], ...] = (older, new)
+    else:
+        cases = ((goal, Const(0.0)), older, new)
+    return RegisterDraft(name, "waiting", "steps", 0.0, None, 0.0, When(cases, Const(0.0)))
 
 
 def first() -> RegisterDraft:

@@ -86,6 +86,10 @@ RegisterKind = Literal[
     "initial",
     "highest",
     "lowest",
+    "samples",
+    "age",
+    "due",
+    "waiting",
     "last",
     "first",
 ]
@@ -117,11 +121,12 @@ class Register:
 
 @record
 class Bound:
-    """A bound of a temporal operator: its upper end, in samples, and its place in the text."""
+    """A bound of a temporal operator: its upper end, in samples, its place in the text, and the operator's word."""
 
     samples: int
     source: SourceFile
     span: Span
+    operator: str = ""
 
 
 @record

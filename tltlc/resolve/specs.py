@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Literal, cast
+from math import prod
+from typing import Final, Literal, cast
 
 from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
@@ -12,13 +13,16 @@ from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.grammar.tree import Clause, Expr, NameExpr, NumberExpr, SpecDecl
 from tltlc.grammar.walk import conjuncts, operands
-from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
+from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_, then
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
-from tltlc.resolve.formulas import formula
+from tltlc.resolve.deadlines import with_timers
+from tltlc.resolve.formulas import with_bounds
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.registers import memory_of
 from tltlc.resolve.spec import Atom, Conjunct, JudgeMode, Spec, Vocabulary
+from tltlc.resolve.timers import Timers
+from tltlc.resolve.unfolding import bounded_parts, unfold
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
@@ -55,6 +59,11 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
         log.add(failure.diagnostic)
         complete = False
     if not complete or not parts:
+        return None
+    try:
+        parts = _without_bounds(parts, env)
+    except ResolutionError as failure:
+        log.add(failure.diagnostic)
         return None
     conjunction = and_(*(part.formula for part in parts))
     words = vocabulary(conjunction.atoms(), groups, env.context)
@@ -110,23 +119,48 @@ def _atoms(names: Iterable[str], context: Context) -> tuple[Atom, ...]:
 
 
 def _conjuncts(clause: Clause, env: Env) -> list[Conjunct]:
-    """Return the conjuncts of a clause, each with the bounds in the clause and its formula without bounds."""
+    """Return the conjuncts of a clause, with their bounded operators, and each also without bounds."""
     read = _READERS[clause.kind]
-    before = len(env.context.bounds)
     parts = read(clause, env)
     if not env.context.bounds:
         return parts
-    bounds = tuple(env.context.bounds[before:])
     unbounded = [part.formula for part in read(clause, replace(env, unbounded=True))]
     return [
-        replace(part, bounds=bounds, unbounded=unbounded_formula if unbounded_formula is not part.formula else None)
+        replace(part, unbounded=unbounded_formula if unbounded_formula is not part.formula else None)
         for part, unbounded_formula in zip(parts, unbounded, strict=True)
     ]
 
 
+MOST_UNFOLDED: Final = 64
+"""Bounds are unfolded to states if all bounds of a spec together need at most about this many."""
+
+
+def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
+    """Return the conjuncts without bounded operators.
+
+    A spec whose bounds need few states gets these states: then it needs no memory, and its verdicts
+    come as early as possible. In all other specs, timers replace the bounds that have a rule
+    (:mod:`tltlc.resolve.deadlines`), and the others become states.
+    """
+    context = env.context
+    few = prod(_states(node) for part in parts for node in bounded_parts(part.formula)) <= MOST_UNFOLDED
+    result = []
+    for part in parts:
+        formula = part.formula if few else with_timers(part.formula, Timers(context, part.source, part.span))
+        bounds = tuple(dict.fromkeys(context.bound_of[node] for node in bounded_parts(formula)))
+        result.append(replace(part, formula=unfold(formula, context), bounds=bounds))
+    return result
+
+
+def _states(node: Formula) -> int:
+    """Return about how many states a bounded operator becomes if it is unfolded."""
+    bound = bound_of(node)
+    return 1 if bound is None else bound.high + 2
+
+
 def _reach(clause: Clause, env: Env) -> list[Conjunct]:
     # Resolve in the order written, so that the first error is the one reported.
-    *before, result = [formula(operand, env) for operand in operands(_expression(clause), "then")]
+    *before, result = [with_bounds(operand, env) for operand in operands(_expression(clause), "then")]
     if not before:
         result = eventually(result)
     for goal in reversed(before):
@@ -135,15 +169,15 @@ def _reach(clause: Clause, env: Env) -> list[Conjunct]:
 
 
 def _keep(clause: Clause, env: Env) -> list[Conjunct]:
-    return [_conjunct(always(formula(_expression(clause), env)), clause, env)]
+    return [_conjunct(always(with_bounds(_expression(clause), env)), clause, env)]
 
 
 def _avoid(clause: Clause, env: Env) -> list[Conjunct]:
-    return [_conjunct(always(not_(formula(_expression(clause), env))), clause, env)]
+    return [_conjunct(always(not_(with_bounds(_expression(clause), env))), clause, env)]
 
 
 def _require(clause: Clause, env: Env) -> list[Conjunct]:
-    return [Conjunct(formula(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
+    return [Conjunct(with_bounds(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
 
 
 _READERS: dict[str, Callable[[Clause, Env], list[Conjunct]]] = {

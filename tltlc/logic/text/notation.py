@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator, operands_with_bounds
-from tltlc.logic.formula import Formula, FormulaOp
+from tltlc.logic.formula import Formula, FormulaOp, bound_of
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 
 OPERAND: Final = 6
@@ -21,7 +21,7 @@ STRENGTH: Final[Mapping[FormulaOp, int]] = {
     "or": 3,
     "and": 4,
     **dict.fromkeys(("U", "W", "R", "M"), 5),
-    **dict.fromkeys(("not", "X", "N", "F", "G"), OPERAND),
+    **dict.fromkeys(("not", "X", "N", "F", "G", "F[]", "G[]"), OPERAND),
     **dict.fromkeys(("true", "false", "atom"), 7),
 }
 """How tightly operators bind; a greater number binds more tightly."""
@@ -139,6 +139,8 @@ def _pieces(formula: Formula, spelling: Spelling, least: int, counts: CountPrint
             stack += [")", (node, 0), "("]
         elif node.op == "atom":
             yield node.name
+        elif bound_of(node) is not None:
+            _push_operand(stack, f"{node.op[0]}{node.name} ", node.args[0], spelling)
         elif node.op in spelling.constants:
             yield spelling.constants[node.op]
         elif len(node.args) == 1:

@@ -1,0 +1,227 @@
+"""Replace bounded operators by timers: registers that count steps, so that a bound costs no states.
+
+Each rule replaces a formula by an equivalent one over atoms that read a register. The proofs are in
+``docs/semantics.md``, "Deadlines". In the rules, ``p`` and ``q`` are formulas without temporal
+operators, ``f`` is any formula, and ``passed(n, p)`` holds where p last held n or more steps ago, or
+never.
+
+========================  ==============================================================
+where it stands           rule
+========================  ==============================================================
+at the first sample       ``F[m,n] f`` is ``!passed(n) U (passed(m) & f)``
+at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``
+at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
+at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
+at the first sample       ``G(p -> G[0,n] q)`` is ``G(once within n steps p -> q)``
+anywhere                  ``F(p & X F[0,n-1] f)`` is ``F(p & X(!passed(n, p) U f))``
+anywhere                  ``F(p & F[0,n] f)`` is ``F(p & (!passed(n, p) U f))``
+========================  ==============================================================
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tltlc.logic.formula import (
+    TRUE,
+    Formula,
+    always,
+    and_,
+    bound_of,
+    bounded,
+    eventually,
+    implies,
+    next_,
+    not_,
+    or_,
+    rebuild,
+    release,
+    until,
+    weak_next,
+)
+from tltlc.resolve.timers import Timers
+from tltlc.resolve.unfolding import bounded_parts
+
+
+def with_timers(formula: Formula, timers: Timers) -> Formula:
+    """Return an equivalent formula in which timers replace the bounded operators that have a rule.
+
+    ``formula`` is a whole clause, which is judged from the first sample on.
+    """
+    return _Rewriting(timers).at_start(formula)
+
+
+class _Window(NamedTuple):
+    """``F[low,high] body`` (``op`` is ``F``) or ``G[low,high] body``, after leading ``X`` or ``N`` have become steps.
+
+    ``exists`` says whether the next sample must exist: ``X G[0,n] p`` asks for it.
+    """
+
+    op: str
+    low: int
+    high: int
+    body: Formula
+    exists: bool = False
+
+
+class _Rewriting:
+    def __init__(self, timers: Timers) -> None:
+        self._timers = timers
+        self._inside: dict[Formula, Formula] = {}
+
+    # --- at the first sample ----------------------------------------------------------------------
+
+    def at_start(self, node: Formula) -> Formula:
+        if not _is_bounded(node):
+            return node
+        if node.op in ("and", "or", "not", "implies", "iff"):
+            return rebuild(node, tuple(self.at_start(operand) for operand in node.args))
+        if node.op == "G":
+            return self._invariant(node)
+        window = _window(node)
+        if window is not None:
+            return self._from_start(window)
+        stay = _window(node.args[0]) if node.op == "F" else None
+        if stay is not None and stay.op == "G" and stay.low == 0 < stay.high and _is_present(stay.body):
+            held = self._timers.held(stay.high, stay.body)
+            return eventually(or_(held, and_(stay.body, not_(next_(TRUE)))))
+        return self.inside(node)
+
+    def _from_start(self, window: _Window) -> Formula:
+        timers = self._timers
+        if window.high == 0:
+            return self.at_start(window.body)
+        passed = timers.passed(window.high)
+        begun = timers.passed(window.low) if window.low else None
+        if window.op == "F":
+            body = self._anchored(window.body, timers.between(window.low, window.high))
+            return until(not_(passed), body if begun is None else and_(begun, body))
+        body = self.inside(window.body)
+        result = release(passed, body if begun is None else implies(begun, body))
+        return and_(next_(TRUE), result) if window.exists else result
+
+    def _invariant(self, node: Formula) -> Formula:
+        """Return ``G body`` with timers: a response or a rule for some time after an event, or several of them."""
+        clauses = self._clauses(node.args[0])
+        responses = [self._response(clause) for clause in clauses]
+        if all(response is None for response in responses):
+            return self.inside(node)
+        return and_(
+            *(
+                self.inside(always(or_(*clause))) if response is None else response
+                for clause, response in zip(clauses, responses, strict=True)
+            )
+        )
+
+    def _response(self, clause: tuple[Formula, ...]) -> Formula | None:
+        """Return ``G`` of a disjunction with a timer, or None if it has no rule."""
+        temporal = [part for part in clause if not _is_present(part)]
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        if window is None or window.low > 1 or window.high == 0 or not _is_present(window.body):
+            return None
+        request = and_(*(_negated(part) for part in clause if part is not temporal[0]))
+        if window.op == "F":
+            due, late = self._timers.response(request, window.body, window.low, window.high)
+            return and_(always(not_(late)), always(implies(due, next_(TRUE))))
+        recent = self._timers.recent(window.low, window.high, request)
+        rule = always(implies(recent, window.body))
+        return and_(rule, always(implies(request, next_(TRUE)))) if window.exists else rule
+
+    def _clauses(self, body: Formula) -> list[tuple[Formula, ...]]:
+        """Return disjunctions whose conjunction is ``body``; each is a tuple of its parts.
+
+        Only disjunctions that have a rule need to be found, so anything else stays one part.
+        """
+        if body.op == "and":
+            return [clause for part in body.args for clause in self._clauses(part)]
+        if body.op == "implies" and _is_present(body.args[0]):
+            return [(_negated(body.args[0]), *clause) for clause in self._clauses(body.args[1])]
+        if body.op == "or":
+            present = tuple(part for part in body.args if _is_present(part))
+            temporal = [part for part in body.args if part not in present]
+            if len(temporal) == 1:
+                return [(*present, *clause) for clause in self._clauses(temporal[0])]
+        if body.op == "not" and (pushed := self._pushed(body.args[0])) is not None:
+            return self._clauses(pushed)
+        return [(body,)]
+
+    def _pushed(self, inner: Formula) -> Formula | None:
+        """Return ``!inner`` with the negation moved to the operands; None if ``inner`` has no time or no such form."""
+        if _is_present(inner):
+            return None
+        operands = tuple(_negated(operand) for operand in inner.args)
+        if inner.op in ("and", "or"):
+            return (or_ if inner.op == "and" else and_)(*operands)
+        if inner.op == "implies":
+            return and_(inner.args[0], operands[1])
+        if inner.op in ("X", "N"):
+            return (weak_next if inner.op == "X" else next_)(*operands)
+        bound = bound_of(inner)
+        if bound is None:
+            return None
+        dual = bounded("G[]" if inner.op == "F[]" else "F[]", bound.low, bound.high, *operands)
+        return self._timers.in_place_of(inner, dual)
+
+    # --- anywhere -----------------------------------------------------------------------------------
+
+    def inside(self, node: Formula) -> Formula:
+        """Return a formula that is equivalent to ``node`` at every sample."""
+        if not _is_bounded(node):
+            return node
+        known = self._inside.get(node)
+        if known is None:
+            if node.op == "F":
+                known = eventually(self._anchored(node.args[0], None))
+            else:
+                known = rebuild(node, tuple(self.inside(operand) for operand in node.args))
+                if bound_of(node) is not None:
+                    known = self._timers.in_place_of(node, known)
+            self._inside[node] = known
+        return known
+
+    def _anchored(self, body: Formula, reached: Formula | None) -> Formula:
+        """Return the body of ``F body``, in which a bounded operator may count from the samples of its conjuncts.
+
+        ``reached`` holds at the samples that ``F`` may choose, and is None if it may choose any.
+        """
+        parts = body.args if body.op == "and" else (body,)
+        temporal = [part for part in parts if not _is_present(part)]
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        present = [part for part in parts if part not in temporal]
+        if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
+            return self.inside(body)
+        anchor = and_(*present) if reached is None else and_(*present, reached)
+        goal = self._anchored(window.body, self._timers.recent(window.low, window.high, anchor))
+        waiting = until(not_(self._timers.passed(window.high, anchor)), goal)
+        return and_(*present, next_(waiting) if window.low else waiting)
+
+
+def _negated(formula: Formula) -> Formula:
+    return formula.args[0] if formula.op == "not" else not_(formula)
+
+
+def _window(node: Formula) -> _Window | None:
+    """Return ``node`` as a bounded operator; None if it is none, also behind ``X`` or ``N``."""
+    steps = 0
+    op = ""
+    while node.op in ("X", "N"):
+        if op and node.op != op:
+            return None
+        op, steps, node = node.op, steps + 1, node.args[0]
+    bound = bound_of(node)
+    if bound is None:
+        return None
+    if node.op == "F[]":
+        return None if op == "N" else _Window("F", bound.low + steps, bound.high + steps, node.args[0])
+    # `X X G p` asks for two samples: only a single one can be asked for.
+    if op == "X" and steps > 1:
+        return None
+    return _Window("G", bound.low + steps, bound.high + steps, node.args[0], exists=op == "X")
+
+
+def _is_bounded(node: Formula) -> bool:
+    return any(True for _ in bounded_parts(node))
+
+
+def _is_present(node: Formula) -> bool:
+    return not any(part.is_temporal for part in node.walk())

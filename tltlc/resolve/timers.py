@@ -1,0 +1,121 @@
+"""Timers: atoms that say how much time has passed, and the registers behind them."""
+
+from __future__ import annotations
+
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile, Span
+from tltlc.expression.tree import Const, Expression, Op, SignalValue
+from tltlc.logic.formula import TRUE, Formula, and_, not_
+from tltlc.logic.text.printer import ascii_text, operand_text
+from tltlc.resolve import registers
+from tltlc.resolve.context import Context
+from tltlc.resolve.values import number_text
+
+
+@record
+class Timers:
+    """Makes the timers of one clause. ``source`` and ``span`` are the place of the clause, for errors.
+
+    All bounds are numbers of steps.
+    """
+
+    context: Context
+    source: SourceFile
+    span: Span
+
+    def passed(self, steps: int, event: Formula | None = None) -> Formula:
+        """Return the atom of "``event`` last held ``steps`` or more steps ago", or never.
+
+        Without an event, the steps count from the first sample. ``steps`` is at least 1.
+        """
+        if event is None:
+            return self._atom(f"passed({self._time(steps)})", self._at_least(self._samples(), steps + 1))
+        name = f"passed({self._time(steps)}, {ascii_text(event)})"
+        return self._atom(name, self._at_least(self._time_since(event), steps))
+
+    def between(self, low: int, high: int) -> Formula:
+        """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
+        over = self._atom(f"over({self._time(high)})", self._at_least(self._samples(), high + 2))
+        return and_(self.passed(low), not_(over)) if low else not_(over)
+
+    def recent(self, low: int, high: int, event: Formula) -> Formula:
+        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago". ``low`` is 0 or 1."""
+        if low == 0:
+            name, register = f"once within {self._time(high)} {operand_text(event)}", self._time_since(event)
+        else:
+            name, register = f"recent({self._time(high)}, {ascii_text(event)})", f"age({ascii_text(event)})"
+            kept = self._kept(event)
+            self.context.register(registers.age(register, kept, registers.step_length(False), "steps"))
+        return self._atom(name, self._at_most(register, high))
+
+    def held(self, steps: int, state: Formula) -> Formula:
+        """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
+        register = f"time_holding({ascii_text(state)})"
+        kept, truth = self._kept(state), registers.truth(state)
+        self.context.register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
+        return self._atom(f"held({self._time(steps)}, {ascii_text(state)})", self._at_least(register, steps))
+
+    def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
+        """Return the atoms of "a request waits for its goal" and "it has waited for too long".
+
+        A request is a sample with ``request``. Its goal must come from ``low`` to ``high`` steps later;
+        ``low`` is 0 or 1.
+        """
+        strict = low == 1
+        named = f"next {operand_text(goal)}" if strict else ascii_text(goal)
+        pair = named if request is TRUE else f"{ascii_text(request)}, {named}"
+        due, waiting = f"due({pair})", f"waiting({pair})"
+        self.context.register(registers.due(due, self._value(request), self._value(goal), strict))
+        step = registers.step_length(False)
+        draft = registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step)
+        self.context.register(draft)
+        late = self._atom(f"late({self._time(high)}, {pair})", self._at_least(waiting, high + 1))
+        return self._atom(due, SignalValue(due)), late
+
+    def in_place_of(self, old: Formula, new: Formula) -> Formula:
+        """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
+        self.context.bound_of.setdefault(new, self.context.bound_of[old])
+        return new
+
+    # --- registers and atoms ------------------------------------------------------------------------
+
+    def _samples(self) -> str:
+        self.context.register(registers.samples())
+        return registers.SAMPLES
+
+    def _time_since(self, event: Formula) -> str:
+        name = f"time_since({ascii_text(event)})"
+        step = registers.step_length(False)
+        self.context.register(registers.time_since(name, registers.truth(event), step, "steps"))
+        return name
+
+    def _kept(self, state: Formula) -> str:
+        name = f"last {operand_text(state)}"
+        self.context.register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
+        return name
+
+    def _value(self, state: Formula) -> Expression:
+        value = registers.robustness(state)
+        self.context.count_arithmetic(value, self.source, self.span)
+        return value
+
+    def _at_least(self, register: str, steps: int) -> Expression:
+        """Return the robustness of "the register is at least ``steps``", a number of at least 1."""
+        border = steps - 0.5
+        margin = Op("-", (registers.saturated(register, 2 * border), Const(border)))
+        return Op("/", (margin, Const(border)))
+
+    def _at_most(self, register: str, steps: int) -> Expression:
+        """Return the robustness of "the register is at most ``steps``"."""
+        border = steps + 0.5
+        return Op("/", (Op("-", (Const(border), registers.saturated(register, 2 * border))), Const(border)))
+
+    def _time(self, steps: int) -> str:
+        """Return a number of steps as a text for people: in seconds if there is a clock."""
+        period = self.context.clock_s
+        if period is None:
+            return f"{steps} step{'s' * (steps != 1)}"
+        return f"{number_text(round(steps * period, 6))} s"
+
+    def _atom(self, name: str, value: Expression) -> Formula:
+        return self.context.atom(name, value, "", self.source, self.span)
