@@ -12,7 +12,7 @@ at the first sample       ``F[m,n] f`` is ``!passed(n) U (passed(m) & f)``
 at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``
 at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
 at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
-at the first sample       ``G(p -> G[0,n] q)`` is ``G(once within n steps p -> q)``
+at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
 anywhere                  ``F(p & X F[0,n-1] f)`` is ``F(p & X(!passed(n, p) U f))``
 anywhere                  ``F(p & F[0,n] f)`` is ``F(p & (!passed(n, p) U f))``
 ========================  ==============================================================
@@ -123,9 +123,8 @@ class _Rewriting:
         if window.op == "F":
             due, late = self._timers.response(request, window.body, window.low, window.high)
             return and_(always(not_(late)), always(implies(due, next_(TRUE))))
-        recent = self._timers.recent(window.low, window.high, request)
-        rule = always(implies(recent, window.body))
-        return and_(rule, always(implies(request, next_(TRUE)))) if window.exists else rule
+        rule = always(not_(self._timers.breach(window.low, window.high, request, window.body)))
+        return and_(rule, always(implies(self._timers.now(request), next_(TRUE)))) if window.exists else rule
 
     def _clauses(self, body: Formula) -> list[tuple[Formula, ...]]:
         """Return disjunctions whose conjunction is ``body``; each is a tuple of its parts.

@@ -137,6 +137,11 @@ def due(name: str, request: Expression, goal: Expression, strict: bool) -> Regis
     return RegisterDraft(name, "due", "", -1.0, 1.0, -1.0, update)
 
 
+def breach(name: str, value: Expression) -> RegisterDraft:
+    """Return the register with the robustness of "a rule is broken" at this sample."""
+    return RegisterDraft(name, "breach", "", -1.0, 1.0, -1.0, value)
+
+
 def waiting(name: str, request: Condition, goal: Condition, strict: bool, step: Expression) -> RegisterDraft:
     """Return the register with the age of the oldest request that waits for its goal, plus one step.
 

@@ -90,6 +90,7 @@ RegisterKind = Literal[
     "age",
     "due",
     "waiting",
+    "breach",
     "last",
     "first",
 ]

@@ -41,12 +41,10 @@ class Timers:
     def recent(self, low: int, high: int, event: Formula) -> Formula:
         """Return the atom of "``event`` held from ``low`` to ``high`` steps ago". ``low`` is 0 or 1."""
         if low == 0:
-            name, register = f"once within {self._time(high)} {operand_text(event)}", self._time_since(event)
+            name = f"once within {self._time(high)} {operand_text(event)}"
         else:
-            name, register = f"recent({self._time(high)}, {ascii_text(event)})", f"age({ascii_text(event)})"
-            kept = self._kept(event)
-            self.context.register(registers.age(register, kept, registers.step_length(False), "steps"))
-        return self._atom(name, self._at_most(register, high))
+            name = f"recent({self._time(high)}, {ascii_text(event)})"
+        return self._atom(name, self._at_most(self._age(low, event), high))
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
@@ -72,6 +70,21 @@ class Timers:
         late = self._atom(f"late({self._time(high)}, {pair})", self._at_least(waiting, high + 1))
         return self._atom(due, SignalValue(due)), late
 
+    def breach(self, low: int, high: int, event: Formula, rule: Formula) -> Formula:
+        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago, and ``rule`` does not hold".
+
+        One atom, since each further one in a clause multiplies the prime implicants of guards.
+        """
+        register, named = self._age(low, event), f"{ascii_text(event)}, {ascii_text(rule)}"
+        name = f"breach({self._time(high)}, {'next ' if low else ''}{named})"
+        value = Op("min", (self._at_most(register, high), self._value(not_(rule))))
+        self.context.register(registers.breach(name, value))
+        return self._atom(name, SignalValue(name))
+
+    def now(self, state: Formula) -> Formula:
+        """Return ``state`` as one atom."""
+        return state if state.op == "atom" else self._atom(f"({ascii_text(state)})", SignalValue(self._kept(state)))
+
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
         self.context.bound_of.setdefault(new, self.context.bound_of[old])
@@ -82,6 +95,14 @@ class Timers:
     def _samples(self) -> str:
         self.context.register(registers.samples())
         return registers.SAMPLES
+
+    def _age(self, low: int, event: Formula) -> str:
+        """Return the register with the age of the latest event: at this sample, or before it if ``low`` is 1."""
+        if low == 0:
+            return self._time_since(event)
+        name, step = f"age({ascii_text(event)})", registers.step_length(False)
+        self.context.register(registers.age(name, self._kept(event), step, "steps"))
+        return name
 
     def _time_since(self, event: Formula) -> str:
         name = f"time_since({ascii_text(event)})"
