@@ -58,7 +58,6 @@ def fixed_text(text: str) -> str:
         ("reach a then b after 3 steps", "reach a and next after 3 steps eventually b"),
         ("reach a before 30 s", "require eventually within 30 s a"),
         ("reach within 20 steps a", "require eventually within 20 steps a"),
-        ("reach a then within 5 s b", "reach a and F[1,5 s] b"),
         ("reach a then after 5 steps b", "reach a and next after 5 steps eventually b"),
         ("avoid a within 3 steps", "require not eventually within 3 steps a"),
         ("avoid a after 3 steps", "require weak_next after 3 steps always not a"),

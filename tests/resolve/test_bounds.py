@@ -60,7 +60,12 @@ def test_whole_multiples_of_the_period_are_not_rounded_up(period: float, n: int)
 
 def test_a_bound_that_is_too_long_is_an_error() -> None:
     for bound in ("F[0,1000000000]", "G[999999999,1000000000]", "F[0,400] F[0,400]"):
-        assert codes(f"signal a: bool spec s = {bound} a") == ["TLT0315"]
+        assert codes(f"signal a: bool spec s = next (a until {bound} a)") == ["TLT0315"]
+
+
+def test_a_long_bound_with_a_timer_is_no_error() -> None:
+    for bound in ("F[0,1000000000]", "G[999999999,1000000000]"):
+        assert codes(f"signal a: bool spec s = {bound} a") == []
 
 
 def test_step_and_steps_are_the_same_unit() -> None:

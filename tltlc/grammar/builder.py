@@ -205,6 +205,19 @@ class Builder:
         # `since` is no reserved word: its token is a name.
         return tree.BinaryExpr(OPERATORS.get(operator.type, operator.text), left, right, operator.span, span)
 
+    def make_bounded_then(
+        self, span: Span, left: Expr, operator: Token, word: Token, high: tree.NumberExpr, right: Expr
+    ) -> tree.BinaryExpr:
+        bound = tree.TemporalInterval(None, high, word.span.to(high.span), words=True)
+        return tree.BinaryExpr("then", left, right, operator.span, span, bound)
+
+    def make_response(
+        self, span: Span, word: Token, number: Token, unit: Token, _of: Token, request: Expr, answer: Expr
+    ) -> tree.BinaryExpr:
+        high = self.make_number(number.span.to(unit.span), number, unit)
+        bound = tree.TemporalInterval(None, high, word.span.to(high.span), words=True)
+        return tree.BinaryExpr("within", request, answer, word.span, span, bound)
+
     def make_unary(self, span: Span, operator: Token, operand: Expr) -> tree.Unary:
         return tree.Unary(OPERATORS[operator.type], operand, None, operator.span, span)
 

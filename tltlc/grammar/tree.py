@@ -90,13 +90,18 @@ class Unary:
 
 @record
 class BinaryExpr:
-    """An infix operator between two operands."""
+    """An infix operator between two operands.
+
+    ``bound`` is the bound of ``a then within 5 s b``. The form ``within 5 s of a, b`` is the operator
+    ``within``, with a bound, too. Other operators have no bound.
+    """
 
     op: str
     left: Expr
     right: Expr
     op_span: Span
     span: Span
+    bound: TemporalInterval | None = None
 
 
 @record

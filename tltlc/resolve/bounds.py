@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tltlc.grammar.tree import TemporalInterval, Unary
-from tltlc.logic.formula import Formula, always, bounded, eventually, next_, weak_next
+from tltlc.grammar.tree import BinaryExpr, TemporalInterval, Unary
+from tltlc.logic.formula import Formula, always, and_, bounded, eventually, implies, next_, then, weak_next
 from tltlc.resolve.constants import samples
 from tltlc.resolve.problem import problem
 from tltlc.resolve.spec import Bound
@@ -40,6 +40,34 @@ def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
     node = bounded("F[]" if expr.op in ("F", "X") else "G[]", low, high, operand)
     note_bound(node, high, bound, env, source.slice(expr.op_span))
     return node
+
+
+def with_bound(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> Formula:
+    """Return the formula of ``a then within n b`` or ``within n of a, b``.
+
+    The first is ``F(a & X F[0,n-1] b)``: b holds at one of the n samples after a. The second is
+    ``a -> F[0,n] b``: b holds at the same sample as a, or at one of the n after it.
+
+    Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
+    without a clock.
+    """
+    bound, source = expr.bound, env.scope.source
+    assert bound is not None, "a bound"
+    high = samples(bound.high, env)
+    if expr.op == "within":
+        answer = eventually(right) if env.unbounded else bounded("F[]", 0, high, right)
+        note_bound(answer, high, bound, env, source.slice(expr.op_span))
+        return implies(left, answer)
+    if env.unbounded:
+        return then(left, right)
+    if high == 0:
+        advice = "`then` means at a later sample: write e.g. `then within 20 steps b`"
+        raise problem("TLT0312", "`then within` needs at least one step", source, bound.high.span, advice=advice)
+    # Another `then` begins with an `F`, whose place the bound takes.
+    goal = right.args[0] if isinstance(expr.right, BinaryExpr) and expr.right.op == "then" else right
+    rest = bounded("F[]", 0, high - 1, goal)
+    note_bound(rest, high, bound, env, source.slice(expr.op_span))
+    return eventually(and_(left, next_(rest)))
 
 
 def note_bound(node: Formula, steps: int, bound: TemporalInterval, env: Env, operator: str) -> None:

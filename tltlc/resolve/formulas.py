@@ -30,7 +30,7 @@ from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.resolve import memory
 from tltlc.resolve.arguments import match
-from tltlc.resolve.bounds import bounded_operator
+from tltlc.resolve.bounds import bounded_operator, with_bound
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
 from tltlc.resolve.declared_values import signal
@@ -118,9 +118,11 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
                 operand = yield _formula(operand_expr, env)
                 joined.append(operand)
             return _NARY[expr.op](*joined)
-        if expr.op in _BINARY:
+        if expr.op in _BINARY or expr.op == "within":
             left = yield _formula(expr.left, env)
             right = yield _formula(expr.right, env)
+            if expr.bound is not None:
+                return with_bound(expr, left, right, env)
             return _BINARY[expr.op](left, right)
     raise not_a_formula_error(expr, env)
 

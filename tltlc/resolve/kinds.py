@@ -16,7 +16,23 @@ from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import FUNCTIONS, MEMORY_FUNCTIONS, Binding, BindingKind, closest_name
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
-_FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "since", "then", "<", "<=", ">", ">=")
+_FORMULA_OPERATORS = (
+    "and",
+    "or",
+    "implies",
+    "iff",
+    "U",
+    "W",
+    "R",
+    "M",
+    "since",
+    "then",
+    "within",
+    "<",
+    "<=",
+    ">",
+    ">=",
+)
 
 _MOST_LETTERS = 4
 """The most operator letters that may stand directly in front of a name, as in ``FGgoal``."""

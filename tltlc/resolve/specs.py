@@ -11,9 +11,9 @@ from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as ParamNode
 from tltlc.expression.tree import SignalValue as SignalNode
-from tltlc.grammar.tree import Clause, Expr, NameExpr, NumberExpr, SpecDecl
-from tltlc.grammar.walk import conjuncts, operands
-from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_, then
+from tltlc.grammar.tree import BinaryExpr, Clause, Expr, NameExpr, NumberExpr, SpecDecl
+from tltlc.grammar.walk import conjuncts
+from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.deadlines import with_timers
@@ -159,13 +159,10 @@ def _states(node: Formula) -> int:
 
 
 def _reach(clause: Clause, env: Env) -> list[Conjunct]:
-    # Resolve in the order written, so that the first error is the one reported.
-    *before, result = [with_bounds(operand, env) for operand in operands(_expression(clause), "then")]
-    if not before:
-        result = eventually(result)
-    for goal in reversed(before):
-        result = then(goal, result)
-    return [_conjunct(result, clause, env)]
+    expression = _expression(clause)
+    result = with_bounds(expression, env)
+    is_sequence = isinstance(expression, BinaryExpr) and expression.op == "then"
+    return [_conjunct(result if is_sequence else eventually(result), clause, env)]
 
 
 def _keep(clause: Clause, env: Env) -> list[Conjunct]:

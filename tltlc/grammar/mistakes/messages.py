@@ -58,6 +58,11 @@ def unexpected_token(
     nonterminal ``start`` and raised ``error``.
     """
     failure = ParseFailure(source, tokens, error, start)
+    if failure.allowed_terminals == {"OF"}:
+        # Only `within 5 s of a, b` begins with a time. Explain anything else as a time without an operator.
+        before = error.index - 2
+        states = lalr.stack_after(load(), start, tokens[:before])
+        failure = ParseFailure(source, tokens, lalr.UnexpectedTokenError(before, states), start)
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:

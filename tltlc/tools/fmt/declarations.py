@@ -198,7 +198,7 @@ class DeclarationPrinter:
 
     def _expectation(self, item: tree.TestExpect) -> str:
         if item.number is not None and item.comparison is not None:
-            return f"progress{self._one_line.infix(item.comparison)}{self._one_line.number(item.number)}"
+            return f"progress {item.comparison} {self._one_line.number(item.number)}"
         return f'state "{item.value}"' if item.kind == "state" else str(item.value)
 
 

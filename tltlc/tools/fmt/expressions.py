@@ -157,7 +157,7 @@ class Expressions:
                 self.put_in_brackets([*map(argument_item, node.arguments)], node.span.end, reserved)
             case tree.WhenExpr():
                 self._put_when(node, indent)
-            case tree.BinaryExpr() if not is_speed(node):
+            case tree.BinaryExpr() if not is_speed(node) and node.op != "within":
                 self._put_chain(node, indent, reserved)
             case _:
                 self._page.put_comments(node.span.end, indent)
@@ -175,7 +175,7 @@ class Expressions:
             if operator is not None:
                 self._page.put_comments(operand.span.end if is_speed(operand) else operand.span.start, indent)
                 self._page.end_line(indent)
-                self._page.put(self._one_line.infix(operator.op))
+                self._page.put(self._one_line.infix(operator))
             self.put(operand, indent + STEP, operand_reserved)
 
     def _put_when(self, node: tree.WhenExpr, indent: int) -> None:

@@ -44,6 +44,8 @@ class OneLinePrinter:
             case tree.CallExpr():
                 inner = self._arguments(node, room - len(node.name) - 2)
                 text = None if inner is None else f"{node.name}({inner})"
+            case tree.BinaryExpr(op="within"):
+                text = self._response(node, room)
             case tree.BinaryExpr():
                 text = self._chain(node, room)
             case tree.Unary():
@@ -76,9 +78,17 @@ class OneLinePrinter:
         """Return a prefix operator as text, with its bound, and with a space at the end if needed."""
         return self._style.prefix_text(node, bound_forms(node, self.number))
 
-    def infix(self, op: str) -> str:
-        """Return an operator between two operands, with its spaces."""
-        return self._style.infix[op]
+    def infix(self, node: tree.BinaryExpr) -> str:
+        """Return an operator between two operands, with its bound and its spaces."""
+        text = self._style.infix[node.op]
+        return text if node.bound is None else f"{text}within {self.number(node.bound.high)} "
+
+    def _response(self, node: tree.BinaryExpr, room: int) -> str | None:
+        assert node.bound is not None
+        request, answer = self.text(node.left, room), self.text(node.right, room)
+        if request is None or answer is None:
+            return None
+        return f"within {self.number(node.bound.high)} of {request}, {answer}"
 
     def quantifier(self, node: tree.Quantified) -> str:
         """Return the beginning of a quantifier: ``all x in``."""
@@ -98,7 +108,7 @@ class OneLinePrinter:
     def _chain(self, node: tree.BinaryExpr, room: int) -> str | None:
         texts: list[str] = []
         for operator, operand in chain(node):
-            head = self.infix(operator.op) if operator else ""
+            head = self.infix(operator) if operator else ""
             text = self._speed(operand, room) if is_speed(operand) else self.text(operand, room - len(head))
             if text is None:
                 return None
