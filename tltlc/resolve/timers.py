@@ -9,6 +9,7 @@ from tltlc.logic.formula import TRUE, Formula, and_, not_
 from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers
 from tltlc.resolve.context import Context
+from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.values import number_text
 
 
@@ -50,7 +51,7 @@ class Timers:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
         kept, truth = self._kept(state), registers.truth(state)
-        self.context.register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
+        self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
         return self._atom(f"held({self._time(steps)}, {ascii_text(state)})", self._at_least(register, steps))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
@@ -63,10 +64,10 @@ class Timers:
         named = f"next {operand_text(goal)}" if strict else ascii_text(goal)
         pair = named if request is TRUE else f"{ascii_text(request)}, {named}"
         due, waiting = f"due({pair})", f"waiting({pair})"
-        self.context.register(registers.due(due, self._value(request), self._value(goal), strict))
+        self._register(registers.due(due, self._value(request), self._value(goal), strict))
         step = registers.step_length(False)
         draft = registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step)
-        self.context.register(draft)
+        self._register(draft)
         late = self._atom(f"late({self._time(high)}, {pair})", self._at_least(waiting, high + 1))
         return self._atom(due, SignalValue(due)), late
 
@@ -78,7 +79,7 @@ class Timers:
         register, named = self._age(low, event), f"{ascii_text(event)}, {ascii_text(rule)}"
         name = f"breach({self._time(high)}, {'next ' if low else ''}{named})"
         value = Op("min", (self._at_most(register, high), self._value(not_(rule))))
-        self.context.register(registers.breach(name, value))
+        self._register(registers.breach(name, value))
         return self._atom(name, SignalValue(name))
 
     def now(self, state: Formula) -> Formula:
@@ -93,7 +94,7 @@ class Timers:
     # --- registers and atoms ------------------------------------------------------------------------
 
     def _samples(self) -> str:
-        self.context.register(registers.samples())
+        self._register(registers.samples())
         return registers.SAMPLES
 
     def _age(self, low: int, event: Formula) -> str:
@@ -101,24 +102,25 @@ class Timers:
         if low == 0:
             return self._time_since(event)
         name, step = f"age({ascii_text(event)})", registers.step_length(False)
-        self.context.register(registers.age(name, self._kept(event), step, "steps"))
+        self._register(registers.age(name, self._kept(event), step, "steps"))
         return name
 
     def _time_since(self, event: Formula) -> str:
         name = f"time_since({ascii_text(event)})"
         step = registers.step_length(False)
-        self.context.register(registers.time_since(name, registers.truth(event), step, "steps"))
+        self._register(registers.time_since(name, registers.truth(event), step, "steps"))
         return name
+
+    def _register(self, draft: RegisterDraft) -> None:
+        self.context.register(draft, self.source, self.span)
 
     def _kept(self, state: Formula) -> str:
         name = f"last {operand_text(state)}"
-        self.context.register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
+        self._register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
         return name
 
     def _value(self, state: Formula) -> Expression:
-        value = registers.robustness(state)
-        self.context.count_arithmetic(value, self.source, self.span)
-        return value
+        return registers.robustness(state)
 
     def _at_least(self, register: str, steps: int) -> Expression:
         """Return the robustness of "the register is at least ``steps``", a number of at least 1."""
