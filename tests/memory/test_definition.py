@@ -13,12 +13,15 @@ from hypothesis import given
 from tests.fuzzing import SEEDS, times
 from tests.memory.definition import Definition, formula
 from tests.memory.runs import check_seed, random_case, random_params, random_trace
+from tests.memory.texts import CLOCKS, DECLARATIONS, Texts
+from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import given_atoms
 from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.grammar.parser import parse
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
-from tltlc.pipeline import compile_text, decode_artefact, encode_artefact
+from tltlc.pipeline import CompileOptions, Session, compile_text, decode_artefact, encode_artefact
 
 BOOLS = "clock 2 Hz signal p: bool signal q: bool "
 
@@ -178,6 +181,28 @@ def test_a_failed_sample_changes_nothing_and_a_reset_forgets_all(seed: int) -> N
         troubled.reset()
         steady.reset()
         assert troubled.registers == initial
+
+
+@times(60)
+@given(SEEDS)
+def test_an_automaton_does_not_depend_on_the_other_specs_of_its_file(seed: int) -> None:
+    random = Random(seed)
+    texts = Texts(random, 0)
+    clock = (
+        f"clock {CLOCKS[0]} {DECLARATIONS} {random.choice(('', 'exclusive once p, previously q', 'exclusive p, r'))}"
+    )
+    specs = [f"spec s{number} = {texts.spec(1)}" for number in range(4)]
+    alone = [automata(f"{clock} {spec}") for spec in specs]
+    kept = [spec for spec, built in zip(specs, alone, strict=True) if built]
+    assert automata(" ".join([clock, *kept])) == tuple(fspa for built in alone for fspa in built)
+
+
+def automata(text: str) -> tuple[Fspa, ...]:
+    """Return the automata of a text; none if it is in error."""
+    try:
+        return Session(SourceFile("<test>", text), CompileOptions(state_budget=300), proofs=False).automata
+    except TltlError:
+        return ()
 
 
 def test_a_sample_with_two_exclusive_atoms_changes_no_register() -> None:

@@ -249,29 +249,42 @@ class Memory:
 def memory_of(atoms: Iterable[Atom], drafts: Mapping[str, RegisterDraft], known: Mapping[str, Atom]) -> Memory:
     """Return the registers that the atoms read, directly or through other registers, and their atoms.
 
-    ``drafts`` are all registers by name, each after those that it reads at the same sample, and
-    ``known`` all atoms by name. The maximum of a register is the greatest that any comparison asks for.
+    ``drafts`` are all registers by name, and ``known`` all atoms by name. Each register comes after
+    those that it reads at the same sample; apart from that, registers and further atoms are in order of
+    first use, whatever other specs remember. The maximum of a register is the greatest that any
+    comparison asks for.
     """
     found = {atom.name: atom for atom in atoms}
-    given = len(found)
-    pending = [atom.expression for atom in found.values()]
-    used: set[str] = set()
+    given = tuple(found)
     maxima: dict[str, float] = {}
-    while pending:
-        expression = pending.pop()
+    registers: list[str] = []
+    seen: set[tuple[type, str]] = set()
+
+    def reads(expression: Expression) -> Iterator[Expression | Condition]:
         for name, maximum in _maxima(expression, drafts):
             maxima[name] = max(maximum, maxima.get(name, 0.0))
-        for node in nodes(expression):
-            if isinstance(node, AtomValue) and node.name not in found:
-                found[node.name] = known[node.name]
-                pending.append(known[node.name].expression)
-            elif isinstance(node, (SignalValue, Before)) and node.name in drafts and node.name not in used:
-                used.add(node.name)
-                pending.append(drafts[node.name].update)
-    registers = tuple(drafts[name].with_maximum(maxima.get(name, 0.0)) for name in drafts if name in used)
-    order = {name: number for number, name in enumerate(known)}
-    further = sorted(list(found.values())[given:], key=lambda atom: order[atom.name])
-    return Memory(registers, tuple(further))
+        return nodes(expression)
+
+    # A walk in depth; each entry has the parts still to visit, and the register whose update they are.
+    walk: list[tuple[Iterator[Expression | Condition], str | None]] = [(iter(map(AtomValue, given)), None)]
+    while walk:
+        parts, register = walk[-1]
+        for node in parts:
+            if isinstance(node, AtomValue) and (AtomValue, node.name) not in seen:
+                seen.add((AtomValue, node.name))
+                atom = found.setdefault(node.name, known[node.name])
+                walk.append((reads(atom.expression), None))
+                break
+            if isinstance(node, (SignalValue, Before)) and node.name in drafts and (Before, node.name) not in seen:
+                seen.add((Before, node.name))
+                walk.append((reads(drafts[node.name].update), node.name))
+                break
+        else:
+            walk.pop()
+            if register is not None:
+                registers.append(register)
+    further = tuple(found[name] for name in found if name not in given)
+    return Memory(tuple(drafts[name].with_maximum(maxima.get(name, 0.0)) for name in registers), further)
 
 
 def saturated(register: str, maximum: float) -> Expression:
