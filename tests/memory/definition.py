@@ -7,12 +7,13 @@ Nothing is taken from the compiler but the parser.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, exp, inf, sqrt, tanh
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
+from tests.memory.names import MEMORY, NOWHERE, Names, Scope
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
 from tltlc.grammar.parser import parse_formula
@@ -23,32 +24,9 @@ TINY: Final = 1e-30
 
 _UNITS: Final = {"s": "1", "ms": "0.001", "min": "60", "h": "3600", "m": "1", "cm": "0.01", "km": "1000", "%": "0.01"}
 _COMPARISONS: Final = ("<", "<=", ">", ">=")
-_MEMORY: Final = ("times", "time_since", "time_holding", "previous", "initial", "highest", "lowest")
 _CONNECTIVES: Final = ("not", "and", "or", "implies", "iff")
 
 Range = tuple[float, float]
-
-
-class Closure(NamedTuple):
-    """An argument: an expression, with what the names in it mean."""
-
-    expr: Expr
-    scope: Scope
-
-
-class Scope(NamedTuple):
-    """What local names mean: an entity by its name, or an expression."""
-
-    names: Mapping[str, str | Closure]
-
-    def entity(self, expr: Expr) -> str:
-        """Return the name of the entity that an expression names."""
-        assert isinstance(expr, NameExpr)
-        local = self.names.get(expr.name, expr.name)
-        return local if isinstance(local, str) else local.scope.entity(local.expr)
-
-
-NOWHERE: Final = Scope({})
 
 
 def exact(number: NumberExpr) -> Fraction:
@@ -63,7 +41,7 @@ def formula(text: str) -> Expr:
     return expr
 
 
-class Definition:
+class Definition(Names):
     """The meaning of the formulas of a module on a finite trace.
 
     A sample has every signal by its full name, such as ``d(a)``. Positions count from 0. Results are kept
@@ -72,20 +50,14 @@ class Definition:
 
     def __init__(self, module: tree.Module, trace: Sequence[Mapping[str, float]], params: Mapping[str, float]) -> None:
         self.trace = trace
-        self._module = module
-        self._declared: dict[str, tree.Declaration] = {}
+        super().__init__(module)
         self._period: Fraction | None = None
         self._params = params
-        self._scopes: dict[Any, Scope] = {}
         self._known: dict[Any, Any] = {}
         for declaration in module.declarations:
             if isinstance(declaration, tree.ClockDecl):
                 unit, value = declaration.value.unit, declaration.value
                 self._period = 1 / Fraction(repr(value.value)) if unit == "Hz" else exact(value)
-            elif isinstance(
-                declaration, (tree.SignalDecl, tree.ParamDecl, tree.PredicateDecl, tree.LetDecl, tree.GroupDecl)
-            ):
-                self._declared[declaration.name] = declaration
 
     # --- truth --------------------------------------------------------------------------------------
 
@@ -98,7 +70,7 @@ class Definition:
         return bool(self._known[key])
 
     def _holds(self, expr: Expr, i: int, scope: Scope, n: int) -> bool:
-        expr, scope = self._expanded(expr, scope, predicates=False)
+        expr, scope = self.expanded(expr, scope, predicates=False)
         if isinstance(expr, Unary) and expr.op in "FGXN":
             return self._future_holds(expr, i, scope, n)
         if isinstance(expr, Unary) and expr.op == "not":
@@ -120,7 +92,7 @@ class Definition:
                 return any(a_at[j] and all(b_at[i : j + 1]) for j in rest)
             return any(a_at[j] and all(b_at[i : j + 1]) for j in rest) or all(b_at[i:])
         if isinstance(expr, Quantified):
-            return (all if expr.all else any)(self.holds(expr.body, i, inside, n) for inside in self._each(expr, scope))
+            return (all if expr.all else any)(self.holds(expr.body, i, inside, n) for inside in self.each(expr, scope))
         return self.robustness(expr, i, scope) > 0
 
     def _future_holds(self, expr: Unary, i: int, scope: Scope, n: int) -> bool:
@@ -147,7 +119,7 @@ class Definition:
         return float(self._known[key])
 
     def _robustness(self, expr: Expr, i: int, scope: Scope, positive: bool) -> float:
-        expr, scope = self._expanded(expr, scope, predicates=False)
+        expr, scope = self.expanded(expr, scope, predicates=False)
 
         def value(part: Expr, sign: bool, inside: Scope = scope) -> float:
             return self.robustness(part, i, inside, sign == positive)
@@ -168,7 +140,7 @@ class Definition:
                 return forth
             return least(forth, most(value(left, True), value(right, False)))
         if isinstance(expr, Quantified):
-            return (least if expr.all else most)(value(expr.body, True, inside) for inside in self._each(expr, scope))
+            return (least if expr.all else most)(value(expr.body, True, inside) for inside in self.each(expr, scope))
         if isinstance(expr, Unary) and expr.op in ("begins", "ends"):
             before = self._before(expr.operand, i, scope)
             if expr.op == "begins":
@@ -203,7 +175,7 @@ class Definition:
             )
         if isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS:
             return self._comparison(expr, i, scope)
-        if self._is_bool(expr, scope):
+        if self.is_bool(expr, scope):
             return 1.0 if self.number(expr, i, scope) else -1.0
         return min(max(self.number(expr, i, scope), -1.0), 1.0)
 
@@ -251,7 +223,7 @@ class Definition:
         return float(self._known[key])
 
     def _number(self, expr: Expr, i: int, scope: Scope) -> float:
-        expr, scope = self._expanded(expr, scope)
+        expr, scope = self.expanded(expr, scope)
         if isinstance(expr, NumberExpr):
             return float(exact(expr))
         if isinstance(expr, Unary):
@@ -265,15 +237,15 @@ class Definition:
                     return self.number(case.value, i, scope)
             return self.number(expr.otherwise, i, scope)
         assert isinstance(expr, (NameExpr, CallExpr))
-        declared = self._declared.get(expr.name)
+        declared = self.declared.get(expr.name)
         if isinstance(declared, tree.SignalDecl):
             low, high = self._range(expr, scope)
-            return min(max(float(self.trace[i][self._signal(expr, scope)]), low), high)
+            return min(max(float(self.trace[i][self.signal(expr, scope)]), low), high)
         if isinstance(declared, tree.ParamDecl):
             return self._params.get(expr.name, float(self.number(declared.value, i)))
         assert isinstance(expr, CallExpr)
         parts = [argument.value for argument in expr.arguments]
-        if expr.name in _MEMORY:
+        if expr.name in MEMORY:
             return self._recalled(expr.name, parts, i, scope)
         return float(_FUNCTIONS[expr.name](*(self.number(part, i, scope) for part in parts)))
 
@@ -296,7 +268,7 @@ class Definition:
 
     def _condition(self, expr: Expr, i: int, scope: Scope) -> bool:
         """Whether the condition of a ``when`` holds."""
-        expr, scope = self._expanded(expr, scope)
+        expr, scope = self.expanded(expr, scope)
         if isinstance(expr, Unary):
             return not self._condition(expr.operand, i, scope)
         if isinstance(expr, BinaryExpr) and expr.op in ("and", "or"):
@@ -311,7 +283,7 @@ class Definition:
 
     def _range(self, expr: Expr, scope: Scope) -> Range:
         """Return the range of a number; a count or time without a maximum has no upper end."""
-        expr, scope = self._expanded(expr, scope, predicates=False)
+        expr, scope = self.expanded(expr, scope, predicates=False)
         if isinstance(expr, NumberExpr):
             return float(exact(expr)), float(exact(expr))
         if isinstance(expr, Unary):
@@ -327,7 +299,7 @@ class Definition:
             ranges = [self._range(part, scope) for part in (*(case.value for case in expr.cases), expr.otherwise)]
             return min(low for low, _ in ranges), max(high for _, high in ranges)
         assert isinstance(expr, (NameExpr, CallExpr))
-        declared = self._declared.get(expr.name)
+        declared = self.declared.get(expr.name)
         if isinstance(declared, tree.SignalDecl) and declared.type == "bool":
             return 0.0, 1.0
         if isinstance(declared, tree.PredicateDecl) and declared.interval is None:
@@ -339,7 +311,7 @@ class Definition:
         parts = [argument.value for argument in expr.arguments]
         if expr.name in ("times", "time_since", "time_holding"):
             return 0.0, self._written_maximum(expr.name, parts, scope)
-        if expr.name in _MEMORY:
+        if expr.name in MEMORY:
             return self._range(parts[0], scope)
         ranges = [self._range(part, scope) for part in parts]
         if expr.name == "abs":
@@ -350,7 +322,7 @@ class Definition:
 
     def _open(self, expr: Expr, scope: Scope) -> str:
         """Return the name of the count or time without a maximum that an expression is."""
-        expr, _ = self._expanded(expr, scope)
+        expr, _ = self.expanded(expr, scope)
         assert isinstance(expr, CallExpr)
         return expr.name
 
@@ -379,74 +351,6 @@ class Definition:
             return int(bound.value)
         assert self._period is not None, "a clock"
         return ceil(exact(bound) / self._period)
-
-    # --- names --------------------------------------------------------------------------------------
-
-    def _expanded(self, expr: Expr, scope: Scope, *, predicates: bool = True) -> tuple[Expr, Scope]:
-        """Replace a local name, a ``let``, or a predicate by what it stands for, as often as possible."""
-        while True:
-            if isinstance(expr, GroupExpr):
-                expr = expr.inner
-                continue
-            if not isinstance(expr, (NameExpr, CallExpr)):
-                return expr, scope
-            local = scope.names.get(expr.name)
-            if isinstance(local, Closure):
-                expr, scope = local
-                continue
-            declared = self._declared.get(expr.name)
-            if not isinstance(declared, (tree.LetDecl, tree.PredicateDecl)):
-                return expr, scope
-            if isinstance(declared, tree.PredicateDecl) and not predicates:
-                return expr, scope
-            inside = self._inside(expr, declared, scope)
-            expr, scope = declared.body, inside
-
-    def _inside(self, use: NameExpr | CallExpr, declared: tree.LetDecl | tree.PredicateDecl, scope: Scope) -> Scope:
-        key = (id(use), id(scope))
-        if key not in self._scopes:
-            given = list(use.arguments) if isinstance(use, CallExpr) else []
-            names: dict[str, str | Closure] = {}
-            inside = Scope(names)
-            for place, parameter in enumerate(declared.parameters):
-                chosen = next((argument.value for argument in given if argument.name == parameter.name), None)
-                if chosen is None and place < len(given) and given[place].name is None:
-                    chosen = given[place].value
-                if chosen is None:
-                    assert parameter.default is not None
-                    names[parameter.name] = Closure(parameter.default, inside)
-                elif parameter.type == "entity":
-                    names[parameter.name] = scope.entity(chosen)
-                else:
-                    names[parameter.name] = Closure(chosen, scope)
-            self._scopes[key] = inside
-        return self._scopes[key]
-
-    def _each(self, expr: Quantified, scope: Scope) -> Iterator[Scope]:
-        members: list[str] = []
-        for name in expr.entities:
-            declared = self._declared.get(name.name)
-            if isinstance(declared, tree.GroupDecl):
-                members += (member.name for member in declared.members)
-            else:
-                members.append(name.name)
-        for member in members:
-            key = (id(expr), id(scope), member)
-            if key not in self._scopes:
-                self._scopes[key] = Scope({**scope.names, expr.variable: member})
-            yield self._scopes[key]
-
-    def _signal(self, expr: NameExpr | CallExpr, scope: Scope) -> str:
-        if isinstance(expr, NameExpr):
-            return expr.name
-        return f"{expr.name}({', '.join(scope.entity(argument.value) for argument in expr.arguments)})"
-
-    def _is_bool(self, expr: Expr, scope: Scope) -> bool:
-        expr, scope = self._expanded(expr, scope, predicates=False)
-        if isinstance(expr, CallExpr) and expr.name in _MEMORY:
-            return self._is_bool(expr.arguments[0].value, scope)
-        declared = self._declared.get(expr.name) if isinstance(expr, (NameExpr, CallExpr)) else None
-        return isinstance(declared, tree.SignalDecl) and declared.type == "bool"
 
 
 def _signed(value: float, positive: bool) -> float:
