@@ -18,6 +18,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.c_names import RESERVED
+from tltlc.backends.languages.c_tables import tables_text
 from tltlc.backends.templates import fill_template
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
@@ -35,7 +36,10 @@ TARGET = Target(
 
 _INDENT = Printer.INDENT
 
-_RESERVED: Final = (*RESERVED, "monitor", "sample", "result", "states", "none")
+_RESERVED: Final = (
+    *(*RESERVED, "monitor", "sample", "result", "states", "none"),
+    *("state_kinds", "state_shapes", "first_edges", *Printer.TABLES),
+)
 """Names that no variable may have: reserved names of C, and the names that the template uses.
 
 :mod:`tltlc.program.build` adds the variables of the step function.
@@ -87,6 +91,7 @@ class _Source:
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
         self._program = program(fspa, _RESERVED)
+        self._entered = states.TARGET if self._program.tables is None else f"state_kinds[{states.TARGET}]"
         self._printer = _C(fspa.name, fspa.atoms)
 
     def text(self) -> str:
@@ -99,6 +104,7 @@ class _Source:
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
+        present += ["states"] if program_.tables is None else ["tables"]
         with recursion_room():
             step = _C.block(self._step())
         places = {
@@ -131,6 +137,8 @@ class _Source:
                 [f"{{{group}, {atom}}}" for group, atoms in enumerate(fspa.exclusive) for atom in atoms], "{0, 0}"
             ),
             "states": "\n".join(self._states()),
+            "entered": self._entered,
+            "tables": "" if program_.tables is None else tables_text(program_.tables, fspa.judge),
             "step": step,
             "give": _C.block(self._give()),
         }
@@ -188,12 +196,15 @@ class _Source:
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
 
     def _states(self) -> list[str]:
+        """Return a row for each state or, if there are tables, for each kind of states."""
+        tables = self._program.tables
         lines: list[str] = []
-        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+            state = self._fspa.states[index]
             values = (
                 f"{self._prefix}_{state.verdict}",
                 snippets.boolean_literal(state.accepting),
-                snippets.boolean_literal(ends),
+                snippets.boolean_literal(self._program.ends[index]),
             )
             lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
         return lines
@@ -229,13 +240,13 @@ class _Source:
         used = program_.variables_used
         return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
 
-    def _bools(self, state: int | None) -> list[str]:
+    def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
 
-        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
-        that every step reads.
+        It converts the signals that only this case reads or, if ``case`` is None, those that every
+        step reads.
         """
-        return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
+        return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(case)]
 
     def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
         """Return the code that checks and clamps signals.
@@ -315,25 +326,27 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each current state."""
+        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
-        lines.append("switch (monitor->state) {")
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+        has_tables = self._program.tables is not None
+        lines += [f"const int {states.FIRST_EDGE} = first_edges[monitor->state];"] if has_tables else []
+        lines.append("switch (state_shapes[monitor->state]) {" if has_tables else "switch (monitor->state) {")
+        for number, case in enumerate(self._program.cases):
             # A case that contains declarations needs braces.
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
-            lines.append(f"{_INDENT}case {state.id}: {{")
-            values = [line for index in self._program.computed_in(state.id) for line in self._value(index)]
-            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *values)]
-            lines += self._printer.lines(statements, depth=2)
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
+            lines.append(f"{_INDENT}case {number}: {{")
+            values = [line for index in self._program.computed_in(number) for line in self._value(index)]
+            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *values)]
+            lines += self._printer.lines(case.statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
         """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
-        ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
+        ends, verdict = f"states[{self._entered}].ends", f"states[{self._entered}].verdict"
         lines = [f"double {reward_step.BEST} = monitor->progress;", f"bool {reward_step.DONE} = monitor->done;"]
         lines.append(f"double {reward_step.REWARD};")
         declarations = {

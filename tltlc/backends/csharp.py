@@ -8,6 +8,7 @@ as Mono's are on Linux.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -18,7 +19,8 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement
+from tltlc.program.shapes import StateTables
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement, Table
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -56,7 +58,7 @@ _TEMPLATE = """
     Array AtomNames Defaults Divide Equals Exp Finalize GetHashCode GetType IsFinite Keep List Math Max
     MemberwiseClone MethodImpl MethodImplOptions Min Missing Note Params Place Power Problem Read ReferenceEquals
     Refuse Result Signals Sqrt States Step System Tltl ToString Verdict Without entered none number own result
-    sample
+    sample EdgeTargets FirstEdges LevelProgress StateLevels StateShapes
 """.split()
 """Names in the template that no field and no variable of a step may have, because it would hide them."""
 
@@ -70,8 +72,15 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {monitor: _Source(fspa, monitor).text(), behaviour: fill_template("behaviour.cs.txt", {"p": fspa.name})}
 
 
+def _pascal_case(name: str) -> str:
+    """Return the name of a table in C#: ``EdgeTargets`` for ``edge_targets``."""
+    return name.title().replace("_", "")
+
+
 class _CSharp(Printer):
     """Prints the program of a monitor (:mod:`tltlc.program`) as C# code, with each brace on its own line."""
+
+    TABLES: ClassVar[dict[Table, str]] = {name: _pascal_case(name) for name in Printer.TABLES}
 
     def branches(self, statement: If, depth: int) -> list[str]:
         """Return the lines of an ``if`` with all its cases and its ``else``."""
@@ -111,11 +120,12 @@ class _Source:
         params = list(zip(fspa.params, program_.params, strict=True))
         present: list[str] = [
             *program_.functions,
-            *functions_called(statement for state in program_.states for statement in state),
+            *functions_called(statement for case in program_.cases for statement in case.statements),
         ]
         present += ["note"] if program_.functions & FAILING else []
         present += ["exclusive"] if program_.exclusive else []
         present += [] if all(program_.always_in_range) else ["keep"]
+        present += ["states"] if program_.tables is None else ["tables"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
             step = _CSharp.block(self._step(), 3)
@@ -137,21 +147,38 @@ class _Source:
             ),
             "param_checks": _CSharp.block([line for param, name in params for line in _param_check(param, name)], 3),
             "states": _CSharp.block(self._states(), 3),
+            **self._state_tables(program_.tables),
             "step": step,
             "give": _CSharp.block(self._give(), 3),
         }
         return fill_template("monitor.cs.txt", places, present)
 
     def _states(self) -> list[str]:
+        """Return a row for each state or, if there are tables, for each kind of states."""
+        tables = self._program.tables
         lines: list[str] = []
-        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+            state = self._fspa.states[index]
             values = (
+                _string(str(state.label) if tables is None else ""),
                 f"Verdict.{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
-                snippets.boolean_literal(ends),
+                snippets.boolean_literal(self._program.ends[index]),
             )
-            lines.append(f"new Place({_string(str(state.label))}, {', '.join(values)}),")
+            lines.append(f"new Place({', '.join(values)}),")
         return lines
+
+    def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with the tables of states; they are empty if there are none."""
+        if tables is None:
+            return {"tables": "", "label_texts": ""}
+        lines: list[str] = []
+        for name, numbers in tables.all_tables(self._fspa.judge).items():
+            type_ = "double" if name == "level_progress" else "ushort" if max(numbers, default=0) < 1 << 16 else "int"
+            items = _list([*map(repr, numbers)])
+            lines.append(f"{_INDENT * 2}private static readonly {type_}[] {_pascal_case(name)} = {{{items}}};")
+        texts = [f"new[] {{{', '.join(map(_string, pieces))}}}" for pieces in tables.labels.texts]
+        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
 
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
@@ -193,13 +220,13 @@ class _Source:
         lines += self._bools(None)
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
-    def _bools(self, state: int | None) -> list[str]:
+    def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
 
-        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
-        that every step reads.
+        It converts the signals that only this case reads or, if ``case`` is None, those that every
+        step reads.
         """
-        return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
+        return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(case)]
 
     def _compute(self) -> list[str]:
         """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
@@ -234,23 +261,25 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each current state."""
+        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
-        lines += ["switch (_state)", "{"]
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+        has_tables = self._program.tables is not None
+        lines += [f"int {states.FIRST_EDGE} = FirstEdges[_state];"] if has_tables else []
+        lines += ["switch (StateShapes[_state])" if has_tables else "switch (_state)", "{"]
+        for number, case in enumerate(self._program.cases):
             # A case that contains declarations needs braces.
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
-            lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
-            lines += [f"{_INDENT * 2}{line}" for line in self._bools(state.id)]
-            lines += self._printer.lines((*self._values_only_in(state.id), *statements), depth=2)
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
+            lines += [f"{_INDENT}case {number}:", f"{_INDENT}{{"]
+            lines += [f"{_INDENT * 2}{line}" for line in self._bools(number)]
+            lines += self._printer.lines((*self._values_only_in(number), *case.statements), depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 
-    def _values_only_in(self, state: int) -> list[Statement]:
-        """Return the statements that compute the atoms which only a step from ``state`` needs."""
-        return [statement for index in self._program.computed_in(state) for statement in self._value(index)]
+    def _values_only_in(self, case: int) -> list[Statement]:
+        """Return the statements that compute the atoms which only this case needs."""
+        return [statement for index in self._program.computed_in(case) for statement in self._value(index)]
 
     def _judge(self) -> list[str]:
         """Return the code that computes progress and reward, and whether the episode ends."""

@@ -21,6 +21,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Assign, Declare, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
@@ -47,6 +48,7 @@ _RESERVED = """
     super switch synchronized this throw throws transient true try typeof undefined var void volatile while with yield
     Infinity Math Monitor MonitorError NaN Number Object Result RowReader Set String TextDecoder globalThis process
     ATOMS EXCLUSIVE PARAMS SIGNALS STATES entered listed max min paramValues result shown signals
+    EDGE_TARGETS FIRST_EDGES LEVEL_PROGRESS STATE_LEVELS STATE_SHAPES
 """.split()
 """Names that no variable may have: words of the language, and other names that the step function uses."""
 
@@ -72,6 +74,7 @@ class _JavaScript(Printer):
 
     INDENT = "  "
     COMPARISONS: ClassVar = {**Printer.COMPARISONS, "==": "===", "!=": "!=="}
+    TABLES: ClassVar = {name: name.upper() for name in Printer.TABLES}
 
     def __init__(self, atoms: Sequence[str], built_in: Collection[str] = ("abs", "tanh")) -> None:
         self._atoms, self._built_in = atoms, built_in
@@ -133,6 +136,7 @@ class _Source:
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
         present += ["some"] if fspa.signals or "atom" in present else []
         present += ["clamp"] if fspa.signals or "range" in present else []
+        present += ["states"] if program_.tables is None else ["tables"]
         present += ["params"] if program_.variables_used & {*program_.params} else []
         places = {
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -148,6 +152,7 @@ class _Source:
             "params_kept": "this.#params = " if "params" in present else "",
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": _list(self._states()),
+            **self._state_tables(program_.tables),
             "step": step,
         }
         return fill_template("monitor.mjs.txt", places, present)
@@ -170,11 +175,26 @@ class _Source:
         return fill_template("monitor.d.mts.txt", places, present)
 
     def _states(self) -> list[str]:
+        """Return a row for each state or, if there are tables, for each kind of states, without labels."""
+        tables = self._program.tables
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(snippets.boolean_literal, self._program.ends), strict=True):
+        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+            state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
-            rows.append(f"{{ label: {_string(str(state.label))}, {values} }}")
+            label = f"label: {_string(str(state.label))}, " if tables is None else ""
+            rows.append(f"{{ {label}{values} }}")
         return rows
+
+    def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with the tables of states; they are empty if there are none."""
+        if tables is None:
+            return {"tables": "", "label_texts": ""}
+        lines = [
+            f"const {name.upper()} = [{_JavaScript.items([*map(_number, numbers)])}];"
+            for name, numbers in tables.all_tables(self._fspa.judge).items()
+        ]
+        texts = [f"[{', '.join(map(_string, pieces))}]" for pieces in tables.labels.texts]
+        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
 
     # --- the step function ------------------------------------------------------------------------
 
@@ -209,13 +229,13 @@ class _Source:
                 lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({index}, {name});")
         return lines
 
-    def _values(self, state: int | None) -> list[str]:
+    def _values(self, case: int | None) -> list[str]:
         """Return the code that computes the values of some atoms.
 
-        These are the atoms that only a step from ``state`` computes or, if ``state`` is None, those
-        that every step computes.
+        These are the atoms that only this case computes or, if ``case`` is None, those that every step
+        computes.
         """
-        return [line for index in self._program.computed_in(state) for line in self._value(index)]
+        return [line for index in self._program.computed_in(case) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
@@ -246,17 +266,19 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each current state."""
+        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
-        lines.append("switch (this.state) {")
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+        has_tables = self._program.tables is not None
+        lines += [f"const {states.FIRST_EDGE} = FIRST_EDGES[this.state];"] if has_tables else []
+        lines.append(f"switch ({'STATE_SHAPES[this.state]' if has_tables else 'this.state'}) {{")
+        for number, case in enumerate(self._program.cases):
             # A case that contains declarations needs braces.
-            lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
-            lines.append(f"  case {state.id}: {{")
-            lines += [f"    {line}" for line in self._values(state.id)]
-            lines += self._moves.lines(split_deep_values(statements, self._names), depth=2)
+            lines += [f"  {line}" for line in self._printer.comment(case.comment)]
+            lines.append(f"  case {number}: {{")
+            lines += [f"    {line}" for line in self._values(number)]
+            lines += self._moves.lines(split_deep_values(case.statements, self._names), depth=2)
             lines += ["    break;", "  }"]
         return [*lines, "}"]
 

@@ -29,6 +29,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
+from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Declare, If, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
@@ -46,15 +47,16 @@ _MOST_LOCALS: Final = 150
 The step function has more local variables, and Lua allows 200 in all.
 """
 
-_FEW_STATES: Final = 8
-"""The most states among which a step finds the current one by an ``if`` with a case for each state.
+_FEW_CASES: Final = 8
+"""The most states, or shapes of states, for which a step has an ``if`` with a case for each.
 
-If there are more, each state has a function.
+If there are more, each has a function.
 """
 
 _OWN = """
-    MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
-    signal signals sqrt tanh together type value
+    EDGE_TARGETS FIRST_EDGES LEVEL_PROGRESS MOVES STATES STATE_LEVELS STATE_SHAPES abs at_step divide entered exp
+    failure huge kept max min param part power problem read result self signal signals sqrt state_shape tanh
+    together type value
 """.split()
 """Names that the step function uses in the template; no variable of the program may have them."""
 
@@ -90,13 +92,14 @@ class _Source:
             **{name: f"value{key_access(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
             **{name: f"part.{name}" for name in parts},
         }
-        self._few_states = len(fspa.states) <= _FEW_STATES
+        self._few_cases = len(program_.cases) <= _FEW_CASES
         self._printer = LuaPrinter(fields if self._variables_are_fields else {}, self._names)
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.lua``."""
         fspa, program_ = self._fspa, self._program
-        functions = functions_called(statement for part in (*program_.values, *program_.states) for statement in part)
+        parts = (*program_.values, *(case.statements for case in program_.cases))
+        functions = functions_called(statement for part in parts for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
             step = LuaPrinter.block(self._step())
@@ -106,7 +109,8 @@ class _Source:
             *(["many"] if self._variables_are_fields else []),
         ]
         present += [] if all(program_.always_in_range) else ["kept"]
-        present += [] if self._few_states else ["moves"]
+        present += [] if self._few_cases else ["moves"]
+        present += ["states"] if program_.tables is None else ["tables"]
         present += ["exclusive"] if program_.exclusive else []
         places = {
             "p": fspa.name,
@@ -136,6 +140,7 @@ class _Source:
                 [f"{{ {', '.join(string_literal(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
             "states": LuaPrinter.block(self._states()),
+            **self._state_tables(program_.tables),
             "returns": ", the progress of the step" if self._at_goal else "",
             "moves": moves,
             "parts": "\n".join(self._printer.parts).rstrip(),
@@ -144,13 +149,28 @@ class _Source:
         return fill_template("monitor.lua.txt", places, present)
 
     def _states(self) -> list[str]:
+        """Return a row for each state or, if there are tables, for each kind of states, without labels."""
+        tables = self._program.tables
         rows: list[str] = []
-        for state, ends in zip(self._fspa.states, map(snippets.boolean_literal, self._program.ends), strict=True):
+        for number, index in enumerate(range(len(self._fspa.states)) if tables is None else tables.kind_states):
+            state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = (
                 f'verdict = "{state.verdict}", accepting = {snippets.boolean_literal(state.accepting)}, ends = {ends}'
             )
-            rows.append(f"[{state.id}] = {{ label = {string_literal(str(state.label))}, {values} }},")
+            label = f"label = {string_literal(str(state.label))}, " if tables is None else ""
+            rows.append(f"[{number}] = {{ {label}{values} }},")
         return rows
+
+    def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with the tables of states; they are empty if there are none."""
+        if tables is None:
+            return {"tables": "", "label_texts": ""}
+        lines = [
+            f"local {name.upper()} = {{{LuaPrinter.items(_from_0(numbers))}}}"
+            for name, numbers in tables.all_tables(self._fspa.judge).items()
+        ]
+        texts = [f"{{ {', '.join(map(string_literal, pieces))} }}" for pieces in tables.labels.texts]
+        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
 
     # --- the functions of states ------------------------------------------------------------------
 
@@ -167,32 +187,36 @@ class _Source:
         """Return the parameters that the function of each state has, separated by commas.
 
         These are all signals, params and atoms computed at every step that any of the functions
-        reads. If variables are fields of tables, the parameters are the tables instead.
+        reads. If variables are fields of tables, the parameters are the tables instead. If states share
+        functions, the place of the state's first edge is a parameter, too.
         """
-        if self._variables_are_fields:
-            return "signal, param, value"
         program_ = self._program
+        first_edge = [] if program_.tables is None else [states.FIRST_EDGE]
+        if self._variables_are_fields:
+            return ", ".join(["signal, param, value", *first_edge])
         lazy_values = [value for value, only in zip(program_.values, program_.only_in, strict=True) if only is not None]
-        used = variables_read(statement for statements in (*program_.states, *lazy_values) for statement in statements)
+        statements = (*(case.statements for case in program_.cases), *lazy_values)
+        used = variables_read(statement for part in statements for statement in part)
         atoms = [name for name, only in zip(program_.atoms, program_.only_in, strict=True) if only is None]
-        return ", ".join(name for name in (*program_.signals, *program_.params, *atoms) if name in used)
+        names = [name for name in (*program_.signals, *program_.params, *atoms) if name in used]
+        return ", ".join([*names, *first_edge])
 
     def _moves(self) -> list[str]:
-        """Return the lines of a function for each state; an empty list if the automaton has few states."""
+        """Return the lines of a function for each state or shape; an empty list if there are few."""
         lines: list[str] = []
-        for state in [] if self._few_states else self._fspa.states:
-            lines += ["", *self._printer.comment(str(state.label))]
-            lines += [f"MOVES[{state.id}] = function({self._parameters()})", f"  local {self._result_names()}"]
-            lines += [*self._branch(state.id), f"  return {self._result_names()}", "end"]
+        for number, case in [] if self._few_cases else enumerate(self._program.cases):
+            lines += ["", *self._printer.comment(case.comment)]
+            lines += [f"MOVES[{number}] = function({self._parameters()})", f"  local {self._result_names()}"]
+            lines += [*self._branch(number), f"  return {self._result_names()}", "end"]
         return lines
 
-    def _branch(self, state: int) -> list[str]:
-        """Return the code of a state: it computes the atoms that only this state needs, and finds the next state."""
+    def _branch(self, case: int) -> list[str]:
+        """Return the code of a case: it computes the atoms that only this case needs, and finds the next state."""
         lines: list[str] = []
-        for index in self._program.computed_in(state):
+        for index in self._program.computed_in(case):
             # An empty line separates the comments.
             lines += ["", *(f"  {line}" for line in self._value(index))]
-        statements = split_deep_values(self._program.states[state], self._program.atoms)
+        statements = split_deep_values(self._program.cases[case].statements, self._program.atoms)
         return [*lines, *self._printer.lines(statements, depth=1)]
 
     # --- a step -----------------------------------------------------------------------------------
@@ -271,14 +295,18 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state: a case for each state, or a call of the state's function."""
-        if not self._few_states:
-            return [f"local {self._result_names()} = MOVES[self.state]({self._parameters()})"]
-        lines = ["local state = self.state", f"local {self._result_names()}"]
-        for state in self._fspa.states:
-            lines.append(f"{'elseif' if state.id else 'if'} state == {state.id} then")
-            lines += [f"  {line}" for line in self._printer.comment(str(state.label))]
-            lines += self._branch(state.id)
+        """Return the code that finds the next state: a case for each state or shape, or a call of its function."""
+        has_tables = self._program.tables is not None
+        lines = [f"local {states.FIRST_EDGE} = FIRST_EDGES[self.state]"] if has_tables else []
+        selected = "STATE_SHAPES[self.state]" if has_tables else "self.state"
+        if not self._few_cases:
+            return [*lines, f"local {self._result_names()} = MOVES[{selected}]({self._parameters()})"]
+        name = "state_shape" if has_tables else "state"
+        lines += [f"local {name} = {selected}", f"local {self._result_names()}"]
+        for number, case in enumerate(self._program.cases):
+            lines.append(f"{'elseif' if number else 'if'} {name} == {number} then")
+            lines += [f"  {line}" for line in self._printer.comment(case.comment)]
+            lines += self._branch(number)
         return [*lines, "end"]
 
     def _judge(self) -> list[str]:
@@ -351,6 +379,11 @@ def _accepting_cases(signal: Signal, variable: str) -> list[str]:
 def _row(field: Signal | Param, entries: str) -> str:
     low, high = snippets.number_literal(field.low, "-huge"), snippets.number_literal(field.high, "huge")
     return f"{{ name = {string_literal(field.name)}, {entries}, low = {low}, high = {high} }}"
+
+
+def _from_0(numbers: Sequence[float]) -> list[str]:
+    """Return the items of a list of numbers whose first index is 0."""
+    return [f"{'' if index else '[0] = '}{number!r}" for index, number in enumerate(numbers)]
 
 
 def _list(items: Sequence[str]) -> str:

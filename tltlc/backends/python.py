@@ -1,4 +1,4 @@
-"""A stand-alone monitor in Python: one file, standard library only, one function per state.
+"""A stand-alone monitor in Python: one file, standard library only, one function per state or shape of states.
 
 The monitor is printed from the program of :mod:`tltlc.program`. It gives the same results to the
 last bit as :class:`tltlc.monitor.Monitor` with its default reward.
@@ -22,6 +22,7 @@ from tltlc.program.build import program
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer
+from tltlc.program.shapes import StateTables
 from tltlc.program.tree import (
     FAILING,
     Assign,
@@ -33,6 +34,7 @@ from tltlc.program.tree import (
     NumericCall,
     ProgramExpression,
     Statement,
+    Table,
     Type,
 )
 from tltlc.program.used_names import functions_called, variables_read
@@ -73,6 +75,7 @@ class _Python(Printer):
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "True", "false": "False"}
     END: ClassVar[str] = ""
+    TABLES: ClassVar[dict[Table, str]] = {name: f"_{name.upper()}" for name in Printer.TABLES}
 
     def __init__(self, atoms: Sequence[str]) -> None:
         self._atoms = atoms
@@ -164,7 +167,7 @@ class _Source:
         fspa, at_goal = self._fspa, self._fspa.judge == "goal"
         with recursion_room():
             step = _Python.block(self._step(), depth=2)
-            body = "\n\n\n".join(self._function(state.id) for state in fspa.states)
+            body = "\n\n\n".join(map(self._function, range(len(self._program.cases))))
         pieces = {
             "title": docstring_text(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
             "about": docstring_text("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
@@ -183,35 +186,53 @@ class _Source:
             "returns": ", the progress of the step" if at_goal else "",
             "states": f"\n\n{body}\n",
             "result": self._result,
-            "transitions": _tuple([f"_from_{state.id}" for state in fspa.states]),
-            "table": _tuple([self._state(state.id) for state in fspa.states]),
+            "transitions": _tuple([f"_from_{number}" for number in range(len(self._program.cases))]),
+            **self._states(self._program.tables),
         }
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
         fields: tuple[Signal | Param, ...] = (*fspa.signals, *fspa.params)
         # Where a bound is missing, `inf` is printed.
         used += ["inf"] if any(None in (field.low, field.high) for field in fields) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
-        return fill_template("monitor.py.txt", pieces)
+        return fill_template("monitor.py.txt", pieces, ["states" if self._program.tables is None else "tables"])
 
-    def _state(self, state: int) -> str:
+    def _states(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with rows of states or, if there are tables, of kinds, and the tables."""
+        labels = [str(state.label) for state in self._fspa.states]
+        if tables is None:
+            rows = [f"({string_literal(label)}, {self._verdict(state)})" for state, label in enumerate(labels)]
+            return {"table": _tuple(rows), "tables": "", "label_texts": ""}
+        lines = [
+            f"_{name.upper()}: list[{'float' if name == 'level_progress' else 'int'}] = "
+            f"[{Printer.items([*map(repr, numbers)])}]"
+            for name, numbers in tables.all_tables(self._fspa.judge).items()
+        ]
+        return {
+            "table": _tuple([f"({self._verdict(state)})" for state in tables.kind_states]),
+            "tables": "\n".join(lines),
+            "label_texts": _tuple([_inline([*map(string_literal, pieces)]) for pieces in tables.labels.texts]),
+        }
+
+    def _verdict(self, state: int) -> str:
         fspa_state, ends = self._fspa.states[state], self._program.ends[state]
-        label, verdict = string_literal(str(fspa_state.label)), string_literal(fspa_state.verdict)
-        return f"({label}, {verdict}, {fspa_state.accepting}, {ends})"
+        return f"{string_literal(fspa_state.verdict)}, {fspa_state.accepting}, {ends}"
 
     @property
     def _result(self) -> str:
         """The return type of the functions of states, as text."""
         return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
 
-    def _function(self, state: int) -> str:
-        """Return the source of the function of a state, which finds the edge to take, and returns its results.
+    def _function(self, number: int) -> str:
+        """Return the source of the function of a case, which finds the edge to take, and returns its results.
 
         The results are the next state, the robustness, the progress if the spec is judged at its
         goal, and the limiting atom.
         """
-        lines = call_lines(f"def _from_{state}", [f"{atom}: float" for atom in self._computed], f" -> {self._result}:")
-        lines += self._printer.lines([CommentLine(str(self._fspa.states[state].label))], depth=1)
-        body = split_deep_values(self._program.states[state], self._names)
+        parameters = [] if self._program.tables is None else [f"{states.FIRST_EDGE}: int"]
+        parameters += [f"{atom}: float" for atom in self._computed]
+        lines = call_lines(f"def _from_{number}", parameters, f" -> {self._result}:")
+        lines += self._printer.lines([CommentLine(self._program.cases[number].comment)], depth=1)
+        body = split_deep_values(self._program.cases[number].statements, self._names)
         match body:
             case (If(cases, otherwise),):
                 # Each case is an `if` of its own that returns: a long chain of `elif` would nest too deep for Python.
@@ -225,7 +246,7 @@ class _Source:
         """Return the lines that run when an edge is taken; the last line returns the results.
 
         ``body`` has the statements that assign the results. A result with a single assignment is
-        returned directly, without a variable.
+        returned directly, without a variable, unless other statements read it.
         """
         once = {
             statement.name: statement
@@ -234,6 +255,8 @@ class _Source:
         }
         if once.get(states.LIMITING, _NO_LIMITING) != _NO_LIMITING:
             del once[states.LIMITING]
+        if states.TARGET in variables_read(body):
+            del once[states.TARGET]
         rest = [statement for statement in body if statement not in once.values()]
         results = [self._printer.result(once[name]) if name in once else name for name in self._results]
         return [*self._printer.lines(rest, depth), f"{INDENT * depth}return {', '.join(results)}"]
@@ -270,7 +293,7 @@ class _Source:
         program_ = self._program
         lines: list[str] = []
         fails = False
-        readers = (None, *range(len(program_.states)))
+        readers = (None, *range(len(program_.cases)))
         for index in (atom for reader in readers for atom in program_.computed_in(reader)):
             lines += self._printer.comment(program_.atom_comments[index])
             if functions_called(program_.values[index]) & FAILING:
@@ -296,8 +319,12 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state: a call of the current state's function."""
-        return call_lines(f"{', '.join(self._results)} = _TRANSITIONS[self.state]", self._computed)
+        """Return the code that finds the next state: a call of the function of the current state or its shape."""
+        results = ", ".join(self._results)
+        if self._program.tables is None:
+            return call_lines(f"{results} = _TRANSITIONS[self.state]", self._computed)
+        arguments = ["_FIRST_EDGES[self.state]", *self._computed]
+        return call_lines(f"{results} = _TRANSITIONS[_STATE_SHAPES[self.state]]", arguments)
 
     def _judge(self) -> list[str]:
         """Return the code that computes reward and best progress, and whether the episode ends."""

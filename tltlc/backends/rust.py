@@ -19,7 +19,8 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, ProgramVariable, Type
+from tltlc.program.shapes import StateTables
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, ProgramVariable, Table, Type
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -37,6 +38,7 @@ _RESERVED = """
     entered sample fmt std alloc main program tltl_math
     ATOM_NAMES Default Err GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused
     Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
+    EDGE_TARGETS FIRST_EDGES KINDS LABELS LEVEL_PROGRESS STATE_KINDS STATE_LEVELS STATE_SHAPES
 """.split()
 """Names that no variable may have: words of the language, and names in the template."""
 
@@ -61,6 +63,7 @@ class _Rust(Printer):
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
+    TABLES: ClassVar[dict[Table, str]] = {name: name.upper() for name in Printer.TABLES}
 
     def __init__(self) -> None:
         self.atom = 0
@@ -82,6 +85,10 @@ class _Rust(Printer):
     def head(self, test: str, *, first: bool) -> str:
         """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"if {test} {{" if first else f"}} else if {test} {{"
+
+    def entry(self, table: Table, index: str) -> str:
+        """Return the code that reads an entry of a table; integers become indices."""
+        return super().entry(table, index) + ("" if table == "level_progress" else " as usize")
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function.
@@ -108,6 +115,7 @@ class _Source:
         params = list(zip(fspa.params, program_.params, strict=True))
         present = [*program_.functions, "exclusive" if program_.exclusive else "single"]
         present += [] if all(program_.always_in_range) else ["keep"]
+        present += ["states"] if program_.tables is None else ["tables"]
         present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -136,6 +144,7 @@ class _Source:
             ),
             "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
             "states": _Rust.block(self._states(), 1),
+            **self._state_tables(program_.tables),
             "sample": "sample" if program_.reads_sample else "_",
             "step": step,
             "given": "sample" if give_code else "_",
@@ -165,15 +174,34 @@ class _Source:
         return [f"//! {line}" for line in wrap(text, 115, break_on_hyphens=False)]
 
     def _states(self) -> list[str]:
+        """Return a row for each state or, if there are tables, for each kind of states."""
+        tables = self._program.tables
         lines: list[str] = []
-        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+            state = self._fspa.states[index]
             values = (
+                _string(str(state.label) if tables is None else ""),
                 f"Verdict::{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
-                snippets.boolean_literal(ends),
+                snippets.boolean_literal(self._program.ends[index]),
             )
-            lines.append(f"place({_string(str(state.label))}, {', '.join(values)}),")
+            lines.append(f"place({', '.join(values)}),")
         return lines
+
+    def _state_tables(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with the tables of states; they are empty if there are none."""
+        if tables is None:
+            return {"tables": "", "labels": "", "kind_count": ""}
+        lines: list[str] = []
+        for name, numbers in tables.step_tables(self._fspa.judge).items():
+            type_ = "f64" if name == "level_progress" else "u16" if max(numbers) < 1 << 16 else "u32"
+            items = _Rust.items([*map(repr, numbers)])
+            lines.append(f"static {name.upper()}: [{type_}; {len(numbers)}] = [{items}];")
+        return {
+            "tables": "\n".join(lines),
+            "labels": _Rust.items([_string(str(state.label)) for state in self._fspa.states]),
+            "kind_count": str(len(tables.kind_states)),
+        }
 
     def _give(self) -> list[str]:
         """Return the body of a generated function that sets one signal, given its index: a case for each signal."""
@@ -208,19 +236,19 @@ class _Source:
         lines += self._bools(None)
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
-    def _bools(self, state: int | None) -> list[str]:
+    def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
 
-        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
-        that every step reads.
+        It converts the signals that only this case reads or, if ``case`` is None, those that every
+        step reads.
         """
-        names = self._program.bools_read_in(state)
+        names = self._program.bools_read_in(case)
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
         """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
         program_ = self._program
-        used = variables_read(statement for state in program_.states for statement in state)
+        used = variables_read(statement for case in program_.cases for statement in case.statements)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
         places = program_.computed_in(None)
         lines = [line for index in places for line in self._value(index)]
@@ -237,13 +265,13 @@ class _Source:
         statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
         return self._printer.lines((CommentLine(program_.atom_comments[index]), *statements), depth)
 
-    def _values_only_in(self, state: int) -> list[str]:
-        """Return the code that computes the atoms that only a step from ``state`` needs.
+    def _values_only_in(self, case: int) -> list[str]:
+        """Return the code that computes the atoms that only this case needs.
 
         It first converts the bool signals that only these atoms read.
         """
-        lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
-        return [*lines, *(line for index in self._program.computed_in(state) for line in self._value(index, depth=2))]
+        lines = [f"{_INDENT * 2}{line}" for line in self._bools(case)]
+        return [*lines, *(line for index in self._program.computed_in(case) for line in self._value(index, depth=2))]
 
     def _check(self) -> list[str]:
         """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
@@ -255,15 +283,17 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each current state."""
+        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
-        lines.append("match self.state {")
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            lines += [f"{_INDENT}{line}" for line in self._printer.comment(str(state.label))]
-            lines += [f"{_INDENT}{state.id} => {{", *self._values_only_in(state.id)]
-            lines += [*self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
+        has_tables = self._program.tables is not None
+        lines += [f"let {states.FIRST_EDGE} = FIRST_EDGES[self.state] as usize;"] if has_tables else []
+        lines.append("match STATE_SHAPES[self.state] {" if has_tables else "match self.state {")
+        for number, case in enumerate(self._program.cases):
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
+            lines += [f"{_INDENT}{number} => {{", *self._values_only_in(number)]
+            lines += [*self._printer.lines(case.statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:

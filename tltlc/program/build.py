@@ -12,6 +12,7 @@ from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
 from tltlc.program.bounds import ValueRange, prove_ranges, range_between
 from tltlc.program.names import VariableNames
+from tltlc.program.shapes import Case, StateTables, cases_and_tables
 from tltlc.program.tree import FAILING, NumericFunction, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Signal
@@ -21,6 +22,7 @@ TEMPORARY = "t"
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
+    states.FIRST_EDGE,
     *(reward_step.STEPS, reward_step.STEPS_REAL, reward_step.BEST, reward_step.BEFORE, reward_step.REWARD),
     *(reward_step.DONE, reward_step.ENDS, reward_step.VIOLATED, reward_step.SATISFIED, "state"),
 )
@@ -33,19 +35,19 @@ class Program:
     Signals, parameters, atoms and states have the order that they have in the automaton.
 
     - ``signals``, ``params`` and ``atoms`` are the names of the variables with their values.
-    - ``values`` has, for each atom, the statements that assign its value; none if no state needs it.
+    - ``values`` has, for each atom, the statements that assign its value; none if no case needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
-    - ``only_in`` has, for each atom, the number of the only state that needs the atom: the atom is
-      computed only there. It is -1 if no state needs the atom, and None if every step computes it.
-    - ``read_in`` has, for each signal, the number of the only state whose atoms read it. It is -1 if
+    - ``only_in`` has, for each atom, the number of the only case that needs the atom: the atom is
+      computed only there. It is -1 if no case needs the atom, and None if every step computes it.
+    - ``read_in`` has, for each signal, the number of the only case whose atoms read it. It is -1 if
       no atom reads the signal, and None if every step reads it.
     - ``atom_comments`` has, for each atom, the text of a comment: the name of the atom. The first atom of
       a predicate also has the documentation of the predicate.
     - ``exclusive`` has a pair for each group of at least two exclusive atoms, of which at most one
       is true at a time: the index of the group in the automaton, and the indices of its atoms.
-    - ``states`` has, for each state, the statements that compute a transition from it. They assign
-      the variables of :mod:`tltlc.program.states`.
+    - ``cases`` has the statements that compute a transition: a case for each state or, if ``tables``
+      is not None, for each shape of states (:mod:`tltlc.program.shapes`).
     - ``reward_statements`` compute progress, reward and the end of the episode after a transition.
       They read and assign the variables of :mod:`tltlc.program.reward_step`.
     - ``ends`` says, for each state, whether entering it ends an episode.
@@ -61,24 +63,25 @@ class Program:
     read_in: tuple[int | None, ...]
     atom_comments: tuple[str, ...]
     exclusive: tuple[tuple[int, tuple[int, ...]], ...]
-    states: tuple[tuple[Statement, ...], ...]
+    cases: tuple[Case, ...]
+    tables: StateTables | None
     reward_statements: tuple[Statement, ...]
     ends: tuple[bool, ...]
 
-    def computed_in(self, state: int | None) -> list[int]:
-        """Return the indices of the atoms that are computed only in this state.
+    def computed_in(self, case: int | None) -> list[int]:
+        """Return the indices of the atoms that are computed only in this case.
 
-        If ``state`` is None, return the indices of the atoms that every step computes.
+        If ``case`` is None, return the indices of the atoms that every step computes.
         """
-        return [index for index, only in enumerate(self.only_in) if only == state]
+        return [index for index, only in enumerate(self.only_in) if only == case]
 
-    def bools_read_in(self, state: int | None) -> list[str]:
-        """Return the variables of the bool signals that are read only in this state.
+    def bools_read_in(self, case: int | None) -> list[str]:
+        """Return the variables of the bool signals that are read only in this case.
 
-        If ``state`` is None, return the variables of the bool signals that every step reads.
+        If ``case`` is None, return the variables of the bool signals that every step reads.
         """
         signals = zip(self.fspa.signals, self.signals, self.read_in, strict=True)
-        return [name for signal, name, only in signals if signal.type == "bool" and only == state]
+        return [name for signal, name, only in signals if signal.type == "bool" and only == case]
 
     @property
     def reads_sample(self) -> bool:
@@ -131,12 +134,11 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not functions_called(statements) & FAILING
         for statements, range_ in values
     )
-    monitor_tables = tables(fspa)
-    transitions = tuple(states.state_statements(monitor_tables, state.id, atoms) for state in fspa.states)
+    cases, state_tables = cases_and_tables(tables(fspa), atoms)
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
     compared = {atom for _, group in exclusive for atom in group}
     only_in = _only_in(
-        atoms, [is_in_range and index not in compared for index, is_in_range in enumerate(in_range)], transitions
+        atoms, [is_in_range and index not in compared for index, is_in_range in enumerate(in_range)], cases
     )
     needed = tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True))
     return Program(
@@ -148,28 +150,27 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         always_in_range=in_range,
         only_in=only_in,
         read_in=_read_in(tuple(signals.values()), only_in, needed),
-        atom_comments=_atom_comments(fspa, only_in),
+        atom_comments=_atom_comments(fspa, only_in, len(cases)),
         exclusive=exclusive,
-        states=transitions,
+        cases=cases,
+        tables=state_tables,
         reward_statements=reward_step.statements(fspa),
         ends=tuple(ends_on_entry(fspa, state) for state in fspa.states),
     )
 
 
-def _only_in(
-    atoms: Sequence[str], silent: Sequence[bool], transitions: Sequence[tuple[Statement, ...]]
-) -> tuple[int | None, ...]:
-    """Return for each atom the number of the only state that needs it.
+def _only_in(atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Case]) -> tuple[int | None, ...]:
+    """Return for each atom the number of the only case that needs it.
 
-    The number is -1 if no state needs the atom, and None if every step computes it. ``silent``
+    The number is -1 if no case needs the atom, and None if every step computes it. ``silent``
     says, for each atom, that its computation never gives an error or a notice. Every step computes
     the atoms that are not silent, so that all monitors give the same errors and notices. ``atoms``
-    are the variables of the atoms, and ``transitions`` the statements of each state.
+    are the variables of the atoms.
     """
-    used = [variables_read(statements) for statements in transitions]
+    used = [variables_read(case.statements) for case in cases]
     only_in: list[int | None] = []
     for name, is_silent in zip(atoms, silent, strict=True):
-        readers = [state for state, names in enumerate(used) if name in names]
+        readers = [number for number, names in enumerate(used) if name in names]
         only_in.append((readers or [-1])[0] if is_silent and len(readers) < 2 else None)
     return tuple(only_in)
 
@@ -177,10 +178,10 @@ def _only_in(
 def _read_in(
     signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
 ) -> tuple[int | None, ...]:
-    """Return for each signal the number of the only state that reads it.
+    """Return for each signal the number of the only case that reads it.
 
-    The number is -1 if no atom reads the signal. It is None if every step or several states read
-    it. ``only_in`` has the number of the only state that needs each atom, and ``values`` has the
+    The number is -1 if no atom reads the signal. It is None if every step or several cases read
+    it. ``only_in`` has the number of the only case that needs each atom, and ``values`` has the
     statements of each atom.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
@@ -190,17 +191,17 @@ def _read_in(
     return tuple((*readers, -1)[0] if len(readers) < 2 else None for readers in places.values())
 
 
-def _atom_comments(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
+def _atom_comments(fspa: Fspa, only_in: Sequence[int | None], case_count: int) -> tuple[str, ...]:
     """Return the text of the comment of each atom: its name, and perhaps documentation.
 
     The documentation of a predicate is in the comment of only one of its atoms: the first in the
     generated code. In this code, the atoms that every step computes come before those of single
-    states (``only_in``).
+    cases (``only_in``).
     """
     atom_comments = [atom.name for atom in fspa.atoms]
     explained = {""}
     eager = [index for index, only in enumerate(only_in) if only is None]
-    lazy = [index for state in fspa.states for index, only in enumerate(only_in) if only == state.id]
+    lazy = [index for case in range(case_count) for index, only in enumerate(only_in) if only == case]
     for index in (*eager, *lazy):
         doc = fspa.atoms[index].doc
         if doc not in explained:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 from tltlc.program.names import printable_line
 from tltlc.program.tree import (
@@ -30,6 +30,8 @@ from tltlc.program.tree import (
     ProgramVariable,
     Real,
     Statement,
+    Table,
+    TableEntry,
     Type,
 )
 
@@ -65,6 +67,8 @@ class Printer:
     }
     END: ClassVar[str] = ";"
     """The end of a statement."""
+    TABLES: ClassVar[dict[Table, str]] = {name: name for name in get_args(Table)}
+    """The name of each table."""
 
     # --- statements -------------------------------------------------------------------------------
 
@@ -173,6 +177,10 @@ class Printer:
         """Return the code that calls a numeric function such as ``min``."""
         return f"{function}({', '.join(arguments)})"
 
+    def entry(self, table: Table, index: str) -> str:
+        """Return the code that reads an entry of a table."""
+        return f"{self.TABLES[table]}[{index}]"
+
     def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
         """Return the text of an expression, and how tightly its operator binds."""
         match node:
@@ -192,6 +200,8 @@ class Printer:
                 return f"{self.text(left, binding)} {op} {self.text(right, binding + 1)}", binding
             case NumericCall(function, args):
                 return self.call(function, [self.text(argument) for argument in args]), _UNIT
+            case TableEntry(table, index):
+                return self.entry(table, self.text(index)), _UNIT
             case Compare(op, left, right):
                 return f"{self.text(left, _SUM)} {self.COMPARISONS[op]} {self.text(right, _SUM)}", _COMPARISON
             case Not(operand):

@@ -1,11 +1,12 @@
 """The statements that compute the transition from each state of the automaton.
 
-They find the edge to take, its robustness, and the progress. Begin with `state_statements`.
+They find the edge to take, its robustness, and the progress. Begin with `state_statements`. States
+of one shape (:mod:`tltlc.program.shapes`) share their statements, which `shape_statements` returns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from functools import lru_cache, reduce
 from typing import Final
 
@@ -29,6 +30,7 @@ from tltlc.program.tree import (
     ProgramVariable,
     Real,
     Statement,
+    TableEntry,
 )
 from tltlc.program.used_names import variables_read
 
@@ -39,6 +41,8 @@ They are the next state, the robustness of the edge taken, the progress of this 
 index of the limiting atom. This atom determines the robustness of the most robust edge towards a
 goal; the index is -1 if the state changes or no edge leads towards a goal.
 """
+FIRST_EDGE = "first_edge"
+"""The place of the state's first edge in the table of targets, which statements that read tables need."""
 NEAREST, OTHER = "nearest", "other"
 """Two local variables: the robustness of the best prime implicant so far, and of the one compared with it."""
 _ZERO: Final = Real(0.0)
@@ -51,39 +55,63 @@ def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) ->
     determines how robust the most robust edge towards a goal is. ``atoms`` are the names of the
     variables with the values of the atoms.
     """
-    return _StateCode(tables, state, atoms).statements()
+    edges = sorted(tables.edges[state], key=lambda edge: (_size(edge.guard), edge.target))
+    return _StateCode(tables, atoms, reads_tables=False).statements(edges)
+
+
+def shape_statements(tables: MonitorTables, edges: Sequence[Edge], atoms: Sequence[str]) -> tuple[Statement, ...]:
+    """Return the statements that compute the transition from any state of one shape.
+
+    ``edges`` are the edges of one of these states, ordered by :func:`shape_edges`. The statements
+    read the next state and its progress from tables. ``atoms`` are as in :func:`state_statements`.
+    """
+    return _StateCode(tables, atoms, reads_tables=True).statements(edges)
+
+
+def shape_edges(tables: MonitorTables, state: int) -> list[Edge]:
+    """Return the edges of a state, ordered by their guards: the longest guard comes last."""
+    return sorted(tables.edges[state], key=lambda edge: (_size(edge.guard), edge.guard.primes))
+
+
+def edge_shape(tables: MonitorTables, edge: Edge) -> Hashable:
+    """Return what determines the statements of an edge, apart from entries of tables.
+
+    These are the prime implicants of the edge's guard. For an edge from a state to itself, they are
+    also those of the edges that would lead nearer to a goal.
+    """
+    return edge.guard.primes, tuple(other.guard.primes for other in _improving(tables, edge))
 
 
 class _StateCode:
-    def __init__(self, tables: MonitorTables, state: int, atoms: Sequence[str]) -> None:
-        self._tables, self._state = tables, state
+    def __init__(self, tables: MonitorTables, atoms: Sequence[str], *, reads_tables: bool) -> None:
+        self._tables, self._reads_tables = tables, reads_tables
         # Large automata have millions of literals: equal ones share one expression.
         self._values, self._tests = _literals(tuple(atoms))
         self._at_goal = tables.fspa.judge == "goal"
 
-    def statements(self) -> tuple[Statement, ...]:
-        """Return an ``if`` with a case for each edge that leaves the state.
+    def statements(self, edges: Sequence[Edge]) -> tuple[Statement, ...]:
+        """Return an ``if`` with a case for each of the ``edges`` that leave the state.
 
-        Exactly one guard is true, so the edge with the longest guard is the ``else``, without a
-        test. If there is only one edge, return its statements without an ``if``.
+        Exactly one guard is true, so the last edge, which has the longest guard, is the ``else``,
+        without a test. If there is only one edge, return its statements without an ``if``.
         """
-        edges = sorted(self._tables.edges[self._state], key=lambda edge: (_size(edge.guard), edge.target))
-        *tested, last = edges
-        if not tested:
-            return self._edge_statements(last)
-        cases = tuple((self._truth(edge.guard), self._edge_statements(edge)) for edge in tested)
-        return (If(cases, self._edge_statements(last)),)
+        bodies = [self._edge_statements(place, edge) for place, edge in enumerate(edges)]
+        if len(edges) == 1:
+            return bodies[0]
+        tests = [self._truth(edge.guard) for edge in edges[:-1]]
+        return (If(tuple(zip(tests, bodies[:-1], strict=True)), bodies[-1]),)
 
-    def _edge_statements(self, edge: Edge) -> tuple[Statement, ...]:
+    def _edge_statements(self, place: int, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when the automaton takes an edge.
 
         They assign the next state, the robustness of the edge, the progress, and the limiting atom
-        (the atom that determines how robust the most robust edge towards a goal is).
+        (the atom that determines how robust the most robust edge towards a goal is). ``place`` is
+        the place of the edge among those that leave the state.
         """
-        improving = self._tables.improving[edge.source] if edge.source == edge.target else ()
-        lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, Int(edge.target))]
+        improving = _improving(self._tables, edge)
+        lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, self._target(place, edge))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
-        base = Real(self._tables.base_progress[edge.target])
+        base = self._base_progress(edge)
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
         # The guards of the edges towards a goal are false, so each of their prime implicants has a literal at or
@@ -95,7 +123,18 @@ class _StateCode:
         share = BinaryNumber(
             "/", BinaryNumber("+", Real(1.0), ProgramVariable(NEAREST)), Real(float(self._tables.fspa.spec_size))
         )
-        return (*lines, *self._progress(BinaryNumber("+", base, share) if base.value else share))
+        return (*lines, *self._progress(share if base == _ZERO else BinaryNumber("+", base, share)))
+
+    def _target(self, place: int, edge: Edge) -> ProgramExpression:
+        if not self._reads_tables:
+            return Int(edge.target)
+        first = ProgramVariable(FIRST_EDGE)
+        return TableEntry("edge_targets", BinaryNumber("+", first, Int(place)) if place else first)
+
+    def _base_progress(self, edge: Edge) -> ProgramExpression:
+        if not self._reads_tables:
+            return Real(self._tables.base_progress[edge.target])
+        return TableEntry("level_progress", TableEntry("state_levels", ProgramVariable(TARGET)))
 
     def _progress(self, value: ProgramExpression) -> list[Statement]:
         """Return the statement that assigns ``value`` to the progress, as a list.
@@ -192,6 +231,11 @@ def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
         values[index, True], values[index, False] = variable, Negate(variable)
         tests[index, True], tests[index, False] = Compare(">", variable, _ZERO), Compare("<=", variable, _ZERO)
     return values, tests
+
+
+def _improving(tables: MonitorTables, edge: Edge) -> tuple[Edge, ...]:
+    """Return the edges that would lead nearer to a goal, if ``edge`` leads from a state to itself."""
+    return tables.improving[edge.source] if edge.source == edge.target else ()
 
 
 def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:

@@ -25,6 +25,9 @@ NumericFunction = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min"
 FAILING: Final[frozenset[NumericFunction]] = frozenset({"divide", "power", "sqrt", "exp"})
 """Functions that have no value for some arguments."""
 
+Table = Literal["edge_targets", "state_levels", "level_progress"]
+"""The tables of numbers that a program may read: fields of :class:`tltlc.program.shapes.StateTables`."""
+
 
 # --- expressions ----------------------------------------------------------------------------------
 
@@ -111,7 +114,17 @@ class Any:
     args: tuple[ProgramExpression, ...]
 
 
-ProgramExpression = Union[Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any]
+@record
+class TableEntry:
+    """The entry of a table at an index, which is an integer from 0."""
+
+    table: Table
+    index: ProgramExpression
+
+
+ProgramExpression = Union[
+    Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any, TableEntry
+]
 
 
 # --- statements -----------------------------------------------------------------------------------

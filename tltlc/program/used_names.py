@@ -23,6 +23,7 @@ from tltlc.program.tree import (
     ProgramExpression,
     ProgramVariable,
     Statement,
+    TableEntry,
 )
 
 
@@ -51,7 +52,7 @@ def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpressio
                 stack += (left, right)
             case NumericCall(_, args) | All(args) | Any(args):
                 stack += args
-            case Negate(operand) | Not(operand):
+            case Negate(operand) | Not(operand) | TableEntry(_, operand):
                 stack.append(operand)
 
 

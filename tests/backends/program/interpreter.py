@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 
 from tltlc.program.build import Program
+from tltlc.program.shapes import StateTables
+from tltlc.program.states import FIRST_EDGE
 from tltlc.program.tree import (
     All,
     Any,
@@ -24,6 +26,7 @@ from tltlc.program.tree import (
     ProgramVariable,
     Real,
     Statement,
+    TableEntry,
 )
 
 Value = float | int | bool
@@ -34,10 +37,12 @@ class NoValueError(Exception):
 
 
 class Scope:
-    """Variables; each is declared once, and assigned before it is read."""
+    """Variables; each is declared once, and assigned before it is read. ``look_ups`` counts entries of tables read."""
 
-    def __init__(self, values: Mapping[str, Value]) -> None:
+    def __init__(self, values: Mapping[str, Value], tables: StateTables | None = None) -> None:
         self.values = dict(values)
+        self.look_ups = 0
+        self._tables = tables
         self._constant: set[str] = set()
         self.changing: set[str] = set(values)
 
@@ -79,6 +84,12 @@ class Scope:
                 return not self.value(operand)
             case All(args):
                 return all(self.value(argument) for argument in args)
+            case TableEntry(table, index):
+                place = self.value(index)
+                assert isinstance(place, int) and place >= 0
+                self.look_ups += 1
+                entry: float = getattr(self._tables, table)[place]
+                return entry
             case Any(args):
                 return any(self.value(argument) for argument in args)
         raise TypeError(node)
@@ -88,9 +99,12 @@ def step(
     program: Program, state: int, steps: int, best: float, done: bool, atoms: Mapping[str, float]
 ) -> dict[str, Value]:
     """Return the variables after a step on the values of the atoms; ``steps`` is the number of this step."""
-    scope = Scope(atoms)
+    tables = program.tables
+    scope = Scope(atoms, tables)
     scope.changing |= {"target", "robustness", "progress", "limiting", "best", "reward", "done"}
-    scope.run(program.states[state])
+    if tables is not None:
+        scope.values[FIRST_EDGE] = tables.first_edges[state]
+    scope.run(program.cases[state if tables is None else tables.state_shapes[state]].statements)
     target = program.fspa.states[int(scope.values["target"])]
     ends = target.verdict in ("satisfied", "violated") or (program.fspa.judge == "goal" and target.accepting)
     scope.values |= {"steps": steps, "steps_real": float(steps), "best": best, "done": done, "ends": ends}

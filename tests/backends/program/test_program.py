@@ -166,7 +166,7 @@ def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[flo
     a, b, c, d = map(f.atom, "abcd")
     fspa = build(spec_from_formula(f.eventually(f.or_(f.and_(a, b), f.and_(c, d)))))
     compiled = program(fspa, ())
-    (branch,) = compiled.states[0]
+    (branch,) = compiled.cases[0].statements
     assert isinstance(branch, If)
     for body in (branch.cases[0][1], branch.otherwise):
         (robustness,) = (line.value for line in body if isinstance(line, Assign) and line.name == ROBUSTNESS)
@@ -192,8 +192,8 @@ def test_temporaries_avoid_the_names_of_a_specification() -> None:
 @times(25)
 @given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
 def test_every_declared_variable_is_read(fspa: Fspa, judge: spec.JudgeMode) -> None:
-    for statements in program(replace(fspa, judge=judge), ()).states:
-        assert _declared(statements) <= variables_read(statements)
+    for case in program(replace(fspa, judge=judge), ()).cases:
+        assert _declared(case.statements) <= variables_read(case.statements)
 
 
 def _declared(statements: Iterable[Statement]) -> set[str]:

@@ -7,7 +7,17 @@ from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
 from tltlc.program.printer import Printer
-from tltlc.program.tree import Assign, Declare, Negate, NumericCall, ProgramExpression, ProgramVariable, Real, Type
+from tltlc.program.tree import (
+    Assign,
+    Declare,
+    Negate,
+    NumericCall,
+    ProgramExpression,
+    ProgramVariable,
+    Real,
+    Table,
+    Type,
+)
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
@@ -27,6 +37,7 @@ class Gd(Printer):
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END: ClassVar[str] = ""
+    TABLES: ClassVar[dict[Table, str]] = {name: f"_{name.upper()}" for name in Printer.TABLES}
     _START: ClassVar[dict[Type, str]] = {"real": "0.0", "int": "0", "bool": "false"}
 
     def __init__(self, names: Mapping[str, str], functions: Mapping[str, str], swapped: Collection[str] = ()) -> None:

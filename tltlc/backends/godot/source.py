@@ -9,6 +9,7 @@ precision in Godot 3. Godot 3 also rounds a number that it parses from a string.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -22,11 +23,18 @@ from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
+from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Param, Signal
 
 ENDINGS = ("_monitor.gd", "_monitor_main.gd")
+
+_FEW_CASES: Final = 8
+"""The most states, or shapes of states, that a step compares with the current one after the other.
+
+If there are more, comparisons halve them.
+"""
 
 _MEMBERS = {
     states.TARGET: "state",
@@ -113,6 +121,7 @@ class _Source:
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
+        present += [] if program_.tables is None else ["tables"]
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -132,6 +141,7 @@ class _Source:
             "first_accepting": snippets.boolean_literal(first.accepting),
             "accepting": _list([snippets.boolean_literal(state.accepting) for state in fspa.states]),
             "ends": _list(map(snippets.boolean_literal, program_.ends)),
+            "tables": "" if program_.tables is None else "\n".join(self._tables(program_.tables)),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
@@ -148,6 +158,14 @@ class _Source:
             "step": step,
         }
         return fill_template("monitor.gd.txt", places, present)
+
+    def _tables(self, tables: StateTables) -> Iterable[str]:
+        """Yield the definitions of the tables that a step reads; the kinds of states are constants of their own."""
+        for name, numbers in tables.step_tables(self._fspa.judge).items():
+            if name != "state_kinds":
+                type_ = self._dialect.types()["floats" if name == "level_progress" else "ints"]
+                items = map(_signed if name == "level_progress" else repr, numbers)
+                yield f"const _{name.upper()}: {type_} = {_list(items)}"
 
     # --- records ----------------------------------------------------------------------------------
 
@@ -213,13 +231,13 @@ class _Source:
         ]
         return [*lines, *self._stop()] if checked else lines
 
-    def _bools(self, state: int | None) -> list[str]:
+    def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
 
-        It converts the signals that only a step from ``state`` reads or, if ``state`` is None, those
-        that every step reads.
+        It converts the signals that only this case reads or, if ``case`` is None, those that every
+        step reads.
         """
-        names = map(self._printer.name, self._program.bools_read_in(state))
+        names = map(self._printer.name, self._program.bools_read_in(case))
         return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
 
     def _stop(self) -> list[str]:
@@ -233,13 +251,13 @@ class _Source:
             lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({index}, {name})"]
         return [*lines, *(self._stop() if unsure else [])]
 
-    def _values(self, state: int | None) -> list[str]:
+    def _values(self, case: int | None) -> list[str]:
         """Return the code that computes the values of some atoms.
 
-        These are the atoms that only a step from ``state`` computes or, if ``state`` is None, those
-        that every step computes.
+        These are the atoms that only this case computes or, if ``case`` is None, those that every step
+        computes.
         """
-        return [line for index in self._program.computed_in(state) for line in self._value(index)]
+        return [line for index in self._program.computed_in(case) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
@@ -261,14 +279,37 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state: a chain of tests, which is faster than ``match``."""
+        """Return the code that finds the next state, by tests of the current state or its shape.
+
+        The tests are faster than ``match``.
+        """
         lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
-            lines += [f"\t{line}" for line in self._printer.comment(str(state.label))]
-            lines += [f"\t{line}" for line in (*self._bools(state.id), *self._values(state.id))]
-            lines += self._printer.lines(statements, depth=1)
+        count = len(self._program.cases)
+        if self._program.tables is not None:
+            lines.append(f"var {states.FIRST_EDGE}: int = _FIRST_EDGES[state]")
+            lines.append("var state_shape: int = _STATE_SHAPES[state]")
+            return [*lines, *self._halved("state_shape", 0, count)]
+        if count > _FEW_CASES:
+            return [*lines, *self._halved("state", 0, count)]
+        for place in range(count):
+            lines.append(self._printer.head(f"state == {place}", first=place == 0))
+            lines += [f"\t{line}" for line in self._case(place)]
         return lines
+
+    def _halved(self, variable: str, first: int, end: int) -> list[str]:
+        """Return the code that finds the case among ``first``, …, ``end - 1`` whose number is in a variable."""
+        if end - first == 1:
+            return self._case(first)
+        middle = (first + end) // 2
+        lines = [self._printer.head(f"{variable} < {middle}", first=True)]
+        lines += [f"\t{line}" for line in self._halved(variable, first, middle)]
+        lines.append(self._printer.otherwise())
+        return [*lines, *(f"\t{line}" for line in self._halved(variable, middle, end))]
+
+    def _case(self, place: int) -> list[str]:
+        case = self._program.cases[place]
+        lines = [*self._printer.comment(case.comment), *self._bools(place), *self._values(place)]
+        return [*lines, *self._printer.lines(case.statements)]
 
     def _judge(self) -> list[str]:
         """Return the code that computes progress and reward, and whether the episode ends."""

@@ -40,6 +40,7 @@ class LuaPrinter(Printer):
     """
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     COMPARISONS: ClassVar = {**Printer.COMPARISONS, "!=": "~="}
+    TABLES: ClassVar = {name: name.upper() for name in Printer.TABLES}
     END = ""
 
     def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
