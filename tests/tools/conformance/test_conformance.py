@@ -25,7 +25,7 @@ from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
 from tltlc.tools.conformance.expected_output import ExpectedOutput, expected_output
 
-ALONE = ("by_zero", "exclusive_many", "names_of_code")
+ALONE = ("by_zero", "exclusive_many", "names_of_code", "counting")
 """Cases whose programs are built one by one and started once per trace, as a user does;
 ``test_programs`` has one more."""
 

@@ -21,8 +21,9 @@ _ABOUT: Final = {
     "functions": "Every operator and function, as the language writes them.",
     "watch": "Over infinite traces, judged at the limit.",
     "errand": "Over infinite traces, judged at the goal.",
+    "counting": "Six hundred states, most of which only count.",
 }
-_RECORDED: Final = ("cover_and_hide", "navigation", "branching")
+_RECORDED: Final = ("cover_and_hide", "navigation", "branching", "counting")
 
 _CLOSE: Final = (0.0, 0.5, 1.0, 3.0, 9.5, 20.0, 25.0)
 _POOLS: Final[dict[str, Pools]] = {
@@ -33,6 +34,7 @@ _POOLS: Final[dict[str, Pools]] = {
     "platform": {"speed": (1.0, 2.5, 5.5), "heading": (0.0, 1.0, -1.5), "height": (0.0, 11.0, 12.5)},
     "watch": {f"distance({x})": (0.25, 0.75, 1.0, 20.0, 61.0) for x in ("office", "north", "south")},
     "errand": {"fuel": (0.15, 0.5, 1.0)},
+    "counting": {"noise": (0.0, 0.25, 0.5), "lever": (-1.0, 0.0, 0.125)},
 }
 
 
