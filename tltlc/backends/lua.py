@@ -204,9 +204,10 @@ class _Source:
     def _moves(self) -> list[str]:
         """Return the lines of a function for each state or shape; an empty list if there are few."""
         lines: list[str] = []
+        parameters = self._parameters()
         for number, case in [] if self._few_cases else enumerate(self._program.cases):
             lines += ["", *self._printer.comment(case.comment)]
-            lines += [f"MOVES[{number}] = function({self._parameters()})", f"  local {self._result_names()}"]
+            lines += [f"MOVES[{number}] = function({parameters})", f"  local {self._result_names()}"]
             lines += [*self._branch(number), f"  return {self._result_names()}", "end"]
         return lines
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import Final
 
 from tltlc.core.record import record
@@ -24,6 +25,12 @@ class LabelTexts:
     texts: tuple[tuple[str, ...], ...]
     state_texts: tuple[int, ...]
     numbers: tuple[int, ...]
+
+    @property
+    def first_numbers(self) -> tuple[int, ...]:
+        """The index in ``numbers`` of the first missing number of each state's label."""
+        counts = (len(self.texts[text]) - 1 for text in self.state_texts)
+        return tuple(accumulate(counts, initial=0))[:-1]
 
 
 def split_labels(labels: Sequence[str]) -> LabelTexts:

@@ -46,7 +46,8 @@ _OBJECT: Final = """
 
 _OWN: Final = """
     sample clear given params values notices noticed which problem verdict accepting limiting limiting_atom label
-    message step steps begin reset state progress done reward robustness reached ends best target state_shape
+    message step steps begin reset state progress done reward robustness reached ends best target
+    state_shape label_of
 """.split()
 """Names of variables in the template that do not begin with ``_``.
 

@@ -121,7 +121,7 @@ class _Source:
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
-        present += [] if program_.tables is None else ["tables"]
+        present += ["states"] if program_.tables is None else ["tables"]
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -141,7 +141,7 @@ class _Source:
             "first_accepting": snippets.boolean_literal(first.accepting),
             "accepting": _list([snippets.boolean_literal(state.accepting) for state in fspa.states]),
             "ends": _list(map(snippets.boolean_literal, program_.ends)),
-            "tables": "" if program_.tables is None else "\n".join(self._tables(program_.tables)),
+            **self._tables(program_.tables),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
             "params": self._strings(param.name for param in fspa.params),
             "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
@@ -159,13 +159,24 @@ class _Source:
         }
         return fill_template("monitor.gd.txt", places, present)
 
-    def _tables(self, tables: StateTables) -> Iterable[str]:
-        """Yield the definitions of the tables that a step reads; the kinds of states are constants of their own."""
-        for name, numbers in tables.step_tables(self._fspa.judge).items():
-            if name != "state_kinds":
-                type_ = self._dialect.types()["floats" if name == "level_progress" else "ints"]
-                items = map(_signed if name == "level_progress" else repr, numbers)
-                yield f"const _{name.upper()}: {type_} = {_list(items)}"
+    def _tables(self, tables: StateTables | None) -> dict[str, str]:
+        """Return the pieces of the template with the tables of states; they are empty if there are none.
+
+        The script has the verdict of each state instead of the state's kind.
+        """
+        if tables is None:
+            return {"tables": "", "label_texts": ""}
+        columns = {**tables.all_tables(self._fspa.judge), "first_numbers": tables.labels.first_numbers}
+        del columns["state_kinds"]
+        types, lines = self._dialect.types(), []
+        for name, numbers in columns.items():
+            is_real = name == "level_progress"
+            items = map(_signed if is_real else repr, numbers)
+            lines.append(f"const _{name.upper()}: {types['floats' if is_real else 'ints']} = {_list(items)}")
+        return {
+            "tables": "\n".join(lines),
+            "label_texts": _list([f"[{', '.join(map(self._string, pieces))}]" for pieces in tables.labels.texts]),
+        }
 
     # --- records ----------------------------------------------------------------------------------
 

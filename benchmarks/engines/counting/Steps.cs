@@ -1,0 +1,47 @@
+// Times steps of monitors that count: `steps ROUNDS MONITORS` prints nanoseconds per step, as JSON lines.
+// `first` is the time of the first steps of a count, and `last` that of the last ones.
+
+using System;
+using System.Diagnostics;
+using System.Globalization;
+
+internal static class Steps
+{
+    private const int Count = 20, Before = 570;
+
+    private static void Step(Tltl.quiet_monitor monitor, bool pit)
+    {
+        var sample = Tltl.quiet_monitor.Signals.Missing;
+        sample.pit = pit;
+        Tltl.quiet_monitor.Result result;
+        if (!monitor.TryStep(sample, out result)) throw new InvalidOperationException(monitor.Message());
+    }
+
+    private static double Nanoseconds(Tltl.quiet_monitor[] monitors, int before)
+    {
+        foreach (var monitor in monitors)
+        {
+            monitor.Reset();
+            Step(monitor, true);
+            for (int i = 0; i < before; i++) Step(monitor, false);
+        }
+        var watch = Stopwatch.StartNew();
+        foreach (var monitor in monitors)
+        {
+            for (int i = 0; i < Count; i++) Step(monitor, false);
+        }
+        return watch.Elapsed.TotalMilliseconds * 1e6 / ((double)monitors.Length * Count);
+    }
+
+    private static void Main(string[] words)
+    {
+        var monitors = new Tltl.quiet_monitor[int.Parse(words[1], CultureInfo.InvariantCulture)];
+        for (int i = 0; i < monitors.Length; i++) monitors[i] = new Tltl.quiet_monitor();
+        for (int round = int.Parse(words[0], CultureInfo.InvariantCulture); round > 0; round--)
+        {
+            double first = Nanoseconds(monitors, 0), last = Nanoseconds(monitors, Before);
+            string numbers = string.Format(CultureInfo.InvariantCulture, "\"first\": {0:F3}, \"last\": {1:F3}", first, last);
+            Console.WriteLine("{" + numbers + "}");
+        }
+    }
+}
