@@ -26,6 +26,7 @@ from benchmarks import (
     suite,
     summary,
     table1,
+    tables,
     tools,
     training,
     training_report,
@@ -67,6 +68,7 @@ def render(store: Store) -> str:
         _process(store.section(process.SECTION)),
         _monitors(store.section(monitors.SECTION)),
         engine_report.section(store),
+        tables.section(store.section(tables.SECTION)),
         _batch(store.section(batch.SECTION)),
         game_report.speed_section(store.section(game.SECTION)),
         godot.section(store.section(godot.SECTION)),
@@ -164,6 +166,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
             met_or_missed(min(ratios_by_hand) >= MONITOR_FACTOR),
         )
     yield from engine_report.goals(store)
+    yield from tables.goals(store.section(tables.SECTION))
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
     yield from godot.goals(store.section(godot.SECTION))

@@ -67,7 +67,7 @@ LANGUAGES: Final = {
     ),
     "javascript": Language("JavaScript, Node", "javascript", "steps.mjs", ("node", "steps.mjs")),
     "lua": Language("Lua", "lua", "steps.lua", ("lua", "steps.lua"), monitors=400),
-    "luajit": Language("LuaJIT", "lua", "steps.lua", ("luajit", "steps.lua")),
+    "luajit": Language("LuaJIT", "lua", "steps.lua", ("luajit", "steps.lua"), monitors=400),
     "python": Language("Python", "python", "steps.py", (sys.executable, "steps.py"), monitors=400),
     "gdscript3": Language("GDScript, Godot 3", "gdscript3", "steps.gd", _GODOT, monitors=300),
     "gdscript": Language("GDScript, Godot 4", "gdscript", "steps.gd", None),
@@ -170,8 +170,8 @@ def section(records: Mapping[str, Record]) -> str:
 automata read tables (`python -m benchmarks --only {SECTION}`). *Ladder* is the same monitor without tables, with code
 for each state. *First* and *last* are nanoseconds of a step: of 20 steps after the count began, and of 20 steps 570
 steps later, as medians of {ROUNDS} rounds. Both were measured in turns, with many monitors that take the same steps.
-*last / first* has the median of the ratios, with the quartiles. They are CPU times in C, Lua and Python, and wall times
-in other languages. Godot 4 does not run here.
+*last / first* has the median of the ratios, with the quartiles. They are wall times in Rust and GDScript, and CPU times
+in the other languages. Godot 4 does not run here.
 
 {table(header, rows)}
 """
@@ -181,5 +181,9 @@ def _row(title: str, entry: Record) -> Sequence[str]:
     sizes = [f"{entry['bytes'][form] / 1000:.0f}" for form in ("ladder", "table")]
     if "ns" not in entry:
         return title, *sizes, "–", "–", "–", "–", "–"
-    times = [f"{entry['ns'][form][end]:.3g}" for form in ("ladder", "table") for end in ("first", "last")]
+    times = [_nanoseconds(entry["ns"][form][end]) for form in ("ladder", "table") for end in ("first", "last")]
     return title, *sizes, *times, spread(entry["ratio"]["table"], 2)
+
+
+def _nanoseconds(time: float) -> str:
+    return f"{time:,.0f}" if time >= 100 else f"{time:.3g}"
