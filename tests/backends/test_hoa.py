@@ -305,3 +305,17 @@ def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pyt
     with pytest.raises(TltlError) as caught:
         backends.emit("hoa", cover_and_hide())
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
+
+
+def test_atoms_that_follow_from_others_are_free_and_named_in_a_comment() -> None:
+    """The automaton is one over letters of all atoms: the format cannot say that one atom follows from another."""
+    text = (
+        "signal a: bool\nsignal x in [0, 1]\nspec often { require always eventually (times(a) > 2 or x > previous(x)) }"
+    )
+    (fspa,) = compile_text(text)
+    written = hoa_text(fspa)
+    automaton = read(written)
+    comment = "These atoms follow from others at this and earlier samples, which the format cannot say: times(a) > 2."
+    assert comment in " ".join(automaton.comments)
+    assert automaton.atoms == [atom.name for atom in fspa.atoms]
+    assert "follow from others" not in hoa_text(cover_and_hide())

@@ -19,6 +19,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.c_names import RESERVED
 from tltlc.backends.languages.c_tables import tables_text
+from tltlc.backends.languages.c_text import bytes_of, escape, string_literal
 from tltlc.backends.templates import fill_template
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
@@ -64,13 +65,13 @@ class _C(Printer):
 
     def comment(self, text: str) -> list[str]:
         """Return the lines of a comment, with only ASCII characters and no trigraphs: all compilers read it alike."""
-        return super().comment(re.sub(r"[^\x00-\x7f]", _escape, printable_line(text)).replace("??", "? ?"))
+        return super().comment(re.sub(r"[^\x00-\x7f]", escape, printable_line(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
         """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
         match statement:
             case Assign(states.LIMITING, Int(index)):
-                return f"{states.LIMITING} = {_string(self._atoms[index].name) if index >= 0 else 'NULL'};"
+                return f"{states.LIMITING} = {string_literal(self._atoms[index].name) if index >= 0 else 'NULL'};"
         return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
@@ -105,6 +106,7 @@ class _Source:
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
         present += ["states"] if program_.tables is None else ["tables"]
+        present += ["registers"] if fspa.registers else []
         with recursion_room():
             step = _C.block(self._step())
         places = {
@@ -113,15 +115,18 @@ class _Source:
             "file": self._file,
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
+            "register_count": str(len(fspa.registers)),
             "text_size": str(self._text_size()),
             "signal_room": str(max(1, len(signals))),
             "atom_room": str(max(1, len(fspa.atoms))),
             "notice_room": str(max(1, len(signals) + len(fspa.atoms))),
             "signal_fields": self._fields([(name, self._type(signal), signal) for signal, name in signals]),
             "param_fields": self._fields([(name, "double", param) for param, name in params]),
-            "signal_names": _list([_string(signal.name) for signal in fspa.signals], '""'),
-            "atom_names": _list([_string(atom.name) for atom in fspa.atoms], '""'),
-            "labels": _list([_string(str(state.label)) for state in fspa.states], '""'),
+            "signal_names": _list([string_literal(signal.name) for signal in fspa.signals], '""'),
+            "atom_names": _list([string_literal(atom.name) for atom in fspa.atoms], '""'),
+            "register_names": _list([string_literal(register.name) for register in fspa.registers], '""'),
+            "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers], "0.0"),
+            "labels": _list([string_literal(str(state.label)) for state in fspa.states], '""'),
             "signal_defaults": _C.block(
                 [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
                 or ["sample.none = false;"]
@@ -131,8 +136,8 @@ class _Source:
                 or ["params.none = false;"]
             ),
             "param_checks": _C.block([line for index in range(len(params)) for line in self._param_check(index)]),
-            "param_names": _list([_string(param.name) for param in fspa.params], '""'),
-            "param_ranges": _list([_string(range_text(param.low, param.high)) for param in fspa.params], '""'),
+            "param_names": _list([string_literal(param.name) for param in fspa.params], '""'),
+            "param_ranges": _list([string_literal(range_text(param.low, param.high)) for param in fspa.params], '""'),
             "members": _list(
                 [f"{{{group}, {atom}}}" for group, atoms in enumerate(fspa.exclusive) for atom in atoms], "{0, 0}"
             ),
@@ -149,10 +154,11 @@ class _Source:
 
         The longest message is about an exclusive group, and names the atoms of the group twice.
         """
-        atoms = sum(2 * len(_bytes(atom.name)) + 12 for atom in self._fspa.atoms)
-        signals = max((len(_bytes(signal.name)) for signal in self._fspa.signals), default=0)
-        params = max((len(_bytes(param.name)) for param in self._fspa.params), default=0)
-        return 200 + max(atoms, signals, params)
+        atoms = sum(2 * len(bytes_of(atom.name)) + 12 for atom in self._fspa.atoms)
+        signals = max((len(bytes_of(signal.name)) for signal in self._fspa.signals), default=0)
+        params = max((len(bytes_of(param.name)) for param in self._fspa.params), default=0)
+        registers = max((len(bytes_of(register.name)) for register in self._fspa.registers), default=0)
+        return 200 + max(atoms, signals, params, registers)
 
     # --- records ----------------------------------------------------------------------------------
 
@@ -189,8 +195,9 @@ class _Source:
         """Return the C lines that refuse a sample or params: they record the problem and return false.
 
         ``problem`` is the name of the problem in C, and ``index`` the index of the param, atom or
-        exclusive group with the problem. These lines contain the ``return``, and not the function
-        that records the problem, so that compilers see that the step ends here.
+        exclusive group with the problem. Registers count from the number of atoms on. These lines
+        contain the ``return``, and not the function that records the problem, so that compilers see
+        that the step ends here.
         """
         call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
         return [f"{_INDENT}{line}" for line in (call, "return false;")]
@@ -226,7 +233,9 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(
+            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
+        )
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
@@ -238,7 +247,9 @@ class _Source:
         lines += self._bools(None)
         lines += [] if program_.reads_sample else ["(void)sample;"]
         used = program_.variables_used
-        return [*lines, *(f"const double {name} = monitor->params.{name};" for name in program_.params if name in used)]
+        lines += [f"const double {name} = monitor->params.{name};" for name in program_.params if name in used]
+        before = enumerate(program_.before)
+        return [*lines, *(f"const double {name} = monitor->registers[{at}];" for at, name in before if name in used)]
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -294,17 +305,24 @@ class _Source:
         return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
         program_ = self._program
-        places = program_.computed_in(None)
-        lines = [line for index in places for line in self._value(index)]
-        for index in places:
-            name = program_.atoms[index]
-            if not program_.always_in_range[index]:
-                lines.append(f"if (!(fabs({name}) <= 1.0)) {{")
-                lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {index}, {name});")
-                lines += [f"{_INDENT}if (monitor->problem) return false;", "}"]
-        return lines
+        lines: list[str] = []
+        later: list[str] = []
+        for step in program_.every_step:
+            if step.kind == "register":
+                lines += self._register(step.index)
+                continue
+            name = program_.atoms[step.index]
+            lines += self._value(step.index)
+            if not program_.always_in_range[step.index]:
+                check = [
+                    f"if (!(fabs({name}) <= 1.0)) {{",
+                    f"{_INDENT}{name} = {self._prefix}_value_(monitor, {step.index}, {name});",
+                    *(f"{_INDENT}if (monitor->problem) return false;", "}"),
+                ]
+                (lines if program_.registers else later).extend(check)
+        return [*lines, *later]
 
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
@@ -313,6 +331,18 @@ class _Source:
         lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
         if functions_called(statements) & FAILING:
             lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", index), "}"]
+        return lines
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements, place = self._program, self._program.updates[index], len(self._fspa.atoms) + index
+        name = program_.registers[index]
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += self._printer.lines(with_declaration(name, statements, changes=False))
+        if functions_called(statements) & FAILING:
+            lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", place), "}"]
+        if not program_.always_finite[index]:
+            lines += [f"if (!isfinite({name})) {{", *self._refusal(f"{self._prefix}_too_large", place), "}"]
         return lines
 
     def _check(self) -> list[str]:
@@ -358,29 +388,12 @@ class _Source:
         lines += [f"const {line}" for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        return [f"monitor->registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
+
 
 # --- pieces ---------------------------------------------------------------------------------------
-
-
-def _escape(match: re.Match[str]) -> str:
-    return f"\\u{ord(match[0]):04x}"
-
-
-def _bytes(text: str) -> bytes:
-    """Return the text as a C string stores it: UTF-8, without NUL."""
-    return text.replace("\0", "").encode("utf-8", "replace")
-
-
-def _string(text: str) -> str:
-    """Return a string literal that has only ASCII characters.
-
-    Question marks are escaped, since two of them would begin a trigraph.
-    """
-    return snippets.string_literal(text, _octal, snippets.is_plain_ascii).replace("?", "\\?")
-
-
-def _octal(character: str) -> str:
-    return "".join(f"\\{byte:03o}" for byte in _bytes(character))
 
 
 def _wrapped(line: str) -> list[str]:

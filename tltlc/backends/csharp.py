@@ -124,6 +124,7 @@ class _Source:
         ]
         present += ["note"] if program_.functions & FAILING else []
         present += ["exclusive"] if program_.exclusive else []
+        present += ["registers"] if fspa.registers else []
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
@@ -137,6 +138,10 @@ class _Source:
             "param_fields": _fields([(name, "double", param) for param, name in params]),
             "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
+            "register_names": _list([_string(register.name) for register in fspa.registers]),
+            "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers]),
+            # The beginning of a message about an atom, or perhaps a register.
+            "at_fault": 'Computed() + "' if fspa.registers else '"the atom `" + AtomNames[_which] + "`',
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
             "signal_defaults": _CSharp.block(
@@ -198,7 +203,9 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(
+            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
+        )
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
@@ -218,7 +225,9 @@ class _Source:
                 f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({index}, {name}, {low}, {high});"
             )
         lines += self._bools(None)
-        return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
+        lines += [f"double {name} = _params.{name};" for name in self._program.params if name in used]
+        before = enumerate(self._program.before)
+        return [*lines, *(f"double {name} = _registers[{index}];" for index, name in before if name in used)]
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -229,10 +238,15 @@ class _Source:
         return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(case)]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
         lines: list[str] = []
-        range_checks: list[str] = []
-        for index in self._program.computed_in(None):
+        later: list[str] = []
+        range_checks = lines if self._fspa.registers else later
+        for step in self._program.every_step:
+            index = step.index
+            if step.kind == "register":
+                lines += self._register(index)
+                continue
             name = self._program.atoms[index]
             lines += self._printer.lines(self._value(index))
             if self._program.always_in_range[index]:
@@ -240,7 +254,19 @@ class _Source:
             if functions_called(self._program.values[index]) & FAILING:
                 lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {index}, out result);")
             range_checks += _check_lines(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
-        return [*lines, *range_checks]
+        return [*lines, *later]
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
+        place = len(program_.atoms) + index
+        comment = CommentLine(program_.register_comments[index])
+        lines = self._printer.lines((comment, *with_declaration(name, statements, changes=False)))
+        if functions_called(statements) & FAILING:
+            lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);")
+        if not program_.always_finite[index]:
+            lines.append(f"if (!IsFinite({name})) return Refuse(Problem.TooLarge, {place}, out result);")
+        return lines
 
     def _value(self, index: int) -> tuple[Statement, ...]:
         """Return the statements that declare an atom's variable and compute its value."""
@@ -299,6 +325,10 @@ class _Source:
         }
         lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
+
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        return [f"_registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

@@ -3,6 +3,10 @@
 Over infinite traces, the file has a Rabin automaton with acceptance on edges. The format has no
 automata over finite traces. For these, the file has a Büchi automaton with marks on the accepting
 states, and a header that says that a finite trace is accepted if its run ends in one of them.
+
+An automaton with registers is written as an automaton over its atoms. Its atoms are free propositions
+there: the format cannot say that ``times(p) > 2`` follows from ``p``, so the automaton also accepts
+letters that no game can show. A comment in the file says so.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.infinite.mark_conditions import pair_marks
+from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import escape_invisible
@@ -29,6 +34,7 @@ TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model 
 # this header, the tool would read an automaton with another meaning.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted if its run ends in a state of set 0."
+REGISTERS_COMMENT = "These atoms follow from others at this and earlier samples, which the format cannot say: {}."
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 
@@ -64,6 +70,11 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
     if clashes:
         yield f"Alias: @allowed {' & '.join(f'!({first}&{second})' for first, second in clashes)}"
         yield _comment(ALLOWED_COMMENT)
+    if fspa.registers:
+        given = given_atoms(fspa)
+        following = [atom.name for index, atom in enumerate(fspa.atoms) if index not in given]
+        if following:
+            yield _comment(REGISTERS_COMMENT.format(", ".join(following)))
     infinite = fspa.semantics == "infinite"
     yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
     marks = "trans-acc" if infinite else "state-acc"

@@ -133,8 +133,10 @@ class _Source:
         present += ["signal"] if fspa.signals else []
         present += [] if all(program_.always_in_range) else ["range"]
         present += ["exclusive"] if program_.exclusive else []
+        present += ["registers"] if fspa.registers else []
+        present += ["computed"] if fspa.registers and "failing" in present else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
-        present += ["some"] if fspa.signals or "atom" in present else []
+        present += ["some"] if fspa.signals or "atom" in present or not all(program_.always_finite) else []
         present += ["clamp"] if fspa.signals or "range" in present else []
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["params"] if program_.variables_used & {*program_.params} else []
@@ -148,6 +150,9 @@ class _Source:
             ),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
+            "registers": _list([_string(register.name) for register in fspa.registers]),
+            "register_starts": _list([_number(register.initial) for register in fspa.registers]),
+            "computed": "${computed(this.#atom)}" if fspa.registers else "atom \\`${ATOMS[this.#atom]}\\`",
             # The monitor checks the names of params even if no atom reads a param.
             "params_kept": "this.#params = " if "params" in present else "",
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
@@ -172,6 +177,7 @@ class _Source:
         title = f"// Types of {self._module}, written by tltlc."
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
+        present += ["registers"] if fspa.registers else []
         return fill_template("monitor.d.mts.txt", places, present)
 
     def _states(self) -> list[str]:
@@ -199,7 +205,9 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(
+            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
+        )
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
@@ -219,22 +227,28 @@ class _Source:
                 lines += _branch([f"!({_in_range(name, signal.low, signal.high)})"], f"{name} = {checked};")
         for index, name in enumerate(self._program.params):
             lines += [f"const {name} = this.#params[{index}];"] if name in used else []
+        for index, name in enumerate(self._program.before):
+            lines += [f"const {name} = this.registers[{index}];"] if name in used else []
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
-        lines = self._values(None)
-        for index, (name, in_range) in enumerate(zip(self._program.atoms, self._program.always_in_range, strict=True)):
-            if not in_range:
-                lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({index}, {name});")
-        return lines
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
+        program_ = self._program
+        lines: list[str] = []
+        later: list[str] = []
+        for step in program_.every_step:
+            if step.kind == "register":
+                lines += self._register(step.index)
+                continue
+            name = program_.atoms[step.index]
+            lines += self._value(step.index)
+            if not program_.always_in_range[step.index]:
+                check = f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({step.index}, {name});"
+                (lines if program_.registers else later).append(check)
+        return [*lines, *later]
 
-    def _values(self, case: int | None) -> list[str]:
-        """Return the code that computes the values of some atoms.
-
-        These are the atoms that only this case computes or, if ``case`` is None, those that every step
-        computes.
-        """
+    def _values(self, case: int) -> list[str]:
+        """Return the code that computes the values of the atoms that only this case computes."""
         return [line for index in self._program.computed_in(case) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
@@ -249,6 +263,18 @@ class _Source:
                 with_declaration(program_.atoms[index], statements, changes=not program_.always_in_range[index])
             ),
         ]
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
+        lines = self._printer.comment(program_.register_comments[index])
+        if functions_called(statements) & FAILING:
+            lines.append(f"this.#atom = {len(self._fspa.atoms) + index};")
+        lines += self._printer.lines(with_declaration(name, statements, changes=False))
+        if not program_.always_finite[index]:
+            text = _string(f"the register `{self._fspa.registers[index].name}` is too large to compute")
+            lines += _branch([f"!Number.isFinite({name})"], f"throw this.#error({text});")
+        return lines
 
     def _check(self) -> list[str]:
         """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
@@ -294,6 +320,10 @@ class _Source:
         }
         lines += [f"const {name} = {value};" for name, value in definitions.items() if name in used]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
+
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        return [f"this.registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

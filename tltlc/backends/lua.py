@@ -9,7 +9,7 @@ functions.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
@@ -19,7 +19,9 @@ from tltlc.backends.languages.lua_syntax import (
     DEEPEST_BLOCK,
     KEYWORDS,
     LuaPrinter,
+    declarations,
     key_access,
+    nesting,
     string_literal,
     table_key,
 )
@@ -30,7 +32,7 @@ from tltlc.program.build import program
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.shapes import StateTables
-from tltlc.program.tree import FAILING, Declare, If, Statement
+from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -60,6 +62,9 @@ _OWN = """
 """.split()
 """Names that the step function uses in the template; no variable of the program may have them."""
 
+_TABLES: Final = ("signal", "param", "value", "register", "registers")
+"""The tables of variables: signals, params, atoms, and the registers after and before the sample."""
+
 
 def emit(fspa: Fspa, options: Options) -> Files:
     """Return the module ``NAME_monitor.lua``, where NAME is the name of the automaton."""
@@ -72,13 +77,16 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        program_ = self._program = program(fspa, [*KEYWORDS, *_OWN])
+        tables = _TABLES if fspa.registers else _TABLES[:3]
+        program_ = self._program = program(fspa, [*KEYWORDS, *_OWN, *tables])
+        self._tables_text = ", ".join(tables)
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
-        variables = (*program_.signals, *program_.params, *program_.atoms)
+        variables = (*program_.signals, *program_.params, *program_.atoms, *program_.registers)
         with recursion_room():
-            parts = [declaration.name for value in program_.values for declaration in _declarations(value)]
-            deepest = max(map(_depth, program_.values), default=0)
+            computed = (*program_.values, *program_.updates)
+            parts = [declaration.name for value in computed for declaration in declarations(value)]
+            deepest = max(map(nesting, computed), default=0)
         # Each variable counts twice, because it is also an argument of the functions of states.
         self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= DEEPEST_BLOCK
         fields = {
@@ -91,14 +99,24 @@ class _Source:
             },
             **{name: f"value{key_access(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
             **{name: f"part.{name}" for name in parts},
+            **{
+                name: f"register{key_access(register.name)}"
+                for register, name in zip(fspa.registers, program_.registers, strict=True)
+            },
+        }
+        before = {
+            name: f"registers{key_access(register.name)}"
+            for register, name in zip(fspa.registers, program_.before, strict=True)
         }
         self._few_cases = len(program_.cases) <= _FEW_CASES
-        self._printer = LuaPrinter(fields if self._variables_are_fields else {}, self._names)
+        self._printer = LuaPrinter(
+            {**before, **(fields if self._variables_are_fields else {})}, self._names, self._tables_text
+        )
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.lua``."""
         fspa, program_ = self._fspa, self._program
-        parts = (*program_.values, *(case.statements for case in program_.cases))
+        parts = (*program_.values, *program_.updates, *(case.statements for case in program_.cases))
         functions = functions_called(statement for part in parts for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
@@ -112,6 +130,8 @@ class _Source:
         present += [] if self._few_cases else ["moves"]
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["exclusive"] if program_.exclusive else []
+        present += ["registers"] if fspa.registers else []
+        present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {
             "p": fspa.name,
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -138,6 +158,12 @@ class _Source:
             "params": _list([_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]),
             "exclusive": _list(
                 [f"{{ {', '.join(string_literal(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
+            ),
+            "register_starts": _list(
+                [
+                    f"{{ name = {string_literal(register.name)}, value = {snippets.number_literal(register.initial)} }}"
+                    for register in fspa.registers
+                ]
             ),
             "states": LuaPrinter.block(self._states()),
             **self._state_tables(program_.tables),
@@ -186,9 +212,9 @@ class _Source:
     def _parameters(self) -> str:
         """Return the parameters that the function of each state has, separated by commas.
 
-        These are all signals, params and atoms computed at every step that any of the functions
-        reads. If variables are fields of tables, the parameters are the tables instead. If states share
-        functions, the place of the state's first edge is a parameter, too.
+        These are all signals, params, registers, and atoms computed at every step, that any of the
+        functions reads. If variables are fields of tables, the parameters are the tables instead. If
+        states share functions, the place of the state's first edge is a parameter, too.
         """
         program_ = self._program
         first_edge = [] if program_.tables is None else [states.FIRST_EDGE]
@@ -198,8 +224,8 @@ class _Source:
         statements = (*(case.statements for case in program_.cases), *lazy_values)
         used = variables_read(statement for part in statements for statement in part)
         atoms = [name for name, only in zip(program_.atoms, program_.only_in, strict=True) if only is None]
-        names = [name for name in (*program_.signals, *program_.params, *atoms) if name in used]
-        return ", ".join([*names, *first_edge])
+        variables = (*program_.signals, *program_.params, *atoms, *program_.registers)
+        return ", ".join([*(name for name in variables if name in used), *first_edge])
 
     def _moves(self) -> list[str]:
         """Return the lines of a function for each state or shape; an empty list if there are few."""
@@ -224,13 +250,18 @@ class _Source:
 
     def _step(self) -> list[str]:
         parts = [self._tables(), self._read(), self._compute(), self._check(), self._move(), self._judge()]
+        parts.append(self._remember())
         return snippets.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
         """Return the Lua code that declares ``problem`` and, if variables are fields of tables, the tables."""
         lines = ["local problem"] if self._fspa.signals or not all(self._program.always_in_range) else []
+        registers = "local registers = self.registers" if self._fspa.registers else ""
         if self._variables_are_fields:
-            lines.append("local signal, param, value = self._signal, self.params, self._value")
+            registers = ", self._register, self.registers" if registers else ""
+            lines.append(f"local {self._tables_text} = self._signal, self.params, self._value{registers}")
+        elif registers:
+            lines.append(registers)
         return lines
 
     def _read(self) -> list[str]:
@@ -257,11 +288,17 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
         lines: list[str] = []
-        range_checks: list[str] = []
+        later: list[str] = []
+        range_checks = lines if self._fspa.registers else later
         failing = False
-        for index in self._program.computed_in(None):
+        for step in self._program.every_step:
+            index = step.index
+            if step.kind == "register":
+                lines += self._register(index)
+                failing |= bool(functions_called(self._program.updates[index]) & FAILING)
+                continue
             atom, name = self._fspa.atoms[index], self._program.atoms[index]
             lines += self._value(index)
             if self._program.always_in_range[index]:
@@ -277,7 +314,20 @@ class _Source:
                 "  if problem then return nil, problem end",
                 "end",
             ]
-        return [*(["failure = nil"] if failing else []), *lines, *range_checks]
+        return [*(["failure = nil"] if failing else []), *lines, *later]
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += self._printer.lines(with_declaration(name, statements))
+        text = f"the register `{self._fspa.registers[index].name}` "
+        if functions_called(statements) & FAILING:
+            lines.append(f"if failure then return nil, at_step(self, {string_literal(text)} .. failure) end")
+        if not program_.always_finite[index]:
+            refusal = f"return nil, at_step(self, {string_literal(f'{text}is too large to compute')})"
+            lines += [f"if not is_finite({self._printer.name(name)}) then", f"  {refusal}", "end"]
+        return lines
 
     def _value(self, index: int) -> list[str]:
         """Return the code that computes the value of an atom, given its index."""
@@ -327,28 +377,10 @@ class _Source:
             *LuaPrinter({}, self._names).lines(self._program.reward_statements),
         ]
 
-
-# --- statements -----------------------------------------------------------------------------------
-
-
-def _declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
-    """Yield every declaration among the statements, including those in branches."""
-    for statement in statements:
-        if isinstance(statement, Declare):
-            yield statement
-        elif isinstance(statement, If):
-            for body in _bodies(statement):
-                yield from _declarations(body)
-
-
-def _depth(statements: Iterable[Statement]) -> int:
-    """Return how deep ``if`` statements are nested; 0 if there are none."""
-    bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
-    return 1 + max(map(_depth, bodies)) if bodies else 0
-
-
-def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
-    return (*(body for _, body in statement.cases), statement.otherwise)
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        registers = zip(self._program.before, self._program.registers, strict=True)
+        return [f"{self._printer.name(before)} = {self._printer.name(now)}" for before, now in registers]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

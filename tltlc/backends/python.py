@@ -14,7 +14,9 @@ from typing import ClassVar, Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import Computation
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.python_syntax import long_dict, long_tuple, short_tuple, tuple_items
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import with_declaration
@@ -155,11 +157,14 @@ class _Source:
         self._fspa, self._file = fspa, file
         self._program = program(fspa, _RESERVED)
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
+        self._names += (*self._program.registers, *self._program.before)
         progress = [states.PROGRESS] if fspa.judge == "goal" else []
         self._results = (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING)
-        # Atoms that no state needs are not computed.
+        # Atoms that nothing needs are not computed. Functions of states do not get those that only registers read.
+        read = variables_read(statement for case in self._program.cases for statement in case.statements)
+        only_kept = self._program.variables_kept - read
         needed = zip(self._program.atoms, self._program.only_in, strict=True)
-        self._computed = [name for name, only in needed if only != -1]
+        self._computed = [name for name, only in needed if only != -1 and name not in only_kept]
         self._printer = _Python([atom.name for atom in fspa.atoms])
 
     def text(self) -> str:
@@ -173,44 +178,53 @@ class _Source:
             "about": docstring_text("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula}")))),
             "file": self._file,
             "step": step,
-            "signals": _tuple([_signal(signal) for signal in fspa.signals]),
-            "params": _dict(
+            "signals": long_tuple([_signal(signal) for signal in fspa.signals]),
+            "params": long_dict(
                 [
                     f"{string_literal(param.name)}: "
                     f"({float_literal(param.value)}, {_low(param.low)}, {_high(param.high)})"
                     for param in fspa.params
                 ]
             ),
-            "atoms": _tuple([string_literal(atom.name) for atom in fspa.atoms]),
-            "exclusive": _tuple([_inline([str(atom) for atom in group]) for group in fspa.exclusive]),
+            "atoms": long_tuple([string_literal(atom.name) for atom in fspa.atoms]),
+            "exclusive": long_tuple([short_tuple([str(atom) for atom in group]) for group in fspa.exclusive]),
             "returns": ", the progress of the step" if at_goal else "",
             "states": f"\n\n{body}\n",
             "result": self._result,
-            "transitions": _tuple([f"_from_{number}" for number in range(len(self._program.cases))]),
+            "transitions": long_tuple([f"_from_{number}" for number in range(len(self._program.cases))]),
             **self._states(self._program.tables),
         }
+        if fspa.registers:
+            pieces |= {
+                "register_names": long_tuple([string_literal(register.name) for register in fspa.registers]),
+                "register_starts": short_tuple([float_literal(register.initial) for register in fspa.registers]),
+            }
+        pieces["slots"] = '"registers", ' if fspa.registers else ""
+        pieces["computed"] = "{_computed(index)}" if fspa.registers else "atom `{_ATOMS[index]}`"
         used = [_FUNCTIONS[function] for function in self._program.functions if function in _FUNCTIONS]
         fields: tuple[Signal | Param, ...] = (*fspa.signals, *fspa.params)
         # Where a bound is missing, `inf` is printed.
         used += ["inf"] if any(None in (field.low, field.high) for field in fields) else []
         pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
-        return fill_template("monitor.py.txt", pieces, ["states" if self._program.tables is None else "tables"])
+        present = ["states" if self._program.tables is None else "tables"]
+        present += ["registers"] if fspa.registers else []
+        return fill_template("monitor.py.txt", pieces, present)
 
     def _states(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with rows of states or, if there are tables, of kinds, and the tables."""
         labels = [str(state.label) for state in self._fspa.states]
         if tables is None:
             rows = [f"({string_literal(label)}, {self._verdict(state)})" for state, label in enumerate(labels)]
-            return {"table": _tuple(rows), "tables": "", "label_texts": ""}
+            return {"table": long_tuple(rows), "tables": "", "label_texts": ""}
         lines = [
             f"_{name.upper()}: list[{'float' if name == 'level_progress' else 'int'}] = "
             f"[{Printer.items([*map(repr, numbers)])}]"
             for name, numbers in tables.all_tables(self._fspa.judge).items()
         ]
         return {
-            "table": _tuple([f"({self._verdict(state)})" for state in tables.kind_states]),
+            "table": long_tuple([f"({self._verdict(state)})" for state in tables.kind_states]),
             "tables": "\n".join(lines),
-            "label_texts": _tuple([_inline([*map(string_literal, pieces)]) for pieces in tables.labels.texts]),
+            "label_texts": long_tuple([short_tuple([*map(string_literal, pieces)]) for pieces in tables.labels.texts]),
         }
 
     def _verdict(self, state: int) -> str:
@@ -264,7 +278,8 @@ class _Source:
     # --- the step function --------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return [*self._read(), *self._compute(), *self._check(), *self._move(), *self._judge()]
+        parts = (self._read(), self._recall(), self._compute(), self._check(), self._move(), self._judge())
+        return [line for part in parts for line in part]
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, as floats clamped to their ranges, and params into variables."""
@@ -285,29 +300,51 @@ class _Source:
             lines.append(f"{INDENT}{variable} = self._number({index}, {variable})")
         return [*lines, params] if self._program.params else lines
 
-    def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of all atoms that a step may need.
+    def _recall(self) -> list[str]:
+        """Return the code that reads the values of the registers before the sample."""
+        names = self._program.before
+        return call_lines("", tuple_items(names), " = self.registers") if names else []
 
-        The atoms that every step needs come first, then those that a step from a single state needs.
+    def _compute(self) -> list[str]:
+        """Return the code that computes the registers, and all atoms that a step may need, clamped to [-1, 1].
+
+        What every step needs comes first, then the atoms that a step from a single state needs.
         """
         program_ = self._program
         lines: list[str] = []
-        fails = False
-        readers = (None, *range(len(program_.cases)))
-        for index in (atom for reader in readers for atom in program_.computed_in(reader)):
-            lines += self._printer.comment(program_.atom_comments[index])
-            if functions_called(program_.values[index]) & FAILING:
-                lines.append(f"failing = {index}")
-                fails = True
-            lines += self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))
-        if fails:
+        later: list[str] = []
+        cases = range(len(program_.cases))
+        lazy = [Computation("atom", atom) for case in cases for atom in program_.computed_in(case)]
+        for step in (*program_.every_step, *lazy):
+            lines += self._register(step.index) if step.kind == "register" else self._value(step.index)
+            name = program_.atoms[step.index] if step.kind == "atom" else ""
+            if name and not program_.always_in_range[step.index]:
+                check = [f"if not -1.0 <= {name} <= 1.0:", f"{INDENT}{name} = self._in_range({step.index}, {name})"]
+                (lines if program_.registers else later).extend(check)
+        if program_.functions & FAILING:
             lines = ["failing = 0", "try:", *(f"{INDENT}{line}" for line in lines)]
+            # A MonitorError is a ValueError.
+            lines += ["except MonitorError:", f"{INDENT}raise"] if program_.registers else []
             lines.append("except (ZeroDivisionError, OverflowError, ValueError) as error:")
             lines.append(f"{INDENT}raise self._failed(failing, error) from None")
-        for index, (name, in_range) in enumerate(zip(program_.atoms, program_.always_in_range, strict=True)):
-            if not in_range:
-                lines.append(f"if not -1.0 <= {name} <= 1.0:")
-                lines.append(f"{INDENT}{name} = self._in_range({index}, {name})")
+        return [*lines, *later]
+
+    def _value(self, index: int) -> list[str]:
+        """Return the code that computes the value of an atom, given its index."""
+        program_, statements = self._program, self._program.values[index]
+        lines = self._printer.comment(program_.atom_comments[index])
+        lines += [f"failing = {index}"] if functions_called(statements) & FAILING else []
+        return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], statements))]
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += [f"failing = {len(program_.atoms) + index}"] if functions_called(statements) & FAILING else []
+        lines += self._printer.lines(with_declaration(name, statements))
+        if not program_.always_finite[index]:
+            text = string_literal(f"the register `{self._fspa.registers[index].name}` is too large to compute")
+            lines += [f"if not isfinite({name}):", f"{INDENT}raise self._error({text})"]
         return lines
 
     def _check(self) -> list[str]:
@@ -315,7 +352,7 @@ class _Source:
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._program.atoms[atom] for atom in group]
-            lines += [f"if {_two_hold(atoms)}:", f"{INDENT}raise self._together({index}, {_inline(atoms)})"]
+            lines += [f"if {_two_hold(atoms)}:", f"{INDENT}raise self._together({index}, {short_tuple(atoms)})"]
         return lines
 
     def _move(self) -> list[str]:
@@ -344,10 +381,16 @@ class _Source:
             f"self.steps = {reward_step.STEPS}",
             f"self.progress = {reward_step.BEST}",
             f"self.done = {reward_step.DONE}",
+            *self._remember(),
             "# Adding 0 turns -0 into 0.",
             "values = (target, label, verdict, accepting, done, best, reward, robustness + 0.0, limiting)",
             "return tuple.__new__(Step, values)",
         ]
+
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        names = self._program.registers
+        return call_lines("self.registers = ", tuple_items(names)) if names else []
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -364,7 +407,7 @@ def _within(signal: Signal, variable: str) -> str:
 def _two_hold(atoms: Sequence[str]) -> str:
     """Return a Python expression that is true if at least two of the atoms hold; it is fast if none holds."""
     if len(atoms) > 8:
-        return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
+        return f"sum(value > 0.0 for value in {short_tuple(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]
     later_tests = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
     pairs = [f"({test} and {f'({rest})' if ' or ' in rest else rest})" for test, rest in zip(tests, later_tests)]  # noqa: B905
@@ -381,16 +424,3 @@ def _low(low: float | None) -> str:
 
 def _high(high: float | None) -> str:
     return float_literal(inf if high is None else high)
-
-
-def _inline(items: Sequence[str]) -> str:
-    return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
-
-
-def _tuple(items: Sequence[str]) -> str:
-    """Return the text of a tuple, with a line for each item; ``()`` if there are no items."""
-    return "\n".join(["(", *(f"{INDENT}{item}," for item in items), ")"]) if items else "()"
-
-
-def _dict(items: Sequence[str]) -> str:
-    return "\n".join(["{", *(f"{INDENT}{item}," for item in items), "}"]) if items else "{}"

@@ -58,8 +58,9 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _Rust(Printer):
     """Prints the program of a monitor (:mod:`tltlc.program`) as Rust code.
 
-    ``atom`` is the index of the atom whose computation is being printed. Functions that have no value
-    for some arguments, such as the division, also get this index, to name the atom in the error.
+    ``atom`` is the index of the atom whose computation is being printed; registers count after the
+    atoms. Functions that have no value for some arguments, such as the division, also get this index,
+    to name the atom or register in the error.
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
@@ -116,6 +117,7 @@ class _Source:
         present = [*program_.functions, "exclusive" if program_.exclusive else "single"]
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["states"] if program_.tables is None else ["tables"]
+        present += ["registers"] if fspa.registers else []
         present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -134,6 +136,12 @@ class _Source:
             "state_count": str(len(fspa.states)),
             "signal_names": _Rust.items([_string(signal.name) for signal in fspa.signals]),
             "atom_names": _Rust.items([_string(atom.name) for atom in fspa.atoms]),
+            "register_count": str(len(fspa.registers)),
+            "register_names": _Rust.items([_string(register.name) for register in fspa.registers]),
+            "register_starts": _Rust.items([snippets.number_literal(register.initial) for register in fspa.registers]),
+            # What a problem is about: an atom, or perhaps a register.
+            "at_fault": "{}" if fspa.registers else "atom `{}`",
+            "name_at_fault": "Computed(self.which)" if fspa.registers else "ATOM_NAMES[self.which]",
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _Rust.items([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "signal_defaults": _Rust.block(
@@ -218,7 +226,9 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(
+            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
+        )
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
@@ -234,7 +244,9 @@ class _Source:
             head = f"let {name} = " if name in used else ""
             lines.append(f"{head}self.read({index}, sample.{name}, {low}, {high})?;")
         lines += self._bools(None)
-        return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
+        lines += [f"let {name} = self.params.{name};" for name in self._program.params if name in used]
+        before = enumerate(self._program.before)
+        return [*lines, *(f"let {name} = self.registers[{index}];" for index, name in before if name in used)]
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -246,16 +258,32 @@ class _Source:
         return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
         program_ = self._program
         used = variables_read(statement for case in program_.cases for statement in case.statements)
-        used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group}
-        places = program_.computed_in(None)
-        lines = [line for index in places for line in self._value(index)]
-        for index in places:
-            name = program_.atoms[index]
-            head = f"let {name} = " if name in used else ""
-            lines += [] if program_.always_in_range[index] else [f"{head}self.keep({index}, {name})?;"]
+        used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group} | program_.variables_kept
+        lines: list[str] = []
+        later: list[str] = []
+        for step in program_.every_step:
+            if step.kind == "register":
+                lines += self._register(step.index)
+                continue
+            name = program_.atoms[step.index]
+            lines += self._value(step.index)
+            if not program_.always_in_range[step.index]:
+                head = f"let {name} = " if name in used else ""
+                (lines if program_.registers else later).append(f"{head}self.keep({step.index}, {name})?;")
+        return [*lines, *later]
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, name = self._program, self._program.registers[index]
+        self._printer.atom = len(program_.atoms) + index
+        statements = with_declaration(name, program_.updates[index], changes=False)
+        lines = self._printer.lines((CommentLine(program_.register_comments[index]), *statements))
+        if not program_.always_finite[index]:
+            refusal = f"return Err(self.refuse(Problem::TooLarge, {self._printer.atom}));"
+            lines += [f"if !{name}.is_finite() {{", f"{_INDENT}{refusal}", "}"]
         return lines
 
     def _value(self, index: int, depth: int = 0) -> list[str]:
@@ -312,6 +340,11 @@ class _Source:
         }
         lines += [line for name, line in declarations.items() if name in used]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
+
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        names = self._program.registers
+        return [f"self.registers = [{_Rust.items(names)}];"] if names else []
 
 
 # --- pieces ---------------------------------------------------------------------------------------

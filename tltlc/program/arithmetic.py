@@ -104,12 +104,13 @@ def _is_reassigned(name: str, statements: Sequence[Statement]) -> bool:
 class ExpressionTranslator:
     """Translates expressions to statements.
 
-    ``signals`` and ``params`` map the names of signals and parameters to variables. The names of
-    temporary variables are ``prefix`` and a number: ``t_1``, ``t_2``, and so on, with the prefix
-    ``t_``. No two of them have the same name.
+    ``signals`` and ``params`` map the names of signals and parameters to variables. For updates of
+    registers, ``signals`` also maps the names of registers, and the nodes that read anything else. The
+    names of temporary variables are ``prefix`` and a number: ``t_1``, ``t_2``, and so on, with the
+    prefix ``t_``. No two of them have the same name.
     """
 
-    def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str) -> None:
+    def __init__(self, signals: Mapping[source.VariableKey, str], params: Mapping[str, str], prefix: str) -> None:
         self._signals, self._params, self._prefix = dict(signals), params, prefix
         self._count = 0
 
@@ -260,8 +261,8 @@ class ExpressionTranslator:
         """Translate an expression; append to ``lines`` the statements that must run before the result."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
-        if isinstance(node, source.SignalValue):
-            return ProgramVariable(self._signals[node.name])
+        if isinstance(node, (source.SignalValue, source.AtomValue, source.Before, source.StepLength)):
+            return ProgramVariable(self._signals[source.variable_key(node)])
         if isinstance(node, source.ParamValue):
             return ProgramVariable(self._params[node.name])
         if isinstance(node, source.When):
@@ -270,7 +271,6 @@ class ExpressionTranslator:
             branches = self._cases(name, node)
             lines += [Declare(name, "real", None, _is_reassigned(name, branches)), *branches]
             return ProgramVariable(name)
-        assert isinstance(node, source.Op), "atoms read registers as signals"
         if node.op == "^" and isinstance(exponent := node.args[1], source.Const):
             factors = MULTIPLIED_EXPONENTS.get(exponent.value)
             if factors:

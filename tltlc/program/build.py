@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import Computation, schedule
 from tltlc.core.record import record
+from tltlc.expression.tree import AtomValue, Before, VariableKey
 from tltlc.monitor.tables import ends_on_entry, tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
-from tltlc.program.bounds import ValueRange, prove_ranges, range_between
+from tltlc.program.bounds import ValueRange, range_between
 from tltlc.program.names import VariableNames
+from tltlc.program.sample_ranges import RegisterVariables, prove_sample
 from tltlc.program.shapes import Case, StateTables, cases_and_tables
 from tltlc.program.tree import FAILING, NumericFunction, Statement
 from tltlc.program.used_names import functions_called, variables_read
-from tltlc.resolve.spec import Signal
+from tltlc.resolve.spec import Register, Signal
 
 TEMPORARY = "t"
 """The prefix of temporary variables: ``t_1``, ``t_2``, …, or ``t2_1``, … if another name begins with ``t_``."""
@@ -32,18 +35,26 @@ _OWN = (
 class Program:
     """The program of a monitor: names of variables, and statements.
 
-    Signals, parameters, atoms and states have the order that they have in the automaton.
+    Signals, parameters, atoms, registers and states have the order that they have in the automaton.
 
     - ``signals``, ``params`` and ``atoms`` are the names of the variables with their values.
+      ``registers`` are those with the values of the registers after the sample, and ``before`` those
+      with their values before it. A monitor keeps the values after the sample when the step has
+      succeeded.
     - ``values`` has, for each atom, the statements that assign its value; none if no case needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
+    - ``updates`` has, for each register, the statements that assign its value after the sample.
+      ``always_finite`` says whether it is proved that this value exists and is finite.
+    - ``every_step`` has what every step computes, in order. If there are registers, each value must be
+      checked, and clamped, before the next one is computed.
     - ``only_in`` has, for each atom, the number of the only case that needs the atom: the atom is
       computed only there. It is -1 if no case needs the atom, and None if every step computes it.
     - ``read_in`` has, for each signal, the number of the only case whose atoms read it. It is -1 if
       no atom reads the signal, and None if every step reads it.
     - ``atom_comments`` has, for each atom, the text of a comment: the name of the atom. The first atom of
-      a predicate also has the documentation of the predicate.
+      a predicate also has the documentation of the predicate. ``register_comments`` has a comment for
+      each register.
     - ``exclusive`` has a pair for each group of at least two exclusive atoms, of which at most one
       is true at a time: the index of the group in the automaton, and the indices of its atoms.
     - ``cases`` has the statements that compute a transition: a case for each state or, if ``tables``
@@ -57,11 +68,17 @@ class Program:
     signals: tuple[str, ...]
     params: tuple[str, ...]
     atoms: tuple[str, ...]
+    registers: tuple[str, ...]
+    before: tuple[str, ...]
     values: tuple[tuple[Statement, ...], ...]
     always_in_range: tuple[bool, ...]
+    updates: tuple[tuple[Statement, ...], ...]
+    always_finite: tuple[bool, ...]
+    every_step: tuple[Computation, ...]
     only_in: tuple[int | None, ...]
     read_in: tuple[int | None, ...]
     atom_comments: tuple[str, ...]
+    register_comments: tuple[str, ...]
     exclusive: tuple[tuple[int, tuple[int, ...]], ...]
     cases: tuple[Case, ...]
     tables: StateTables | None
@@ -71,8 +88,10 @@ class Program:
     def computed_in(self, case: int | None) -> list[int]:
         """Return the indices of the atoms that are computed only in this case.
 
-        If ``case`` is None, return the indices of the atoms that every step computes.
+        If ``case`` is None, return the indices of the atoms that every step computes, in order.
         """
+        if case is None:
+            return [step.index for step in self.every_step if step.kind == "atom"]
         return [index for index, only in enumerate(self.only_in) if only == case]
 
     def bools_read_in(self, case: int | None) -> list[str]:
@@ -94,13 +113,21 @@ class Program:
 
     @property
     def variables_used(self) -> frozenset[str]:
-        """The names of the variables that the statements in ``values`` read."""
-        return variables_read(statement for value in self.values for statement in value)
+        """The names of the variables that the statements in ``values`` and ``updates`` read."""
+        return variables_read(self._statements())
 
     @property
     def functions(self) -> frozenset[NumericFunction]:
-        """The functions that the statements in ``values`` call."""
-        return functions_called(statement for value in self.values for statement in value)
+        """The functions that the statements in ``values`` and ``updates`` call."""
+        return functions_called(self._statements())
+
+    @property
+    def variables_kept(self) -> frozenset[str]:
+        """The names of the variables that the statements in ``updates`` read."""
+        return variables_read(statement for update in self.updates for statement in update)
+
+    def _statements(self) -> Iterator[Statement]:
+        return (statement for value in (*self.values, *self.updates) for statement in value)
 
 
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
@@ -119,38 +146,65 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
     signals = {signal.name: names.new_name(signal.name) for signal in fspa.signals}
     params = {param.name: names.new_name(param.name, "param") for param in fspa.params}
     atoms = tuple(names.new_name(atom.name, "atom") for atom in fspa.atoms)
-    arithmetic = ExpressionTranslator(signals, params, _prefix([*signals.values(), *params.values(), *atoms]))
+    registers = tuple(
+        RegisterVariables(
+            register, names.new_name(register.name, "register"), names.new_name(f"{register.name} before")
+        )
+        for register in fspa.registers
+    )
+    now, before = tuple(each.now for each in registers), tuple(each.before for each in registers)
+    variables: dict[VariableKey, str] = dict(signals.items())
+    for each in registers:
+        variables |= {each.register.name: each.now, Before(each.register.name): each.before}
+    if registers:
+        variables |= {AtomValue(atom.name): name for atom, name in zip(fspa.atoms, atoms, strict=True)}
+    arithmetic = ExpressionTranslator(variables, params, _prefix([*variables.values(), *params.values(), *atoms]))
+    order = schedule(fspa)
+    computations = {
+        (atoms[step.index] if step.kind == "atom" else now[step.index]): (
+            fspa.atoms[step.index].expression if step.kind == "atom" else fspa.registers[step.index].update
+        )
+        for step in order
+    }
     ranges = {name: _range(signal) for name, signal in zip(signals.values(), fspa.signals, strict=True)}
     ranges |= {
         name: range_between(param.low, param.high) for name, param in zip(params.values(), fspa.params, strict=True)
     }
-    values = [
-        prove_ranges(name, arithmetic.assign(name, atom.expression), ranges)
-        for name, atom in zip(atoms, fspa.atoms, strict=True)
-    ]
+    proved = prove_sample(
+        {name: arithmetic.assign(name, expression) for name, expression in computations.items()}, registers, ranges
+    )
     # A function in the condition of a `when` may fail even if the result is always in range. So an atom that calls such
     # a function does not count as always in range.
-    in_range = tuple(
-        range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not functions_called(statements) & FAILING
-        for statements, range_ in values
-    )
+    fails = {name for name, value in proved.items() if functions_called(value.statements) & FAILING}
+    in_range = tuple(name not in fails and proved[name].lies_in(-1.0, 1.0) for name in atoms)
     cases, state_tables = cases_and_tables(tables(fspa), atoms)
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
-    compared = {atom for _, group in exclusive for atom in group}
+    updates = tuple(proved[name].statements for name in now)
+    kept = variables_read(statement for update in updates for statement in update)
+    eager = {atoms[atom] for _, group in exclusive for atom in group} | kept
     only_in = _only_in(
-        atoms, [is_in_range and index not in compared for index, is_in_range in enumerate(in_range)], cases
+        atoms,
+        [is_in_range and name not in eager for name, is_in_range in zip(atoms, in_range, strict=True)],
+        cases,
     )
-    needed = tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True))
+    needed = tuple(() if only == -1 else proved[name].statements for name, only in zip(atoms, only_in, strict=True))
+    every_step = tuple(step for step in order if step.kind == "register" or only_in[step.index] is None)
     return Program(
         fspa=fspa,
         signals=tuple(signals.values()),
         params=tuple(params.values()),
         atoms=atoms,
+        registers=now,
+        before=before,
         values=needed,
         always_in_range=in_range,
+        updates=updates,
+        always_finite=tuple(name not in fails and proved[name].is_finite for name in now),
+        every_step=every_step,
         only_in=only_in,
-        read_in=_read_in(tuple(signals.values()), only_in, needed),
-        atom_comments=_atom_comments(fspa, only_in, len(cases)),
+        read_in=_read_in(tuple(signals.values()), (*only_in, *(None for _ in now)), (*needed, *updates)),
+        atom_comments=_atom_comments(fspa, only_in, every_step, len(cases)),
+        register_comments=tuple(map(_register_comment, fspa.registers)),
         exclusive=exclusive,
         cases=cases,
         tables=state_tables,
@@ -163,9 +217,9 @@ def _only_in(atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Case]
     """Return for each atom the number of the only case that needs it.
 
     The number is -1 if no case needs the atom, and None if every step computes it. ``silent``
-    says, for each atom, that its computation never gives an error or a notice. Every step computes
-    the atoms that are not silent, so that all monitors give the same errors and notices. ``atoms``
-    are the variables of the atoms.
+    says, for each atom, that its computation never gives an error or a notice, and that no register
+    reads it. Every step computes the atoms that are not silent, so that all monitors give the same
+    errors and notices. ``atoms`` are the variables of the atoms.
     """
     used = [variables_read(case.statements) for case in cases]
     only_in: list[int | None] = []
@@ -180,9 +234,9 @@ def _read_in(
 ) -> tuple[int | None, ...]:
     """Return for each signal the number of the only case that reads it.
 
-    The number is -1 if no atom reads the signal. It is None if every step or several cases read
-    it. ``only_in`` has the number of the only case that needs each atom, and ``values`` has the
-    statements of each atom.
+    The number is -1 if no atom and no register reads the signal. It is None if every step or several
+    cases read it. ``only_in`` has the number of the only case that needs each atom or register, and
+    ``values`` has their statements.
     """
     places: dict[str, set[int | None]] = {name: set() for name in signals}
     for only, statements in zip(only_in, values, strict=True):
@@ -191,16 +245,23 @@ def _read_in(
     return tuple((*readers, -1)[0] if len(readers) < 2 else None for readers in places.values())
 
 
-def _atom_comments(fspa: Fspa, only_in: Sequence[int | None], case_count: int) -> tuple[str, ...]:
+def _register_comment(register: Register) -> str:
+    unit = f", in {register.unit}" if register.unit else ""
+    return f"Memory: {register.name}{unit}"
+
+
+def _atom_comments(
+    fspa: Fspa, only_in: Sequence[int | None], every_step: Sequence[Computation], case_count: int
+) -> tuple[str, ...]:
     """Return the text of the comment of each atom: its name, and perhaps documentation.
 
     The documentation of a predicate is in the comment of only one of its atoms: the first in the
-    generated code. In this code, the atoms that every step computes come before those of single
-    cases (``only_in``).
+    generated code. In this code, the atoms that every step computes (``every_step``) come before those
+    of single cases (``only_in``).
     """
     atom_comments = [atom.name for atom in fspa.atoms]
     explained = {""}
-    eager = [index for index, only in enumerate(only_in) if only is None]
+    eager = [step.index for step in every_step if step.kind == "atom"]
     lazy = [index for case in range(case_count) for index, only in enumerate(only_in) if only == case]
     for index in (*eager, *lazy):
         doc = fspa.atoms[index].doc

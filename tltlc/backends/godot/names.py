@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Final
 
 from tltlc.program.names import VariableNames
@@ -57,14 +57,14 @@ Generated names do not begin with ``_``, so they cannot clash with the other nam
 RESERVED: Final = frozenset((*_WORDS, *_FUNCTIONS, *_OBJECT, *_OWN))
 
 
-def snake_case(names: Iterable[str]) -> dict[str, str]:
+def snake_case(names: Iterable[str], reserved: Collection[str] = RESERVED) -> dict[str, str]:
     """Map each name with a capital letter to a new, unique name in snake_case: ``nearDoor`` to ``near_door``.
 
-    Names without a capital letter are left out. A variable with a capital letter could have the
-    name of a class of the engine, such as ``Node``.
+    Names without a capital letter are left out, and no new name is ``reserved``. A variable with a
+    capital letter could have the name of a class of the engine, such as ``Node``.
     """
     all_names = list(names)
-    unique_names = VariableNames({*RESERVED, *all_names})
+    unique_names = VariableNames({*reserved, *all_names})
     return {name: unique_names.new_name(_lower(name)) for name in all_names if name != name.lower()}
 
 

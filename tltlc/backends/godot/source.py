@@ -104,13 +104,16 @@ class _Source:
 
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
-        self._program = program(fspa, RESERVED)
+        reserved = RESERVED | {"registers"} if fspa.registers else RESERVED
+        self._program = program(fspa, reserved)
         program_ = self._program
-        renamed = snake_case([*program_.signals, *program_.params, *program_.atoms])
+        variables = [*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before]
+        renamed = snake_case(variables, reserved)
         self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions, dialect.swapped)
         self._signals = [self._printer.name(name) for name in program_.signals]
         self._params = [self._printer.name(name) for name in program_.params]
         self._atoms = [self._printer.name(name) for name in program_.atoms]
+        self._registers = [self._printer.name(name) for name in program_.registers]
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.gd``."""
@@ -122,6 +125,7 @@ class _Source:
         present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
         present += ["states"] if program_.tables is None else ["tables"]
+        present += ["registers"] if fspa.registers else []
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -135,6 +139,8 @@ class _Source:
             "signals": self._strings(signal.name for signal in fspa.signals),
             "fields": self._strings(self._signals),
             "atoms": self._strings(atom.name for atom in fspa.atoms),
+            "registers": self._strings(register.name for register in fspa.registers),
+            "register_starts": _list([_signed(register.initial) for register in fspa.registers]),
             "labels": self._strings(str(state.label) for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
@@ -217,7 +223,9 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        return snippets.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
+        return snippets.paragraphs(
+            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
+        )
 
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
@@ -240,6 +248,11 @@ class _Source:
             for name, variable in zip(self._params, self._program.params, strict=True)
             if variable in used
         ]
+        lines += [
+            f"var {self._printer.name(variable)}: float = registers[{index}]"
+            for index, variable in enumerate(self._program.before)
+            if variable in used
+        ]
         return [*lines, *self._stop()] if checked else lines
 
     def _bools(self, case: int | None) -> list[str]:
@@ -255,19 +268,26 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the values, clamped to [-1, 1], of the atoms that every step needs."""
-        lines = self._values(None)
-        unsure = [(index, name) for index, name in enumerate(self._atoms) if not self._program.always_in_range[index]]
-        for index, name in unsure:
-            lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({index}, {name})"]
-        return [*lines, *(self._stop() if unsure else [])]
+        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
+        program_ = self._program
+        lines: list[str] = []
+        later: list[str] = []
+        for step in program_.every_step:
+            if step.kind == "register":
+                lines += self._register(step.index)
+                continue
+            name = self._atoms[step.index]
+            lines += self._value(step.index)
+            if not program_.always_in_range[step.index]:
+                check = [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({step.index}, {name})"]
+                if program_.registers:
+                    lines += [*check, *self._stop()]
+                else:
+                    later += check
+        return [*lines, *later, *(self._stop() if later else [])]
 
-    def _values(self, case: int | None) -> list[str]:
-        """Return the code that computes the values of some atoms.
-
-        These are the atoms that only this case computes or, if ``case`` is None, those that every step
-        computes.
-        """
+    def _values(self, case: int) -> list[str]:
+        """Return the code that computes the values of the atoms that only this case computes."""
         return [line for index in self._program.computed_in(case) for line in self._value(index)]
 
     def _value(self, index: int) -> list[str]:
@@ -277,6 +297,19 @@ class _Source:
         lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
         if functions_called(statements) & FAILING:
             lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {index})"]
+        return lines
+
+    def _register(self, index: int) -> list[str]:
+        """Return the code that computes the value of a register after the sample, given its index."""
+        program_, statements = self._program, self._program.updates[index]
+        place = len(self._atoms) + index
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += self._printer.lines(with_declaration(program_.registers[index], statements, changes=False))
+        if functions_called(statements) & FAILING:
+            lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
+        if not program_.always_finite[index]:
+            lines += [f"if not _is_number({self._registers[index]}):"]
+            lines.append(f"\treturn _refuse(Problem.TOO_LARGE, {place})")
         return lines
 
     def _check(self) -> list[str]:
@@ -327,6 +360,10 @@ class _Source:
         # Adding 0 replaces -0 by 0, as in all monitors.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
+
+    def _remember(self) -> list[str]:
+        """Return the code that keeps the values of the registers for the next sample."""
+        return [f"registers[{index}] = {name}" for index, name in enumerate(self._registers)]
 
     # --- pieces -----------------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import ClassVar, Final
 
 from tltlc.program import reward_step, snippets, states
@@ -29,7 +29,7 @@ class LuaPrinter(Printer):
     ``fields`` maps each variable that is a field of a table to the text that accesses the field,
     such as ``signal.health``; all other variables are local. ``atoms`` are the names of the atoms in
     the spec. Blocks that are nested too deep become functions, whose lines are collected in
-    ``parts``. They can use only fields.
+    ``parts``. They can use only fields: ``tables`` are their tables, separated by commas.
     """
 
     INDENT = "  "
@@ -43,8 +43,8 @@ class LuaPrinter(Printer):
     TABLES: ClassVar = {name: name.upper() for name in Printer.TABLES}
     END = ""
 
-    def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
-        self._fields, self._atoms = fields, atoms
+    def __init__(self, fields: Mapping[str, str], atoms: Sequence[str], tables: str = "") -> None:
+        self._fields, self._atoms, self._tables = fields, atoms, tables
         self._part_count = 0
         self.parts: list[str] = []
 
@@ -87,8 +87,8 @@ class LuaPrinter(Printer):
         if depth < DEEPEST_BLOCK:
             return super().branches(statement, depth)
         self._part_count += 1
-        head = f"part[{self._part_count}] = function(signal, param, value)"
-        call = f"part[{self._part_count}](signal, param, value)"
+        head = f"part[{self._part_count}] = function({self._tables})"
+        call = f"part[{self._part_count}]({self._tables})"
         self.parts += [head, *super().branches(statement, 1), "end", ""]
         return [f"{self.INDENT * depth}{call}"]
 
@@ -103,6 +103,26 @@ class LuaPrinter(Printer):
     def closing(self) -> list[str]:
         """Return the lines that end an ``if``."""
         return ["end"]
+
+
+def declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
+    """Yield every declaration among the statements, including those in branches."""
+    for statement in statements:
+        if isinstance(statement, Declare):
+            yield statement
+        elif isinstance(statement, If):
+            for body in _bodies(statement):
+                yield from declarations(body)
+
+
+def nesting(statements: Iterable[Statement]) -> int:
+    """Return how deep ``if`` statements are nested; 0 if there are none."""
+    bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
+    return 1 + max(map(nesting, bodies)) if bodies else 0
+
+
+def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
+    return (*(body for _, body in statement.cases), statement.otherwise)
 
 
 def string_literal(text: str) -> str:

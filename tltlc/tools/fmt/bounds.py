@@ -34,7 +34,8 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
 
     ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
     mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
-    brackets. Neither can ``after``, or the bound of an operator about the past. ``number`` returns a number as the source spells it.
+    brackets. Neither can ``after``, or the bound of an operator about the past. ``number`` returns a
+    number as the source spells it.
     """
     bound = node.bound
     if bound is None:

@@ -26,7 +26,10 @@ _LEVELS: Final = 4
 
 @record
 class CandidateSamples:
-    """Different samples. ``are_all`` is true if every other sample gives all atoms the same truth values as one of these."""
+    """Different samples.
+
+    ``are_all`` is true if every other sample gives all atoms the same truth values as one of these.
+    """
 
     samples: tuple[TraceSample, ...]
     are_all: bool
