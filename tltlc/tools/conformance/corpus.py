@@ -14,7 +14,16 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 from tltlc.expression.tree import Const, Op, nodes
 from tltlc.io.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.tools.conformance import arithmetic, borders, file_cases, odd_traces, operators, random_cases, shapes
+from tltlc.tools.conformance import (
+    arithmetic,
+    borders,
+    file_cases,
+    memory,
+    odd_traces,
+    operators,
+    random_cases,
+    shapes,
+)
 from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
 from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput, Rejection, expected_output
 
@@ -26,6 +35,7 @@ CASES: Final[CaseBuilders] = {
     **shapes.CASES,
     **odd_traces.CASES,
     **random_cases.CASES,
+    **memory.CASES,
 }
 
 VERSION: Final = 1
@@ -66,9 +76,10 @@ def is_corpus(folder: Path) -> bool:
 def is_exact(fspa: Fspa) -> bool:
     """Whether all monitors of an automaton must compute the same numbers, to the last digit.
 
-    This is so if IEEE 754 defines the result of each operation in the automaton's atoms.
+    This is so if IEEE 754 defines the result of each operation in the automaton's atoms and registers.
     """
-    operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
+    expressions = [*(atom.expression for atom in fspa.atoms), *(register.update for register in fspa.registers)]
+    operations = [node for expression in expressions for node in nodes(expression) if isinstance(node, Op)]
     return all(node.op not in _ROUNDED_BY_LIBRARY or _is_product(node) for node in operations)
 
 

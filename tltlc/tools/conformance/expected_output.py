@@ -9,12 +9,15 @@ from math import isfinite
 from typing import Any, Final, Literal
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import schedule
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import AtomValue, Before, VariableKey
 from tltlc.monitor import Monitor, Step
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, read_rows
 from tltlc.monitor.traces import TraceSample, read_trace
+from tltlc.resolve.spec import Atom, Register
 
 RejectionKind = Literal[
     "no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"
@@ -30,7 +33,7 @@ COLUMNS: Final = (
 class Rejection:
     """Why and where a monitor must reject a trace.
 
-    ``kind`` is the reason, and ``names`` are the signals or atoms at fault. ``step`` is the number of
+    ``kind`` is the reason, and ``names`` are the signals, atoms or registers at fault. ``step`` is the number of
     the sample, from 1. ``line`` is the number, from 1, of the line that cannot be read. It is None if
     all lines can be read, but the monitor must reject a sample, or there is no sample.
     """
@@ -70,7 +73,7 @@ def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
         for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
             rows.append(_row_cells(len(rows) + 1, monitor.step(sample)))
     except TltlError as error:
-        rejection = _rejection(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
+        rejection = _rejection(monitor, error.diagnostics[0], trace, sample)
     return ExpectedOutput(tuple(rows), rejection, len(monitor.notices))
 
 
@@ -80,22 +83,22 @@ def _row_cells(number: int, step: Step) -> tuple[str, ...]:
     return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
 
 
-def _rejection(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: TraceSample) -> Rejection:
-    """Convert the diagnostic of a rejected trace to a :class:`Rejection`.
+def _rejection(monitor: Monitor, error: Diagnostic, trace: bytes, sample: TraceSample) -> Rejection:
+    """Convert the diagnostic of a trace that a monitor rejects to a :class:`Rejection`.
 
-    ``step`` is the number of the rejected sample, and ``sample`` the last sample that was read. The
-    names at fault are computed from the sample or the trace, not read from the text of the
-    diagnostic.
+    ``sample`` is the last sample that was read. The names at fault are computed from the sample or
+    the trace, not read from the text of the diagnostic.
     """
+    fspa, step = monitor.fspa, monitor.steps + 1
     if error.code == "TLT0620":
         return Rejection("no sample", step)
     if error.code == "TLT0612":
         return Rejection("not finite", step, tuple(_infinite_signals(fspa, sample)[:1]))
     if error.code == "TLT0613":
-        kind, atom = _without_value(fspa, sample)
-        return Rejection(kind, step, (atom,))
+        kind, name = _without_value(monitor, sample)
+        return Rejection(kind, step, (name,))
     if error.code == "TLT0614":
-        return Rejection("together", step, _conflicting_atoms(fspa, sample))
+        return Rejection("together", step, _conflicting_atoms(monitor, sample))
     label = error.labels[0]
     line, _ = label.source.position(label.span.start)
     if error.code == "TLT0621":
@@ -115,31 +118,55 @@ def _infinite_signals(fspa: Fspa, sample: TraceSample) -> list[str]:
     return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
 
 
-def _without_value(fspa: Fspa, sample: TraceSample) -> tuple[RejectionKind, str]:
-    """Return why a sample gives some atom no value, and the name of the atom that monitors report."""
-    signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
+def _without_value(monitor: Monitor, sample: TraceSample) -> tuple[RejectionKind, str]:
+    """Return why a sample gives some atom or register no value, and the name of the one that monitors report."""
+    fspa, values, params = monitor.fspa, _known(monitor, sample), _params(monitor.fspa)
     too_large: str | None = None
-    for atom in fspa.atoms:
+    for step in schedule(fspa):
+        part = fspa.atoms[step.index] if step.kind == "atom" else fspa.registers[step.index]
         try:
-            value = evaluate(atom.expression, signals, params)
+            value = evaluate(part.expression if isinstance(part, Atom) else part.update, values, params)
         except ZeroDivisionError:
-            return "by zero", atom.name
+            return "by zero", part.name
         except OverflowError:
-            return "too large", atom.name
+            return "too large", part.name
         except ValueError:
-            return "no root", atom.name
-        # A monitor computes all values before it checks any, so an exception in a later atom comes first.
-        too_large = too_large or (None if isfinite(value) else atom.name)
-    assert too_large is not None, "some atom has no value"
+            return "no root", part.name
+        too_large = too_large or (None if isfinite(value) else part.name)
+        # With registers, a monitor checks each value at once. Without, it computes all values before it checks any, so
+        # an exception in a later atom comes first.
+        if too_large is not None and fspa.registers:
+            break
+        values[_key(part)] = min(max(value, -1.0), 1.0) if isinstance(part, Atom) else value
+    assert too_large is not None, "some value does not exist"
     return "too large", too_large
 
 
-def _conflicting_atoms(fspa: Fspa, sample: TraceSample) -> tuple[str, ...]:
+def _conflicting_atoms(monitor: Monitor, sample: TraceSample) -> tuple[str, ...]:
     """Return the atoms that hold in the first exclusive group of which more than one atom holds."""
-    signals, params = _clamp(fspa, sample), {param.name: param.value for param in fspa.params}
-    holds = [evaluate(atom.expression, signals, params) > 0.0 for atom in fspa.atoms]
+    fspa, values, params = monitor.fspa, _known(monitor, sample), _params(monitor.fspa)
+    for step in schedule(fspa):
+        part = fspa.atoms[step.index] if step.kind == "atom" else fspa.registers[step.index]
+        values[_key(part)] = evaluate(part.expression if isinstance(part, Atom) else part.update, values, params)
+    holds = [values[AtomValue(atom.name)] > 0.0 for atom in fspa.atoms]
     holding = [[atom for atom in group if holds[atom]] for group in fspa.exclusive]
     return tuple(fspa.atoms[atom].name for atom in next(group for group in holding if len(group) > 1))
+
+
+def _known(monitor: Monitor, sample: TraceSample) -> dict[VariableKey, float]:
+    """Return the values of the signals at a sample that a monitor rejected, and of the registers before it."""
+    values: dict[VariableKey, float] = dict(_clamp(monitor.fspa, sample).items())
+    for register, value in zip(monitor.fspa.registers, monitor.registers, strict=True):
+        values[Before(register.name)] = value
+    return values
+
+
+def _key(part: Atom | Register) -> VariableKey:
+    return AtomValue(part.name) if isinstance(part, Atom) else part.name
+
+
+def _params(fspa: Fspa) -> dict[str, float]:
+    return {param.name: param.value for param in fspa.params}
 
 
 def _clamp(fspa: Fspa, sample: Mapping[str, float]) -> dict[str, float]:

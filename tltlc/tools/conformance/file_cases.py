@@ -22,6 +22,11 @@ _ABOUT: Final = {
     "watch": "Over infinite traces, judged at the limit.",
     "errand": "Over infinite traces, judged at the goal.",
     "counting": "Six hundred states, most of which only count.",
+    "counts": "How often something began.",
+    "timers": "Times and windows of the trace so far.",
+    "recall": "Numbers of earlier samples.",
+    "past": "Past operators.",
+    "recurring": "Memory over infinite traces.",
 }
 _RECORDED: Final = ("cover_and_hide", "navigation", "branching", "counting")
 
@@ -35,6 +40,10 @@ _POOLS: Final[dict[str, Pools]] = {
     "watch": {f"distance({x})": (0.25, 0.75, 1.0, 20.0, 61.0) for x in ("office", "north", "south")},
     "errand": {"fuel": (0.15, 0.5, 1.0)},
     "counting": {"noise": (0.0, 0.25, 0.5), "lever": (-1.0, 0.0, 0.125)},
+    "timers": {"x": (-1.0, -0.5, 0.0, 0.25, 0.75, 1.0)},
+    "recall": {"health": (50.0, 60.0, 65.0), "height": (-3.0, 0.0, 5.0, 80.0), "speed": (-1.0, 0.0, 0.5, 2.0)},
+    "past": {"x": (-1.0, -0.6, -0.0, 0.0, 0.25, 1.0)},
+    "recurring": {"x": (0.0, 1.0, 5.0, 9.5)},
 }
 
 

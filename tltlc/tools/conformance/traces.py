@@ -48,9 +48,11 @@ def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, r
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
-    samples = [_sample(fspa, atoms, draw, pools, accepted=True) for _ in range(length)]
-    if rejected:
-        samples.append(_sample(fspa, atoms, draw, pools, accepted=False))
+    registers = atoms.initial
+    samples: list[Mapping[str, float]] = []
+    for number in range(length + rejected):
+        sample, registers = _sample(fspa, atoms, draw, pools, registers, accepted=number < length)
+        samples.append(sample)
     rows = [[_text(draw, signal, sample[signal.name]) for signal in fspa.signals] for sample in samples]
     return table([signal.name for signal in fspa.signals], rows)
 
@@ -73,25 +75,35 @@ def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
     return len({step.state for step in steps}), open_
 
 
-def _sample(fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, accepted: bool) -> dict[str, float]:
+def _sample(
+    fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, registers: tuple[float, ...], accepted: bool
+) -> tuple[dict[str, float], tuple[float, ...]]:
     """Return a random sample that a monitor accepts, or one that it rejects if ``accepted`` is false.
 
+    ``registers`` are the values of the registers before the sample; those after it are returned, too.
     Samples are drawn until one fits. After ``_ATTEMPTS`` samples, the last one is returned anyway.
     """
     for _ in range(_ATTEMPTS):
         sample = {signal.name: _value(draw, signal, pools.get(signal.name, ())) for signal in fspa.signals}
-        if _is_accepted(fspa, atoms, sample) == accepted:
+        after = _registers_after(fspa, atoms, sample, registers)
+        if (after is not None) == accepted:
             break
-    return sample
+    return sample, registers if after is None else after
 
 
-def _is_accepted(fspa: Fspa, atoms: Samples, sample: Mapping[str, float]) -> bool:
-    """Whether a monitor accepts a sample: each atom has a value, and no two exclusive atoms hold together."""
+def _registers_after(
+    fspa: Fspa, atoms: Samples, sample: Mapping[str, float], registers: tuple[float, ...]
+) -> tuple[float, ...] | None:
+    """Return the values of the registers after a sample, or None if a monitor rejects the sample.
+
+    A monitor rejects it if an atom or register has no value, or if two exclusive atoms hold together.
+    """
     try:
-        check_exclusive(fspa, atoms.atom_values(sample, 1), 1)
+        values = atoms.values(sample, registers, 1)
+        check_exclusive(fspa, values.atoms, 1)
     except MonitorError:
-        return False
-    return True
+        return None
+    return values.registers
 
 
 def _value(draw: Draw, signal: Signal, pool: Sequence[float]) -> float:
