@@ -5,9 +5,12 @@ the robustness of a guard. ``nearest_edge`` finds, among some steps, the step th
 taking an edge towards acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the
 names of the reward modes; ``mode_function`` returns the function that computes the reward of a
 ``Transition`` in a mode.
+``schedule`` returns the order in which a monitor computes atoms and registers. ``given_atoms`` and
+``registers_from_atoms`` say which of them do not, or do, follow from the values of atoms.
 ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 
+from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.nearest_edge import nearest_edge
@@ -38,14 +41,17 @@ __all__ = [
     "bounding_literal",
     "ends_episode",
     "finite_signal_value",
+    "given_atoms",
     "mode_function",
     "name_list",
     "nearest_edge",
     "number_text",
     "param_values",
     "range_text",
+    "registers_from_atoms",
     "reward_options_argument",
     "robustness",
+    "schedule",
     "tables",
     "terminal_penalty",
 ]

@@ -18,7 +18,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from tltl_runtime.spec.batch.writer import TensorLine, TensorWriter
+from tltl_runtime.spec.batch.writer import TensorLine, TensorTerm, TensorWriter
 from tltlc.api import expressions
 
 
@@ -26,20 +26,26 @@ class TensorExpressions:
     """Expressions, compiled to one Python function that evaluates all of them in N environments.
 
     The function takes the values of the signals, a tensor [signals, N]; ``signals`` are the names of
-    its rows. ``params`` are the values of the params in the expressions, in SI units. ``source`` is the
-    Python source text of the function.
+    its rows, or the keys of whatever else the expressions read. ``params`` are the values of the params
+    in the expressions, in SI units. ``keys``, if there are any, has a key for each expression, by which
+    later expressions read its value. ``source`` is the Python source text of the function.
     """
 
     def __init__(
         self,
         expressions: Sequence[expressions.Expression],
-        signals: Sequence[str],
+        signals: Sequence[expressions.VariableKey],
         params: Mapping[str, float],
         device: torch.device,
         dtype: torch.dtype,
+        keys: Sequence[expressions.VariableKey] = (),
     ) -> None:
         writer = TensorWriter(signals, params)
-        terms = [writer.number(expression) for expression in expressions]
+        terms: list[TensorTerm] = []
+        for index, expression in enumerate(expressions):
+            terms.append(writer.number(expression))
+            if keys:
+                writer.define(keys[index], terms[-1])
         values = [term.name if term.constant is None else writer.constant_column(term.constant) for term in terms]
         failures = [term.fails for term in terms]
         self.source = "\n".join(

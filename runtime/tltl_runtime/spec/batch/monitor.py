@@ -12,7 +12,7 @@ from torch import Tensor
 from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
 from tltl_runtime.spec.batch.progress_and_reward import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.reward_modes import BatchTransition, reward_mode
-from tltl_runtime.spec.batch.samples import BatchSamples
+from tltl_runtime.spec.batch.samples import BatchSamples, BatchSampleValues
 from tltlc.api import Fspa, RewardOptions, monitors
 
 _VIOLATED = VERDICTS.index("violated")
@@ -90,7 +90,8 @@ class BatchMonitor:
     automaton of its environment continues with reward 0 until it is reset, as in
     :class:`tltlc.monitor.Monitor`.
 
-    ``state`` int64 [N], ``steps`` [N] and ``progress`` [N] are the values after the last step.
+    ``state`` int64 [N], ``steps`` [N], ``progress`` [N] and ``registers`` [registers, N] are the values
+    after the last step. A monitor remembers the trace so far in registers.
     ``clamped`` counts values out of range, by the names of signals and atoms. ``signal_names`` is
     the order of signals in a tensor.
 
@@ -160,7 +161,7 @@ class BatchMonitor:
                 expected = f"torch.bool of the shape {(self.count,)}"
                 raise ValueError(f"the mask must be {expected}, not {chosen.dtype} of {tuple(chosen.shape)}")
             fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
-        self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
+        self.state, self.steps, self.progress, self._done, self._success, self._memory, self.registers = fresh
 
     def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
         """Take one sample of each environment.
@@ -171,14 +172,16 @@ class BatchMonitor:
 
         Raises:
             MonitorError: TLT0611, signals are missing; TLT0612, a signal has no usable value;
-                TLT0613, an atom has no value; TLT0614, exclusive atoms hold at once. No automaton
+                TLT0613, an atom or a register has no value; TLT0614, exclusive atoms hold at once. No automaton
                 takes a step then. If not ``checked``, only TLT0611 is raised.
             ValueError: an array has another shape.
         """
-        return self._take(self._samples.atom_values(signals))
+        return self._take(self._samples.values(signals, self.registers))
 
     def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
         """Take one sample of each environment: the ``values`` of the atoms, [N, atoms], in [-1, 1].
+
+        Atoms that follow from others have no value, as in :meth:`tltlc.monitor.Monitor.step_atoms`.
 
         Raises:
             MonitorError: TLT0614, exclusive atoms hold at once; only if ``checked``. No automaton
@@ -186,17 +189,20 @@ class BatchMonitor:
             ValueError: the shape is another or, if ``checked``, a value is not in [-1, 1].
         """
         rows = torch.as_tensor(values)
-        fits = rows.shape == (self.count, len(self.fspa.atoms))
+        shape = (self.count, len(monitors.given_atoms(self.fspa)))
+        fits = rows.shape == shape
         if not fits or (self._checked and not bool((rows.abs() <= 1.0).all())):
-            raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
-        return self._take(rows.to(self.device, self.dtype).t().contiguous())
+            raise ValueError(f"values in [-1, 1] of shape {shape} are needed")
+        given = rows.to(self.device, self.dtype).t().contiguous()
+        return self._take(self._samples.from_atoms(given, self.registers))
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
         """Return the current states of the automata as one-hot rows, shape [N, states]."""
         rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
         return rows.scatter_(1, self.state[:, None], 1.0)
 
-    def _take(self, values: Tensor) -> BatchStep:
+    def _take(self, sample: BatchSampleValues) -> BatchStep:
+        values = sample.atoms
         edge = self._transitions.edge(self.state, values > 0.0)
         source, state = self.state, self._targets.index_select(0, edge)
         steps = self.steps + 1.0
@@ -215,17 +221,18 @@ class BatchMonitor:
         self.state, self.steps, self.progress, self._done, self._success, self._memory = (
             state, steps, progress, done, success, memory,
         )  # fmt: skip
+        self.registers = sample.registers
         return BatchStep(self, edge, values, state, done, success, progress, reward)
 
     def _episode(self) -> tuple[Tensor, ...]:
-        return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
+        return (self.state, self.steps, self.progress, self._done, self._success, self._memory, self.registers)
 
     def _start(self) -> tuple[Tensor, ...]:
         """Return the tensors that describe new episodes, before the first sample of each environment.
 
-        They are state, steps, progress, done, success and the memory of the reward mode.
+        They are state, steps, progress, done, success, the memory of the reward mode, and the registers.
         """
         numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
         flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
         memory = numbers if self._mode is None else self._mode.start(self.count)
-        return (numbers.to(torch.int64), numbers, numbers, flags, flags, memory)
+        return (numbers.to(torch.int64), numbers, numbers, flags, flags, memory, self._samples.initial)

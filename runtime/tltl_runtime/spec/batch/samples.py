@@ -1,8 +1,13 @@
-"""Compute the values of atoms from the signals of N environments; check and clamp the values."""
+"""Compute the values of atoms from the signals of N environments; check and clamp the values.
+
+The values of registers, in which the monitors remember the traces so far, go in and come out.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
 
 import torch
 from numpy.typing import ArrayLike
@@ -10,10 +15,17 @@ from torch import Tensor
 
 from tltl_runtime.spec.batch.expressions import TensorExpressions
 from tltl_runtime.spec.batch.float_formats import fits, narrow
-from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
+from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors, record
 
 _NAMED = 5
 """An error message names at most this many environments."""
+
+
+class BatchSampleValues(NamedTuple):
+    """The values of the atoms at a sample, [atoms, N], in [-1, 1], and of the registers after it, [registers, N]."""
+
+    atoms: Tensor
+    registers: Tensor
 
 
 class BatchSamples:
@@ -24,7 +36,8 @@ class BatchSamples:
     [-1, 1]. If values are not ``checked``, they are clamped without counts or errors.
 
     If a number of the automaton is too large or too small for ``dtype``, atoms are computed in
-    float64. ``names`` is the order of the signals in a tensor.
+    float64. ``names`` is the order of the signals in a tensor. ``initial`` are the values of the
+    registers before the first sample, [registers, N].
     """
 
     def __init__(
@@ -43,7 +56,23 @@ class BatchSamples:
         values = monitors.param_values(fspa.params, params or {})
         self._result_dtype = dtype
         self._dtype = dtype = dtype if fits(_constants(fspa, values), dtype) else torch.float64
-        self._program = TensorExpressions([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
+        self._values = values
+        self._computations = _computations(fspa)
+        self._before = tuple(expressions.Before(register.name) for register in fspa.registers)
+        self._program = TensorExpressions(
+            [each.expression for each in self._computations],
+            self._keys(self.names),
+            values,
+            device,
+            dtype,
+            [each.key for each in self._computations] if fspa.registers else (),
+        )
+        self._atom_rows, self._register_rows = (
+            torch.tensor(_rows(self._computations, is_atom), dtype=torch.int64, device=device)
+            for is_atom in (True, False)
+        )
+        starts = torch.tensor([register.initial for register in fspa.registers], dtype=dtype, device=device)
+        self.initial = starts[:, None].expand(-1, count).contiguous()
         # An open end of a range counts as the greatest finite number, so that only infinite values are clamped to it.
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]
@@ -53,36 +82,91 @@ class BatchSamples:
         self._high = torch.tensor(high, dtype=dtype, device=device)[:, None]
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
-    def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """Return the values of the atoms, each in [-1, 1], shape [atoms, N].
+    def values(
+        self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor, registers: Tensor
+    ) -> BatchSampleValues:
+        """Return the values of the atoms at a sample, and of the registers after it.
 
         ``signals`` maps names to arrays [N], or is one array [N, signals] in the order of ``names``.
-        Names that no atom uses are ignored. A value that is converted from float64 to a smaller
+        Names that no atom uses are ignored. ``registers``, [registers, N], are the values of the
+        registers before the sample. A value of an atom that is converted from float64 to a smaller
         ``dtype`` keeps its sign: it does not become 0.
 
         Raises:
             MonitorError: TLT0611, signals are missing; TLT0612, a signal has no finite value, or a
-                Boolean signal is neither 0 nor 1; TLT0613, an atom has no value. The message names
-                the environments. If not ``checked``, only TLT0611 is raised.
+                Boolean signal is neither 0 nor 1; TLT0613, an atom or a register has no value. The
+                message names the environments. If not ``checked``, only TLT0611 is raised.
             ValueError: an array has another shape.
         """
         columns = self._columns(signals)
         if not self._checked:
-            values, _ = self._program.run(torch.clamp(columns, self._low, self._high))
-            return narrow(torch.clamp(values, -1.0, 1.0), self._result_dtype)
+            columns = torch.clamp(columns, self._low, self._high)
+            values, _ = self._program.run(self._with_registers(columns, registers))
+            atoms, after = self._split(values)
+            return BatchSampleValues(narrow(torch.clamp(atoms, -1.0, 1.0), self._result_dtype), after)
         if self.names and not self._in_range(columns):
             given, columns = columns, torch.clamp(columns, self._low, self._high)
             self._check_signals(given, columns)
         for row in self._bools:
             self._check_truth(row, columns[row])
-        values, failures = self._program.run(columns)
+        values, failures = self._program.run(self._with_registers(columns, registers))
+        atoms, after = self._split(values)
         if not self._fspa.atoms:
-            return values.to(self._result_dtype)
+            return BatchSampleValues(atoms.to(self._result_dtype), after)
         failed = any(bool(mask.any()) for mask in failures if mask is not None)
-        if failed or not (float(values.amin()) >= -1.0 and float(values.amax()) <= 1.0):
-            raw, values = values, torch.clamp(values, -1.0, 1.0)
-            self._check_atoms(columns, raw, values, failures)
-        return narrow(values, self._result_dtype)
+        if failed or not (float(atoms.amin()) >= -1.0 and float(atoms.amax()) <= 1.0 and _are_finite(after)):
+            self._check_values(columns, registers, values, failures)
+            atoms = torch.clamp(atoms, -1.0, 1.0)
+        return BatchSampleValues(narrow(atoms, self._result_dtype), after)
+
+    def from_atoms(self, given: Tensor, registers: Tensor) -> BatchSampleValues:
+        """Return the values of all atoms and registers, from the atoms that do not follow from others, [given, N].
+
+        ``registers`` are the values of the registers before the sample. Registers that read signals keep
+        their value.
+        """
+        if not self._fspa.registers:
+            return BatchSampleValues(given, registers)
+        program, computations = self._from_atoms
+        values, _ = program.run(torch.cat([given.to(self._dtype), registers]))
+        atoms, after = registers.new_empty((len(self._fspa.atoms), self._count)), registers.clone()
+        atoms[list(monitors.given_atoms(self._fspa))] = given.to(self._dtype)
+        for each, value in zip(computations, values, strict=True):
+            (atoms if each.is_atom else after)[each.index] = value
+        return BatchSampleValues(narrow(torch.clamp(atoms, -1.0, 1.0), self._result_dtype), after)
+
+    @cached_property
+    def _from_atoms(self) -> tuple[TensorExpressions, list[_Computation]]:
+        """The program of :meth:`from_atoms`, and what it computes."""
+        fspa, given, following = self._fspa, monitors.given_atoms(self._fspa), monitors.registers_from_atoms(self._fspa)
+        computations = [
+            each
+            for each in self._computations
+            if (each.index not in given if each.is_atom else fspa.registers[each.index].name in following)
+        ]
+        rows = self._keys([expressions.AtomValue(fspa.atoms[index].name) for index in given])
+        program = TensorExpressions(
+            [each.expression for each in computations],
+            rows,
+            self._values,
+            self._device,
+            self._dtype,
+            [each.key for each in computations],
+        )
+        return program, computations
+
+    def _keys(self, signals: Sequence[expressions.VariableKey]) -> tuple[expressions.VariableKey, ...]:
+        """Return the keys of what a program reads: these ``signals``, and the registers before the sample."""
+        return (*signals, *self._before)
+
+    def _with_registers(self, columns: Tensor, registers: Tensor) -> Tensor:
+        return torch.cat([columns, registers]) if self._before else columns
+
+    def _split(self, values: Tensor) -> tuple[Tensor, Tensor]:
+        """Split the values that the program computes: those of atoms and those of registers, each in order."""
+        if not self._before:
+            return values, self.initial
+        return values.index_select(0, self._atom_rows), values.index_select(0, self._register_rows)
 
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """Return the values of the signals that the atoms use, shape [signals, N], with contiguous rows.
@@ -145,40 +229,89 @@ class BatchSamples:
                 "TLT0612", f"{_environments(indices)}: the signal `{self.names[row]}` is {value}, not true or false"
             )
 
-    def _check_atoms(self, columns: Tensor, raw: Tensor, values: Tensor, failures: Sequence[Tensor | None]) -> None:
-        unusable = ~torch.isfinite(raw)
+    def _check_values(
+        self, columns: Tensor, registers: Tensor, values: Tensor, failures: Sequence[Tensor | None]
+    ) -> None:
+        """Raise an error for the first atom or register without a value, and count the atoms that are clamped.
+
+        ``values`` and ``failures`` are the results of the program for the signals ``columns`` and the
+        ``registers`` before the sample.
+        """
+        unusable = ~torch.isfinite(values)
         for row, failed in enumerate(failures):
             wrong = unusable[row] if failed is None else unusable[row] | failed
             if bool(wrong.any()):
-                raise self._atom_error(row, _indices(wrong), columns)
-        for row, outside in enumerate(((raw - values).abs() > monitors.ROUNDING).sum(1).tolist()):
-            if outside:
-                name = self._fspa.atoms[row].name
-                self.clamped[name] = self.clamped.get(name, 0) + int(outside)
+                raise self._value_error(self._computations[row], _indices(wrong), columns, registers)
+        outside = ((values - torch.clamp(values, -1.0, 1.0)).abs() > monitors.ROUNDING).sum(1).tolist()
+        for each, count in zip(self._computations, outside, strict=True):
+            if count and each.is_atom:
+                name = self._fspa.atoms[each.index].name
+                self.clamped[name] = self.clamped.get(name, 0) + int(count)
 
-    def _atom_error(self, row: int, indices: Sequence[int], columns: Tensor) -> MonitorError:
-        """Return the error that says why an atom has no value in the environments ``indices``.
+    def _value_error(
+        self, computation: _Computation, indices: Sequence[int], columns: Tensor, registers: Tensor
+    ) -> MonitorError:
+        """Return the error that says why an atom or a register has no value in the environments ``indices``.
 
-        ``row`` is the index of the atom, and ``columns`` are the values of the signals, [signals, N].
-        The error is that of the monitor for one automaton, in the first of these environments.
+        ``columns`` are the values of the signals, [signals, N], and ``registers`` those of the registers
+        before the sample. The error is that of the monitor for one automaton, in the first of these
+        environments.
         """
-        sample = dict(zip(self.names, columns[:, indices[0]].tolist(), strict=True))
+        first = indices[0]
+        sample = dict(zip(self.names, columns[:, first].tolist(), strict=True))
         try:
-            monitors.Samples(self._fspa, self._params, []).atom_values(sample, _environments(indices))
+            samples = monitors.Samples(self._fspa, self._params, [])
+            samples.values(sample, registers[:, first].tolist(), _environments(indices))
         except MonitorError as error:
             return error
-        title = f"the atom `{self._fspa.atoms[row].name}` is too large to compute"
+        kind, parts = ("atom", self._fspa.atoms) if computation.is_atom else ("register", self._fspa.registers)
+        title = f"the {kind} `{parts[computation.index].name}` is too large to compute"
         return _error("TLT0613", f"{_environments(indices)}: {title}")
 
 
-def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield all numbers that are used to compute atoms, except the values of signals.
+@record
+class _Computation:
+    """The atom or the register with this index: its expression, and the key by which others read its value."""
 
-    They are the constants in expressions, the ends of the signals' ranges, and the values of the
-    params.
+    is_atom: bool
+    index: int
+    key: expressions.VariableKey
+    expression: expressions.Expression
+
+
+def _computations(fspa: Fspa) -> list[_Computation]:
+    """Return the atoms and registers of an automaton in the order in which they are computed."""
+    computations: list[_Computation] = []
+    for step in monitors.schedule(fspa):
+        if step.kind == "atom":
+            atom = fspa.atoms[step.index]
+            key = expressions.AtomValue(atom.name)
+            computations.append(_Computation(True, step.index, key, atom.expression))
+        else:
+            register = fspa.registers[step.index]
+            computations.append(_Computation(False, step.index, register.name, register.update))
+    return computations
+
+
+def _rows(computations: Sequence[_Computation], is_atom: bool) -> list[int]:
+    """Return the places of the atoms, or of the registers, among the computations, in the order of the automaton."""
+    rows = {each.index: row for row, each in enumerate(computations) if each.is_atom == is_atom}
+    return [rows[index] for index in range(len(rows))]
+
+
+def _are_finite(values: Tensor) -> bool:
+    return bool(torch.isfinite(values).all())
+
+
+def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
+    """Yield all numbers that are used to compute atoms and registers, except the values of signals.
+
+    They are the constants in expressions, the values of registers before the first sample, the ends of
+    the signals' ranges, and the values of the params.
     """
-    for atom in fspa.atoms:
-        yield from (node.value for node in expressions.nodes(atom.expression) if isinstance(node, expressions.Const))
+    for each in _computations(fspa):
+        yield from (node.value for node in expressions.nodes(each.expression) if isinstance(node, expressions.Const))
+    yield from (register.initial for register in fspa.registers)
     for signal in fspa.signals:
         yield from (end for end in (signal.low, signal.high) if end is not None)
     yield from params.values()

@@ -47,16 +47,17 @@ class TensorLine:
 class TensorWriter:
     """Writes lines of code that compute expressions. Each line assigns a tensor to a new name.
 
-    ``signals`` are the names of the signals, and ``params`` the values of the params in the expressions.
-    Whoever runs the code supplies what it uses: the variable ``columns``, where ``columns[i]`` has the
-    values of the i-th signal in the N environments; functions of torch by their names, such as
-    ``clamp``; and the constants. When all lines are written, the attribute ``constants`` has a number
-    for each name that the code uses for a zero-dimensional tensor. Equal right-hand sides are written
-    only once.
+    ``signals`` are the names of the signals, or the keys of whatever else the expressions read, and
+    ``params`` the values of the params in the expressions. Whoever runs the code supplies what it uses:
+    the variable ``columns``, where ``columns[i]`` has the values of the i-th signal in the N
+    environments; functions of torch by their names, such as ``clamp``; and the constants. When all
+    lines are written, the attribute ``constants`` has a number for each name that the code uses for a
+    zero-dimensional tensor. Equal right-hand sides are written only once.
     """
 
-    def __init__(self, signals: Sequence[str], params: Mapping[str, float]) -> None:
+    def __init__(self, signals: Sequence[expressions.VariableKey], params: Mapping[str, float]) -> None:
         self._columns = {name: index for index, name in enumerate(signals)}
+        self._computed: dict[expressions.VariableKey, TensorTerm] = {}
         self._params = params
         self._lines: dict[str, TensorLine] = {}
         self._line_names: set[str] = set()
@@ -71,14 +72,27 @@ class TensorWriter:
         """Write a line that assigns a column with ``constant`` for each environment; return its name."""
         return self._line("columns.new_full((columns.shape[1],), {}.item())", self._constant_tensor(constant))
 
+    def define(self, key: expressions.VariableKey, term: TensorTerm) -> None:
+        """Let expressions that are written later read the value of a term; that of an atom is clamped to [-1, 1].
+
+        Where the term has no value, the failure counts only for the term itself.
+        """
+        if isinstance(key, expressions.AtomValue):
+            term = self._extreme("min", self._extreme("max", term, self._constant(-1.0)), self._constant(1.0))
+        self._computed[key] = TensorTerm(term.name, term.constant)
+
     def number(self, node: expressions.Expression) -> TensorTerm:
         """Write the lines that compute a numeric expression, and return the term for its value."""
         if isinstance(node, expressions.Const):
             return self._constant(node.value)
         if isinstance(node, expressions.ParamValue):
             return self._constant(self._params[node.name])
-        if isinstance(node, expressions.SignalValue):
-            return TensorTerm(self._line(f"columns[{self._columns[node.name]}]"))
+        if isinstance(
+            node, (expressions.SignalValue, expressions.AtomValue, expressions.Before, expressions.StepLength)
+        ):
+            key = expressions.variable_key(node)
+            known = self._computed.get(key)
+            return known or TensorTerm(self._line(f"columns[{self._columns[key]}]"))
         if isinstance(node, expressions.When):
             return self._when(node)
         args = [self.number(argument) for argument in node.args]

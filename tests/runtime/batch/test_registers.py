@@ -1,0 +1,118 @@
+"""A batch monitor remembers the traces so far as one :class:`tltlc.monitor.Monitor` per environment does."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+
+import pytest
+import torch
+
+from tests.runtime.batch.test_batch_monitor import assert_equal
+from tltl_runtime.spec.batch import BatchMonitor
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import given_atoms
+from tltlc.monitor import Monitor, MonitorError
+from tltlc.tools.conformance.corpus import CASES, is_exact
+
+MEMORY = [name for name in CASES if "memory" in name] + ["counts", "timers", "recall", "past", "recurring"]
+COUNT = 7
+
+
+def draw_samples(fspa: Fspa, rng: random.Random) -> list[dict[str, float]]:
+    """Return a random sample for each environment: values of signals in their ranges, often equal ones."""
+    samples = []
+    for _ in range(COUNT):
+        sample: dict[str, float] = {}
+        for signal in fspa.signals:
+            low = -20.0 if signal.low is None else signal.low
+            high = low + 40.0 if signal.high is None else signal.high
+            value = rng.choice((low, high, low + (high - low) * rng.random(), (low + high) / 2))
+            sample[signal.name] = float(rng.random() < 0.4) if signal.type == "bool" else value
+        samples.append(sample)
+    return samples
+
+
+def columns(samples: Sequence[dict[str, float]]) -> dict[str, list[float]]:
+    return {name: [sample[name] for sample in samples] for name in samples[0]}
+
+
+@pytest.mark.parametrize("name", [name for name in MEMORY if name != "no_memory"])
+def test_a_batch_equals_scalar_monitors_after_resets_of_single_environments(name: str) -> None:
+    fspa = CASES[name]().fspa
+    rng = random.Random(name)
+    batch, monitors = BatchMonitor(fspa, COUNT), [Monitor(fspa) for _ in range(COUNT)]
+    successes = [False] * COUNT
+    for number in range(120):
+        if number % 9 == 8:
+            chosen = [rng.random() < 0.4 for _ in range(COUNT)]
+            batch.reset(torch.tensor(chosen))
+            for index in range(COUNT):
+                if chosen[index]:
+                    monitors[index].reset()
+                    successes[index] = False
+        samples = draw_samples(fspa, rng)
+        taken = batch.step(columns(samples))
+        steps = [monitor.step(sample) for monitor, sample in zip(monitors, samples, strict=True)]
+        successes = [monitor.success for monitor in monitors]
+        exact = is_exact(fspa)
+        assert_equal(taken, steps, successes, fspa, exact)
+        expected = torch.tensor([monitor.registers for monitor in monitors], dtype=torch.float64).t()
+        assert torch.equal(batch.registers, expected)
+
+
+@pytest.mark.parametrize("name", ["counts", "past", "timers"])
+def test_values_of_atoms_move_the_registers_that_follow_from_them(name: str) -> None:
+    fspa = CASES[name]().fspa
+    rng = random.Random(name)
+    batch, monitors = BatchMonitor(fspa, COUNT), [Monitor(fspa) for _ in range(COUNT)]
+    count = len(given_atoms(fspa))
+    assert 0 < count < len(fspa.atoms)
+    for _ in range(60):
+        rows = [[rng.choice((-1.0, -0.5, 0.0, 0.25, 1.0)) for _ in range(count)] for _ in range(COUNT)]
+        taken = batch.step_atoms(rows)
+        steps = [monitor.step_atoms(row) for monitor, row in zip(monitors, rows, strict=True)]
+        assert_equal(taken, steps, [monitor.success for monitor in monitors], fspa)
+        expected = torch.tensor([monitor.registers for monitor in monitors], dtype=torch.float64).t()
+        assert torch.equal(batch.registers, expected)
+    with pytest.raises(ValueError, match=rf"\({COUNT}, {count}\)"):
+        batch.step_atoms(torch.zeros((COUNT, len(fspa.atoms))))
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "text"),
+    [
+        (1e200, 1.0, "environment 2: the register `highest(x * x)` is too large to compute"),
+        (1.0, 0.0, "environment 2: the register `lowest(8 / y)` divides by zero"),
+        (1.0, 1e150, "environment 2: the register `last (y * y * y)` is too large to compute"),
+        (float("nan"), 1.0, "environment 2: the signal `x` is nan, not a finite number"),
+    ],
+)
+def test_a_register_without_a_value_leaves_all_environments_unchanged(x: float, y: float, text: str) -> None:
+    fspa = CASES["no_memory"]().fspa
+    batch, monitors = BatchMonitor(fspa, COUNT), [Monitor(fspa) for _ in range(COUNT)]
+    rng = random.Random(5)
+    for _ in range(4):
+        samples = [{"x": rng.uniform(-9, 9), "y": rng.choice((0.5, 2.0, 7.0))} for _ in range(COUNT)]
+        taken = batch.step(columns(samples))
+        steps = [monitor.step(sample) for monitor, sample in zip(monitors, samples, strict=True)]
+        assert_equal(taken, steps, [monitor.success for monitor in monitors], fspa)
+        before = batch.registers
+        wrong = columns([*samples[:2], {"x": x, "y": y}, *samples[3:]])
+        with pytest.raises(MonitorError) as error:
+            batch.step(wrong)
+        assert error.value.diagnostics[0].title == text
+        assert torch.equal(batch.registers, before)
+
+
+def test_a_batch_in_float32_counts_as_one_in_float64() -> None:
+    fspa = CASES["counts"]().fspa
+    rng = random.Random(2)
+    single, double = BatchMonitor(fspa, COUNT, dtype=torch.float32), BatchMonitor(fspa, COUNT)
+    unchecked = BatchMonitor(fspa, COUNT, checked=False)
+    for _ in range(80):
+        sample = columns(draw_samples(fspa, rng))
+        steps = [monitor.step(sample) for monitor in (single, double, unchecked)]
+        assert len({tuple(step.state.tolist()) for step in steps}) == 1
+        assert torch.allclose(single.registers.double(), double.registers, rtol=0.0, atol=1e-6)
+        assert torch.equal(unchecked.registers, double.registers)
