@@ -6,13 +6,15 @@ import re
 from typing import Final
 
 _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
-_COMPARISON: Final = re.compile(r"([^<>]+) ([<>]) ([^<>]+)")
+_COMPARISON: Final = re.compile(r"([^<>]+) ([<>]|==) ([^<>]+)|([^\W\d][\w.]*(?:\([^()]*\))?) (is) ([^\W\d]\w*)")
+_OPPOSITES: Final = {"<": ">=", ">": "<=", "==": "!=", "is": "is not"}
 
 
 class ComparisonName(str):
-    """The name of an atom that compares two numbers, such as ``fuel > 5``: a text that knows its parts.
+    """The name of an atom that compares two values, such as ``fuel > 5``: a text that knows its parts.
 
-    ``left`` and ``right`` are the two sides as they are written, and ``operator`` is ``<`` or ``>``.
+    ``left`` and ``right`` are the two sides as they are written. ``operator`` is ``<`` or ``>``, ``==``
+    for integers, or ``is`` for an enum and the name of one of its values.
     """
 
     __slots__ = ("left", "operator", "right")
@@ -29,7 +31,7 @@ class ComparisonName(str):
     @property
     def opposite(self) -> str:
         """The comparison that holds exactly where this one does not: ``fuel <= 5`` for ``fuel > 5``."""
-        return f"{self.left} {'>=' if self.operator == '<' else '<='} {self.right}"
+        return f"{self.left} {_OPPOSITES[self.operator]} {self.right}"
 
     def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
         return self.left, self.operator, self.right
@@ -63,4 +65,4 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
 
 def _whole(name: str) -> str:
     comparison = _COMPARISON.fullmatch(name)
-    return ComparisonName(*comparison.groups()) if comparison else name
+    return ComparisonName(*filter(None, comparison.groups())) if comparison else name

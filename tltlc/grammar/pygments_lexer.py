@@ -23,10 +23,10 @@ Class: TypeAlias = Any
 
 _DECLARATIONS: Final = "IMPORT SIGNAL ENTITY PARAM CLOCK PREDICATE LET EXCLUSIVE SPEC TEST".split()
 _CLAUSES: Final = "REACH KEEP AVOID REQUIRE LEVEL LIMIT JUDGE SEMANTICS TAG".split()
-_SMALL: Final = "AS IN AT FOR WITHIN AFTER STEP EXPECT TIMES ALL ANY WHEN OTHERWISE".split()
+_SMALL: Final = "AS IN IS AT FOR WITHIN AFTER STEP EXPECT TIMES ALL ANY WHEN OTHERWISE".split()
 _LOGIC: Final = "NOT AND OR IMPLIES IFF THEN EVENTUALLY ALWAYS NEXT WEAK_NEXT".split()
 _UNTIL: Final = "UNTIL WEAK_UNTIL RELEASE STRONG_RELEASE".split()
-_ARITHMETIC: Final = "LESS AT_MOST MORE AT_LEAST PLUS MINUS TIMES_SIGN DIVIDE POWER".split()
+_ARITHMETIC: Final = "LESS AT_MOST MORE AT_LEAST EQUALS UNEQUAL PLUS MINUS TIMES_SIGN DIVIDE POWER".split()
 _BRACKETS: Final = "LPAR RPAR LBRACE RBRACE LSQB RSQB COLON COMMA EQUAL".split()
 
 CLASSES: Final[dict[str, Class]] = {
@@ -51,7 +51,13 @@ _CHOOSING: Final = frozenset({"EXPECT", "SEMANTICS", "AT"})
 """Keywords after which a name is one of a fixed set: a verdict, `infinite`, `goal`."""
 
 # An unreserved word is a keyword after the terminals of the first table, and before those of the second.
-_KEYWORD_AFTER: Final = {"AT": {"JUDGE"}, "FOR": {"STRING"}, "TIMES": {"NUMBER"}, "AS": {"NAME", "STRING"}}
+_KEYWORD_AFTER: Final = {
+    "AT": {"JUDGE"},
+    "FOR": {"STRING"},
+    "TIMES": {"NUMBER"},
+    "AS": {"NAME", "STRING"},
+    "IS": {"NAME", "RPAR"},
+}
 _KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NUMBER"}, "IN": {"LPAR", "LSQB"}}
 
 

@@ -129,6 +129,14 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     if value.dimension != dimension:
         article = "an" if type_ == "angle" else "a"
         raise mismatch(dimension, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
+    if type_ == "int" and not value.is_whole:
+        raise problem(
+            "TLT0307",
+            f"`{parameter.name}` is an int: it must be a whole number",
+            env.scope.source,
+            argument.span,
+            advice="write a whole number, or a signal or param of the type `int`",
+        )
     if type_ == "ratio" and isinstance(value.expression, Const) and not 0 <= value.expression.value <= 1:
         raise problem(
             "TLT0307",
@@ -151,7 +159,8 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
 
 
 _TYPES_ELSEWHERE: Final = {
-    **dict.fromkeys(("int", "integer", "float", "double", "real"), "number"),
+    **dict.fromkeys(("float", "double", "real"), "number"),
+    "integer": "int",
     "boolean": "bool",
     "distance": "length",
     "duration": "time",
@@ -166,6 +175,8 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
     suggestion = elsewhere or likely_name(name, known)
     advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(known)}"
+    if name.lower() == "enum" and isinstance(at, tree.SignalDecl):
+        suggestion, advice = None, f"list the values: `signal {at.name}: (idle, alert)`"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
     fixes = (replacement_fix(scope.source, span, suggestion),) if suggestion and start >= 0 else ()

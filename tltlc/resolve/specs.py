@@ -15,6 +15,7 @@ from tltlc.grammar.walk import conjuncts, operands
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
+from tltlc.resolve.enums import exclusive_values
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Conjunct, JudgeMode, Spec, Vocabulary
@@ -81,11 +82,13 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
     """Return the atoms with the names ``used``, and the signals, params and groups that belong to them.
 
     ``groups`` has the names of the atoms of each ``exclusive`` declaration. A group belongs to the atoms
-    if ``used`` names at least two of its atoms; then the others are returned, too.
+    if ``used`` names at least two of its atoms; then the others are returned, too. Atoms that compare
+    one signal with different values, such as ``mode is idle`` and ``mode is alert``, are a group, too.
     """
     used = list(used)
-    exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
+    exclusive: list[Sequence[str]] = [group for group in groups if len(set(group).intersection(used)) > 1]
     names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
+    exclusive += exclusive_values(names, exclusive, context.values_of_signals)
     atoms = tuple(context.atoms[name] for name in names)
     variables = [node for atom in atoms for node in _variables(atom.expression)]
     return Vocabulary(

@@ -46,6 +46,10 @@ class OneLinePrinter:
                 text = None if inner is None else f"{node.name}({inner})"
             case tree.BinaryExpr():
                 text = self._chain(node, room)
+            case tree.IsExpr():
+                tail = f" is {'not ' * node.negated}{node.value}"
+                operand = self.text(node.operand, room - len(tail))
+                text = None if operand is None else operand + tail
             case tree.Unary():
                 head = self.prefix(node)
                 operand = self.text(node.operand, room - len(head))

@@ -10,7 +10,10 @@ from tltlc.grammar import tree
 from tltlc.logic.formula import FormulaOp
 from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Spelling
 
-_ARITHMETIC: Final = {**{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
+_ARITHMETIC: Final = {
+    **{op: f" {op} " for op in ("then", "<", "<=", ">", ">=", "==", "!=", "+", "-", "*", "/")},
+    "^": "^",
+}
 
 
 @record
