@@ -76,12 +76,12 @@ class Monitor:
         self.values: tuple[float, ...] = ()
         self._memory: Any = None
 
-    def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
+    def step(self, signals: Mapping[str, SupportsFloat | str], *, last: bool = False) -> Step:
         """Take one sample, and return the result.
 
-        ``signals`` maps the names of signals to bools, or to numbers in SI units. Names that no
-        atom uses are ignored. If ``last``, the episode ends with this sample, whatever the spec
-        says.
+        ``signals`` maps the names of signals to bools, to numbers in SI units, or for an enum to the
+        name of a value. Names that no atom uses are ignored. If ``last``, the episode ends with this
+        sample, whatever the spec says.
 
         Raises:
             MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
