@@ -66,6 +66,20 @@ class Monitor:
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
 
+    def another(self) -> Monitor:
+        """Return a new monitor of the same automaton, params and reward, before its first sample.
+
+        Use it where there is a monitor for each member of a group, such as the guards of a level. All
+        monitors share the tables and the compiled expressions of the first, so that a further one takes
+        little memory and time. Nothing else is shared: ``notices`` are its own.
+        """
+        new = type(self).__new__(type(self))
+        new.__dict__.update(self.__dict__)
+        new.notices = []
+        new._samples = self._samples.another(new.notices)
+        new.reset()
+        return new
+
     def reset(self) -> None:
         """Start a new trace: go back to the initial state, with no progress. ``notices`` stay."""
         self.state = 0

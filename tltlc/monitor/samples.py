@@ -38,6 +38,16 @@ class Samples:
             [atom.expression for atom in fspa.atoms], self._names, values
         )
 
+    def another(self, notices: list[Diagnostic]) -> Samples:
+        """Return samples of the same automaton and params, which share the compiled expressions.
+
+        Their warnings are appended to ``notices``.
+        """
+        new = type(self).__new__(type(self))
+        new.__dict__.update(self.__dict__)
+        new._notices, new._noticed = notices, set()
+        return new
+
     def atom_values(self, signals: Mapping[str, SupportsFloat | str], when: int | str) -> tuple[float, ...]:
         """Return the values of the atoms at a sample, each in [-1, 1].
 
