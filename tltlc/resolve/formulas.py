@@ -242,7 +242,7 @@ def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     subject = f"`{'all' if expr.all else 'any'} {expr.variable}`"
     parts: list[Formula] = []
     size = 0
-    for member in entities(expr.entities, env):
+    for member in entities(expr.entities, env, brackets=expr.brackets):
         _count_expansion(expr.span, env)
         part = yield _formula(expr.body, env.with_local(expr.variable, member))
         parts.append(part)

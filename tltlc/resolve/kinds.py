@@ -29,6 +29,7 @@ _DECLARATIONS = {
     "predicate": "signal {name}: bool",
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
+    "group": "entity {name} = a, b",
 }
 """Maps what an unknown name is used as to the declaration that the error suggests.
 
@@ -81,7 +82,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if library:
         advice = f"`{use.name}` is in the library {library}: add `{line}`"
     else:
-        advice = f"declare it: `{line}`" if noun == "entity" else _OTHERWISE.format(line)
+        advice = f"declare it: `{line}`" if noun in ("entity", "group") else _OTHERWISE.format(line)
     fixes: tuple[Fix, ...] = ()
     # A call would need a declaration with parameters, which this fix does not offer.
     if gets_help and (library or isinstance(use, NameExpr)):
