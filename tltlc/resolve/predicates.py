@@ -115,7 +115,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
         return entity(argument, env)
     type_ = parameter_type(parameter, binding)
     if type_ and kind_of(argument, env) == "entity":
-        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_ == 'angle' else 'a'} {type_}, not an entity"
+        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_[0] in 'ai' else 'a'} {type_}, not an entity"
         name = env.scope.source.slice(argument.span)
         advice = f"for `{name}`, write another `{binding.name}(…)`, and join the two with `and`, `or` or `then`"
         raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
@@ -127,7 +127,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
         return value
     dimension = units.TYPES[type_]
     if value.dimension != dimension:
-        article = "an" if type_ == "angle" else "a"
+        article = "an" if type_[0] in "ai" else "a"
         raise mismatch(dimension, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
     if type_ == "int" and not value.is_whole:
         raise problem(
