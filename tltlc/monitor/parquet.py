@@ -47,8 +47,8 @@ def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None
 
     ``name`` is the trace's name in messages. Columns of numbers and booleans keep their values, and
     a missing value is ``null``; those of enums may also be texts, the names of their values. Only the
-    columns of ``signals`` and the times are read. If ``signals`` is None, all columns of numbers and
-    booleans are read.
+    columns of ``signals`` and the times are read. If ``signals`` is None, all columns of numbers,
+    booleans and texts are read.
 
     Raises:
         TltlError: TLT0730, pyarrow is not installed; TLT0622, the file is not valid; TLT0004, it is
@@ -90,11 +90,11 @@ def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
     """
     kinds = [(field.name, field.type) for field in file.schema_arrow]
     if signals is None:
-        wanted = {name for name, kind in kinds if _is_value(kind)}
+        wanted = {name for name, kind in kinds if _is_value(kind) or _is_text(kind)}
     else:
         time = times_name([name for name, _ in kinds], signals)
         wanted = {*(signal.name for signal in signals), *([time] if time else [])}
-    enums = {signal.name for signal in signals or () if signal.values}
+    enums = wanted if signals is None else {signal.name for signal in signals if signal.values}
     names = [name for name, _ in kinds if name in wanted]
     for name, kind in kinds:
         if name in wanted and names.count(name) > 1:
