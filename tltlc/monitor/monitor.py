@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from typing import Any, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
@@ -73,8 +74,7 @@ class Monitor:
         monitors share the tables and the compiled expressions of the first, so that a further one takes
         little memory and time. Nothing else is shared: ``notices`` are its own.
         """
-        new = type(self).__new__(type(self))
-        new.__dict__.update(self.__dict__)
+        new = copy(self)
         new.notices = []
         new._samples = self._samples.another(new.notices)
         new.reset()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from math import isfinite
 from typing import Final, SupportsFloat
 
@@ -43,8 +44,7 @@ class Samples:
 
         Their warnings are appended to ``notices``.
         """
-        new = type(self).__new__(type(self))
-        new.__dict__.update(self.__dict__)
+        new = copy(self)
         new._notices, new._noticed = notices, set()
         return new
 
