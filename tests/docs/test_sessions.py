@@ -61,6 +61,13 @@ def test_the_guides_to_engines_run(page: str, tool: str, commands: int, tmp_path
     assert run_page((DOCS / "guides" / f"{page}.md").read_text(encoding="utf-8"), Shell(tmp_path)) == commands
 
 
+def test_the_guide_to_many_members_runs(tmp_path: Path) -> None:
+    missing = [tool for tool in ("gcc", "mcs", "godot3-server", "node", "lua5.4", "rustc") if which(tool) is None]
+    if missing:
+        pytest.skip(f"{missing[0]} is not installed")
+    assert run_page((DOCS / "guides" / "many.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 8
+
+
 def test_the_guide_to_linting_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "linting.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 2
 

@@ -28,7 +28,7 @@ SCOPES = {
     **dict.fromkeys(map(str.upper, CLAUSES), "keyword.control"),
     **dict.fromkeys(["ALL", "ANY", "WHEN", "OTHERWISE"], "keyword.control"),
     **dict.fromkeys(["TRUE", "FALSE"], "constant.language"),
-    **dict.fromkeys(["LESS", "AT_MOST", "MORE", "AT_LEAST"], "keyword.operator.comparison"),
+    **dict.fromkeys(["LESS", "AT_MOST", "MORE", "AT_LEAST", "EQUALS", "UNEQUAL"], "keyword.operator.comparison"),
     **dict.fromkeys(["PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER"], "keyword.operator.arithmetic"),
     "EQUAL": "keyword.operator.assignment",
     **dict.fromkeys(["COLON", "COMMA"], "punctuation.separator"),
@@ -109,6 +109,8 @@ def test_every_unit_has_its_scope(unit: str) -> None:
         ("once within 5 s p", ("once", "within")),
         ("in [0, 1]", ("in",)),
         ("all x in (a)", ("in",)),
+        ("mode(g1) is alert", ("is",)),
+        ("mode is not alert", ("is", "not")),
         ("step 3x a", ("step", "x")),
         ('test "t" for s {', ("for",)),
     ],
@@ -119,7 +121,7 @@ def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> 
 
 
 def test_all_contextual_keywords_are_tested() -> None:
-    assert {"after", "as", "at", "expect", "for", "in", "since", "step", "x", "within"} == set(load().soft)
+    assert {"after", "as", "at", "expect", "for", "in", "is", "of", "since", "step", "x", "within"} == set(load().soft)
 
 
 @pytest.mark.slow

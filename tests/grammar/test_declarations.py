@@ -18,7 +18,7 @@ def test_every_kind_of_declaration_is_parsed() -> None:
     kinds = [type(declaration).__name__ for declaration in read(TEXT)]
     assert kinds == (
         ["Import"] * 4
-        + ["SignalDecl"] * 3
+        + ["SignalDecl"] * 5
         + ["EntityDecl", "ParamDecl", "ClockDecl", "PredicateDecl", "PredicateDecl", "LetDecl", "ExclusiveDecl"]
         + ["SpecDecl", "SpecDecl", "TestDecl"]
     )
@@ -44,13 +44,15 @@ def test_an_import_has_its_target_names_and_alias() -> None:
 
 
 def test_signals_and_params_have_types_ranges_and_values() -> None:
-    _, distance, speed = (item for item in read(TEXT) if isinstance(item, tree.SignalDecl))
+    _, distance, speed, phase, mode = (item for item in read(TEXT) if isinstance(item, tree.SignalDecl))
     assert [(item.name, item.type) for item in distance.parameters] == [("target", "entity")]
     assert distance.doc == "How far away."
     assert distance.interval is not None
     assert isinstance(distance.interval.high, tree.NumberExpr)
     assert distance.interval.high.value == inf
     assert speed.type is None
+    assert (phase.type, phase.values) == ("int", ())
+    assert (mode.type, [value.name for value in mode.values]) == ("int", ["idle", "alert", "chase"])
     (param,) = (item for item in read(TEXT) if isinstance(item, tree.ParamDecl))
     assert (param.name, param.type) == ("level_size", "length")
     assert isinstance(param.value, tree.NumberExpr)
@@ -79,7 +81,19 @@ def test_a_spec_has_its_clauses_in_order() -> None:
     assert block.block
     assert block.doc == "Button 1, then button 2, then the exit."
     kinds = [clause.kind for clause in block.clauses]
-    assert kinds == ["level", "limit", "judge", "semantics", "tag", "reach", "keep", "avoid", "require", "require"]
+    assert kinds == [
+        "level",
+        "limit",
+        "judge",
+        "semantics",
+        "tag",
+        "reach",
+        "keep",
+        "avoid",
+        "require",
+        "require",
+        "require",
+    ]
     by_kind = {clause.kind: clause for clause in block.clauses}
     assert isinstance(by_kind["judge"].value, tree.NameExpr)
     assert by_kind["judge"].value.name == "limit"

@@ -90,7 +90,9 @@ def test_no_letter_is_lost(text: str) -> None:
         ),
         ("predicate p = when seen: within otherwise: in", {"seen": "Name", "within": "Name", "in": "Name"}),
         ("/// Doc.\n// No doc.\nspec s = true", {"/// Doc.": "Literal.String.Doc", "// No doc.": "Comment.Single"}),
-        ("spec s = a == ö", {"==": "Error", "ö": "Error"}),
+        ("spec s = a == ö", {"==": "Operator", "ö": "Error"}),
+        ("signal is: (is, alert)\nspec s = F is is is", {"is": "Name"}),
+        ("spec s = mode is not alert", {"is": "Keyword", "alert": "Name"}),
     ],
 )
 def test_the_class_of_a_word_depends_on_its_place(text: str, expected: dict[str, str]) -> None:

@@ -67,7 +67,7 @@ def test_a_library_offers_its_groups(tmp_path: Path, declaration: str, imported:
 @pytest.mark.parametrize(
     ("text", "code", "title", "help_"),
     [
-        ("spec s = all g in gards: hidden(g)", "TLT0201", "no entity `gards` here", None),
+        ("spec s = all g in gards: hidden(g)", "TLT0201", "no group `gards` here", None),
         (
             "spec s = hidden(guards)",
             "TLT0302",

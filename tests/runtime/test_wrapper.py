@@ -7,6 +7,7 @@ import threading
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -430,3 +431,18 @@ def test_the_reward_of_the_environment_is_in_the_info() -> None:
     env = TltlEnv(gymnasium.make("CartPole-v1"), BALANCE, lambda env: {"angle": env.unwrapped.state[2]})  # type: ignore[attr-defined]
     assert env.reset(seed=1)[1]["env_reward"] == 0.0
     assert env.step(0)[4]["env_reward"] == 1.0
+
+
+ALARM = "signal mode: (idle, alert)\nspec alarm { limit 9 steps  reach mode is alert }\n"
+
+
+def test_an_environment_may_supply_the_names_of_values_of_an_enum(tmp_path: Path) -> None:
+    (tmp_path / "alarm.tltl").write_text(ALARM)
+    rows: Any = [{"mode": "idle"}, {"mode": "alert"}]
+    env = TltlEnv(Playback(rows), str(tmp_path / "alarm.tltl"), current)
+    env.reset()
+    assert env.sample == {"mode": 0.0}
+    assert [env.step(0)[4]["verdict"] for _ in rows] == ["pending", "satisfied"]
+    wrong: Any = [{"mode": "alrt"}]
+    with pytest.raises(MonitorError, match="no value `alrt`"):
+        TltlEnv(Playback(wrong), str(tmp_path / "alarm.tltl"), current).reset()

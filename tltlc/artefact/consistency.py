@@ -101,6 +101,9 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
     for index, signal in enumerate(fspa.signals):
         if signal.low is not None and signal.high is not None and signal.low > signal.high:
             yield Problem(("signals", index, "range"), f"the range of `{signal.name}` is empty")
+        if signal.values and (signal.type, signal.low, signal.high) != ("int", 0.0, len(signal.values) - 1.0):
+            message = f"`{signal.name}` is an enum, so it is an int from 0 to {len(signal.values) - 1}"
+            yield Problem(("signals", index, "values"), message)
     for index, param in enumerate(fspa.params):
         low = param.value if param.low is None else param.low
         high = param.value if param.high is None else param.high

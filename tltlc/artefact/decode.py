@@ -154,7 +154,8 @@ def _number(value: float | None) -> float | None:
 def _signal(signal: dict[str, Any]) -> Signal:
     low, high = signal["range"]
     base, arguments = split_name(signal["name"])
-    return Signal(base, signal["type"], _number(low), _number(high), signal.get("doc", ""), arguments)
+    values = tuple(signal.get("values", ()))
+    return Signal(base, signal["type"], _number(low), _number(high), signal.get("doc", ""), arguments, values)
 
 
 def _param(param: dict[str, Any]) -> Param:

@@ -64,7 +64,9 @@ def _doc(doc: str) -> dict[str, str]:
 
 
 def _signal(signal: Signal) -> dict[str, Any]:
-    return {"name": signal.name, "type": signal.type, "range": [signal.low, signal.high], **_doc(signal.doc)}
+    document: dict[str, Any] = {"name": signal.name, "type": signal.type, "range": [signal.low, signal.high]}
+    values = {"values": list(signal.values)} if signal.values else {}
+    return {**document, **values, **_doc(signal.doc)}
 
 
 def _param(param: Param) -> dict[str, Any]:

@@ -193,8 +193,8 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                         if "type" in data__signals_item_keys:
                             data__signals_item_keys.remove("type")
                             data__signals_item__type = data__signals_item["type"]
-                            if not (isinstance(data__signals_item__type, str) and data__signals_item__type == 'number' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'ratio' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'length' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'time' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'speed' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'angle' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'bool'):
-                                raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'type'), 'enum', ['number', 'ratio', 'length', 'time', 'speed', 'angle', 'bool'])
+                            if not (isinstance(data__signals_item__type, str) and data__signals_item__type == 'number' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'ratio' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'length' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'time' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'speed' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'angle' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'int' or isinstance(data__signals_item__type, str) and data__signals_item__type == 'bool'):
+                                raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'type'), 'enum', ['number', 'ratio', 'length', 'time', 'speed', 'angle', 'int', 'bool'])
                         if "range" in data__signals_item_keys:
                             data__signals_item_keys.remove("range")
                             data__signals_item__range = data__signals_item["range"]
@@ -215,6 +215,26 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                                             raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'range', data__signals_item__range_x), 'minimum', -1.7976931348623157e+308)
                                         if data__signals_item__range_item > 1.7976931348623157e+308:
                                             raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'range', data__signals_item__range_x), 'maximum', 1.7976931348623157e+308)
+                        if "values" in data__signals_item_keys:
+                            data__signals_item_keys.remove("values")
+                            data__signals_item__values = data__signals_item["values"]
+                            if not isinstance(data__signals_item__values, (list, tuple)):
+                                raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'values'), 'type', 'array')
+                            data__signals_item__values_is_list = isinstance(data__signals_item__values, (list, tuple))
+                            if data__signals_item__values_is_list:
+                                data__signals_item__values_len = len(data__signals_item__values)
+                                if data__signals_item__values_len < 2:
+                                    raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'values'), 'minItems', 2)
+                                def fn(var): return frozenset(dict((k, fn(v)) for k, v in var.items()).items()) if hasattr(var, "items") else tuple(fn(v) for v in var) if isinstance(var, (dict, list)) else (bool, var) if isinstance(var, bool) else var
+                                if data__signals_item__values_len > len(set(fn(data__signals_item__values_x) for data__signals_item__values_x in data__signals_item__values)):
+                                    raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'values'), 'uniqueItems', True)
+                                for data__signals_item__values_x, data__signals_item__values_item in enumerate(data__signals_item__values):
+                                    if not isinstance(data__signals_item__values_item, (str)):
+                                        raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'values', data__signals_item__values_x), 'type', 'string')
+                                    if isinstance(data__signals_item__values_item, str):
+                                        data__signals_item__values_item_len = len(data__signals_item__values_item)
+                                        if data__signals_item__values_item_len < 1:
+                                            raise JsonSchemaValueException((*path, 'signals', data__signals_x, 'values', data__signals_item__values_x), 'minLength', 1)
                         if "doc" in data__signals_item_keys:
                             data__signals_item_keys.remove("doc")
                             data__signals_item__doc = data__signals_item["doc"]
@@ -249,8 +269,8 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                         if "type" in data__params_item_keys:
                             data__params_item_keys.remove("type")
                             data__params_item__type = data__params_item["type"]
-                            if not (isinstance(data__params_item__type, str) and data__params_item__type == 'number' or isinstance(data__params_item__type, str) and data__params_item__type == 'ratio' or isinstance(data__params_item__type, str) and data__params_item__type == 'length' or isinstance(data__params_item__type, str) and data__params_item__type == 'time' or isinstance(data__params_item__type, str) and data__params_item__type == 'speed' or isinstance(data__params_item__type, str) and data__params_item__type == 'angle' or isinstance(data__params_item__type, str) and data__params_item__type == 'bool'):
-                                raise JsonSchemaValueException((*path, 'params', data__params_x, 'type'), 'enum', ['number', 'ratio', 'length', 'time', 'speed', 'angle', 'bool'])
+                            if not (isinstance(data__params_item__type, str) and data__params_item__type == 'number' or isinstance(data__params_item__type, str) and data__params_item__type == 'ratio' or isinstance(data__params_item__type, str) and data__params_item__type == 'length' or isinstance(data__params_item__type, str) and data__params_item__type == 'time' or isinstance(data__params_item__type, str) and data__params_item__type == 'speed' or isinstance(data__params_item__type, str) and data__params_item__type == 'angle' or isinstance(data__params_item__type, str) and data__params_item__type == 'int' or isinstance(data__params_item__type, str) and data__params_item__type == 'bool'):
+                                raise JsonSchemaValueException((*path, 'params', data__params_x, 'type'), 'enum', ['number', 'ratio', 'length', 'time', 'speed', 'angle', 'int', 'bool'])
                         if "value" in data__params_item_keys:
                             data__params_item_keys.remove("value")
                             data__params_item__value = data__params_item["value"]

@@ -7,12 +7,16 @@ from typing import Final
 
 _BASE: Final = re.compile(r"[^\W\d][\w.]*\(")
 _BRACKETS: Final = {"(": 1, ")": -1}
+_SIGNS: Final = re.compile(" (<|>|==) ")
+_CHOICE: Final = re.compile(r"([^\W\d][\w.]*(?:\([^()]*\))?) (is) ([^\W\d]\w*)")
+_OPPOSITES: Final = {"<": ">=", ">": "<=", "==": "!=", "is": "is not"}
 
 
 class ComparisonName(str):
-    """The name of an atom that compares two numbers, such as ``fuel > 5``: a text that knows its parts.
+    """The name of an atom that compares two values, such as ``fuel > 5``: a text that knows its parts.
 
-    ``left`` and ``right`` are the two sides as they are written, and ``operator`` is ``<`` or ``>``.
+    ``left`` and ``right`` are the two sides as they are written. ``operator`` is ``<`` or ``>``, ``==``
+    for integers, or ``is`` for an enum and the name of one of its values.
     """
 
     __slots__ = ("left", "operator", "right")
@@ -29,7 +33,7 @@ class ComparisonName(str):
     @property
     def opposite(self) -> str:
         """The comparison that holds exactly where this one does not: ``fuel <= 5`` for ``fuel > 5``."""
-        return f"{self.left} {'>=' if self.operator == '<' else '<='} {self.right}"
+        return f"{self.left} {_OPPOSITES[self.operator]} {self.right}"
 
     def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
         return self.left, self.operator, self.right
@@ -63,13 +67,15 @@ def split_name(name: str) -> tuple[str, tuple[str, ...]]:
 
 def _whole(name: str) -> str:
     """Return a name, as a :class:`ComparisonName` if it has one comparison outside all brackets."""
-    depth, places = 0, []
-    for index, character in enumerate(name):
-        depth += _BRACKETS.get(character, 0)
-        if depth == 0 and character in "<>":
-            places.append(index)
+    if choice := _CHOICE.fullmatch(name):
+        return ComparisonName(*choice.groups())
+    places = [sign for sign in _SIGNS.finditer(name) if _depth(name, sign.start()) == 0]
     if len(places) != 1:
         return name
-    left, operator, right = name[: places[0]], name[places[0]], name[places[0] + 1 :]
-    is_comparison = left[:-1].strip() and right[1:].strip() and left.endswith(" ") and right.startswith(" ")
-    return ComparisonName(left[:-1], operator, right[1:]) if is_comparison else name
+    left, operator, right = name[: places[0].start()], places[0][1], name[places[0].end() :]
+    return ComparisonName(left, operator, right) if left.strip() and right.strip() else name
+
+
+def _depth(name: str, index: int) -> int:
+    """Return how many brackets are open at a place of a name."""
+    return sum(_BRACKETS.get(character, 0) for character in name[:index])

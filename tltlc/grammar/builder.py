@@ -38,6 +38,8 @@ OPERATORS = {
     "AT_MOST": "<=",
     "MORE": ">",
     "AT_LEAST": ">=",
+    "EQUALS": "==",
+    "UNEQUAL": "!=",
     "PLUS": "+",
     "MINUS": "-",
     "TIMES_SIGN": "*",
@@ -95,6 +97,11 @@ class Builder:
         self, span: Span, name: Token, parameters: tuple[tree.Parameter, ...] | None, interval: tree.Interval
     ) -> tree.SignalDecl:
         return self.make_signal(span, name, parameters, None, interval)
+
+    def make_enum_signal(
+        self, span: Span, name: Token, parameters: tuple[tree.Parameter, ...] | None, values: tuple[tree.NameExpr, ...]
+    ) -> tree.SignalDecl:
+        return replace(self.make_signal(span, name, parameters, "int", None), values=values)
 
     def make_entities(self, span: Span, _entity: Token, names: tuple[tree.NameExpr, ...]) -> tree.EntityDecl:
         return tree.EntityDecl(names, self._doc(span), span)
@@ -217,6 +224,9 @@ class Builder:
         high = self.make_number(number.span.to(unit.span), number, unit)
         bound = tree.TemporalInterval(None, high, word.span.to(high.span), words=True)
         return tree.BinaryExpr("within", request, answer, word.span, span, bound)
+
+    def make_is_value(self, span: Span, operand: Expr, _is: Token, negation: Token | None, value: Token) -> tree.IsExpr:
+        return tree.IsExpr(operand, value.text, negation is not None, _is.span, value.span, span)
 
     def make_unary(self, span: Span, operator: Token, operand: Expr) -> tree.Unary:
         return tree.Unary(OPERATORS[operator.type], operand, None, operator.span, span)

@@ -107,7 +107,7 @@ def _pattern() -> re.Pattern[str]:
         rf"|(?P<NUMBER>{patterns['NUMBER']})(?:\s*(?P<UNIT>{units}))?"
         rf"|(?P<COMMENT>{patterns['COMMENT']})"
         rf"|(?P<STRING>{patterns['STRING']})"
-        rf"|(?P<BAD>==|!=|/\*.*?(?:\*/|\Z)|\"[^\"\n]*|[^\W0-9{letters}]\w*)"
+        rf"|(?P<BAD>/\*.*?(?:\*/|\Z)|\"[^\"\n]*|[^\W0-9{letters}]\w*)"
         rf"|(?P<SIGN>{signs})"
         r"|.",
         re.DOTALL,

@@ -18,7 +18,7 @@ from tltlc.grammar.tree import Expr
 from tltlc.grammar.walk import children, operands
 
 _TEMPORAL: Final = "FGXN"
-_COMPARISONS: Final = ("<", "<=", ">", ">=")
+_COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
 _SHORT: Final = 60
 _NEXT_STEP: Final = {
     "G": ("next always", "from the next step on"),
@@ -95,7 +95,9 @@ def _is_plain(operand: Expr) -> bool:
         operand = operand.operand
     if isinstance(operand, tree.BinaryExpr):
         return operand.op in _COMPARISONS
-    return isinstance(operand, (tree.NameExpr, tree.CallExpr, tree.GroupExpr, tree.Constant, tree.NumberExpr))
+    return isinstance(
+        operand, (tree.NameExpr, tree.CallExpr, tree.GroupExpr, tree.Constant, tree.NumberExpr, tree.IsExpr)
+    )
 
 
 def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:

@@ -3,7 +3,7 @@
 Formulas and arithmetic are both expressions, since an LALR(1) parser that reads an opening bracket
 cannot know whether a formula or arithmetic follows; :mod:`tltlc.resolve` finds the types. Each
 operator is stored under one canonical spelling: ``not and or implies iff F G X N U W R M then`` and
-``+ - * / ^ < <= > >=``.
+``+ - * / ^ < <= > >= == !=``.
 
 The field ``doc`` has the text of the ``///`` comment before a declaration or clause; it is empty
 without one. The fields whose names end in ``_span`` are the spans of a part, such as the name.
@@ -105,6 +105,21 @@ class BinaryExpr:
 
 
 @record
+class IsExpr:
+    """A test for a value of an enum: ``mode(g1) is alert``, or ``mode(g1) is not alert`` if ``negated``.
+
+    ``value`` is the name of the value. It is no reference to a declaration.
+    """
+
+    operand: Expr
+    value: str
+    negated: bool
+    is_span: Span
+    value_span: Span
+    span: Span
+
+
+@record
 class GroupExpr:
     """An expression in round brackets. The brackets are kept because ``then`` requires them."""
 
@@ -146,7 +161,7 @@ class WhenExpr:
     span: Span
 
 
-Expr = Union[NumberExpr, Constant, NameExpr, CallExpr, Unary, BinaryExpr, GroupExpr, Quantified, WhenExpr]
+Expr = Union[NumberExpr, Constant, NameExpr, CallExpr, Unary, BinaryExpr, IsExpr, GroupExpr, Quantified, WhenExpr]
 
 # --- declarations -----------------------------------------------------------------------------
 
@@ -194,7 +209,8 @@ class Parameter:
 class SignalDecl:
     """A declaration of a signal: ``signal distance(target: entity): length in [0 m, inf]``.
 
-    ``type`` is None if only a range is given, as in ``signal coins in [0, 50]``.
+    ``type`` is None if only a range is given, as in ``signal coins in [0, 50]``. ``values`` are the
+    names of the values of an enum, ``signal mode: (idle, alert)``, whose ``type`` is ``int``.
     """
 
     name: str
@@ -204,6 +220,7 @@ class SignalDecl:
     doc: str
     name_span: Span
     span: Span
+    values: tuple[NameExpr, ...] = ()
 
 
 @record

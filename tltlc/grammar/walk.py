@@ -87,6 +87,8 @@ def children(expression: Expr) -> Iterator[Expr]:
             yield expression.right
         case tree.GroupExpr():
             yield expression.inner
+        case tree.IsExpr():
+            yield expression.operand
         case tree.CallExpr():
             yield from (argument.value for argument in expression.arguments)
         case tree.Quantified():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from typing import Any, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
@@ -67,6 +68,19 @@ class Monitor:
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
 
+    def another(self) -> Monitor:
+        """Return a new monitor of the same automaton, params and reward, before its first sample.
+
+        Use it where there is a monitor for each member of a group, such as the guards of a level. All
+        monitors share the tables and the compiled expressions of the first, so that a further one takes
+        little memory and time. Nothing else is shared: ``notices`` are its own.
+        """
+        new = copy(self)
+        new.notices = []
+        new._samples = self._samples.another(new.notices)
+        new.reset()
+        return new
+
     def reset(self) -> None:
         """Start a new trace: go back to the initial state, with no progress. ``notices`` stay."""
         self.state = 0
@@ -78,12 +92,12 @@ class Monitor:
         self.registers = self._samples.initial
         self._memory: Any = None
 
-    def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
+    def step(self, signals: Mapping[str, SupportsFloat | str], *, last: bool = False) -> Step:
         """Take one sample, and return the result.
 
-        ``signals`` maps the names of signals to bools, or to numbers in SI units. Names that no
-        atom uses are ignored. If ``last``, the episode ends with this sample, whatever the spec
-        says.
+        ``signals`` maps the names of signals to bools, to numbers in SI units, or for an enum to the
+        name of a value. Names that no atom uses are ignored. If ``last``, the episode ends with this
+        sample, whatever the spec says.
 
         Raises:
             MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without

@@ -46,8 +46,9 @@ def json_lines(data: bytes, name: str, signals: Collection[Signal] | None = None
     """Return a trace in Parquet as JSON lines, with an object for each row.
 
     ``name`` is the trace's name in messages. Columns of numbers and booleans keep their values, and
-    a missing value is ``null``. Only the columns of ``signals`` and the times are read. If
-    ``signals`` is None, all columns of numbers and booleans are read.
+    a missing value is ``null``; those of enums may also be texts, the names of their values. Only the
+    columns of ``signals`` and the times are read. If ``signals`` is None, all columns of numbers,
+    booleans and texts are read.
 
     Raises:
         TltlError: TLT0730, pyarrow is not installed; TLT0622, the file is not valid; TLT0004, it is
@@ -89,15 +90,16 @@ def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
     """
     kinds = [(field.name, field.type) for field in file.schema_arrow]
     if signals is None:
-        wanted = {name for name, kind in kinds if _is_value(kind)}
+        wanted = {name for name, kind in kinds if _is_value(kind) or _is_text(kind)}
     else:
         time = times_name([name for name, _ in kinds], signals)
         wanted = {*(signal.name for signal in signals), *([time] if time else [])}
+    enums = wanted if signals is None else {signal.name for signal in signals if signal.values}
     names = [name for name, _ in kinds if name in wanted]
     for name, kind in kinds:
         if name in wanted and names.count(name) > 1:
             raise _ColumnError(f"two columns are called `{name}`")
-        if name in wanted and not _is_value(kind):
+        if name in wanted and not _is_value(kind) and not (name in enums and _is_text(kind)):
             raise _ColumnError(f"the column `{name}` has values of the type {kind}")
     return names
 
@@ -106,6 +108,13 @@ def _is_value(kind: Any) -> bool:
     from pyarrow import types
 
     return any(test(kind) for test in (types.is_boolean, types.is_integer, types.is_floating, types.is_null))
+
+
+def _is_text(kind: Any) -> bool:
+    from pyarrow import types
+
+    kind = kind.value_type if types.is_dictionary(kind) else kind
+    return bool(types.is_string(kind) or types.is_large_string(kind))
 
 
 def _is_too_large(file: Any, columns: int, size: int) -> bool:

@@ -38,7 +38,7 @@ class TraceOutcome:
     total_reward: float
 
 
-def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[RunStep]:
+def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat | str]]) -> Iterator[RunStep]:
     """Reset the monitor, then read the samples one by one and yield a step for each.
 
     Raises:

@@ -7,6 +7,7 @@ a sample.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from math import isfinite
 from typing import Final, NamedTuple, SupportsFloat
 
@@ -65,7 +66,16 @@ class Samples:
         self._atoms: tuple[Callable[[Sequence[float]], float], ...] = compiled[: len(fspa.atoms)]
         self._updates: tuple[Callable[[Sequence[float]], float], ...] = compiled[len(fspa.atoms) :]
 
-    def atom_values(self, signals: Mapping[str, SupportsFloat], when: int | str) -> tuple[float, ...]:
+    def another(self, notices: list[Diagnostic]) -> Samples:
+        """Return samples of the same automaton and params, which share the compiled expressions.
+
+        Their warnings are appended to ``notices``.
+        """
+        new = copy(self)
+        new._notices, new._noticed = notices, set()
+        return new
+
+    def atom_values(self, signals: Mapping[str, SupportsFloat | str], when: int | str) -> tuple[float, ...]:
         """Return the values of the atoms at a sample of an automaton without registers, each in [-1, 1].
 
         ``when`` and the errors are those of :meth:`values`.
@@ -89,7 +99,9 @@ class Samples:
             if index >= steps.start:
                 yield sample
 
-    def values(self, signals: Mapping[str, SupportsFloat], registers: Sequence[float], when: int | str) -> SampleValues:
+    def values(
+        self, signals: Mapping[str, SupportsFloat | str], registers: Sequence[float], when: int | str
+    ) -> SampleValues:
         """Return the values of the atoms at a sample, and of the registers after it.
 
         ``registers`` are the values of the registers before the sample. ``when`` says in messages which
@@ -154,7 +166,7 @@ class Samples:
             raise _error("TLT0613", when, f"the register `{name}` is too large to compute")
         return value
 
-    def _signal_value(self, signal: Signal, name: str, given: SupportsFloat, when: int | str) -> float:
+    def _signal_value(self, signal: Signal, name: str, given: SupportsFloat | str, when: int | str) -> float:
         """Return the value of a signal as a number, clamped to its range.
 
         Adds a warning to the notices the first time that a value of this signal is outside the
@@ -217,7 +229,8 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
 
     Raises:
         MonitorError: TLT0308 there is no param with a given name, or the value is not a finite
-            number; TLT0307 the value is outside the range of the param.
+            number; TLT0307 the value is outside the range of the param, or is not
+            whole although the param is an int.
     """
     param_by_name = {param.name: param for param in params}
     for name, value in given.items():
@@ -233,6 +246,9 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
         low, high = param_by_name[name].low, param_by_name[name].high
         if not isfinite(value):
             raise _param_error("TLT0308", f"the param `{name}` cannot be {number_text(value)}")
+        if param_by_name[name].type == "int" and not float(value).is_integer():
+            title = f"the param `{name}` cannot be {number_text(value)}: it is an int"
+            raise _param_error("TLT0307", title, "give a whole number in its range")
         if (low is not None and value < low) or (high is not None and value > high):
             title = f"the param `{name}` cannot be {number_text(value)}: its range is {range_text(low, high)}"
             raise _param_error("TLT0307", title)
@@ -272,13 +288,13 @@ def name_list(names: Sequence[str]) -> str:
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
-def finite_signal_value(signal: Signal, given: SupportsFloat, when: int | str) -> float:
-    """Return the value of a signal as a finite number.
+def finite_signal_value(signal: Signal, given: SupportsFloat | str, when: int | str) -> float:
+    """Return the value of a signal as a finite number; for an enum, ``given`` may be the name of a value.
 
     ``when`` says in messages which sample it is: its number, from 1, or a phrase.
 
     Raises:
-        MonitorError: TLT0612 the value is not a finite number.
+        MonitorError: TLT0612 the value is not a finite number, or the enum has no value of this name.
     """
     value = given if type(given) is float else _as_float(signal, given, when)
     if not isfinite(value):
@@ -286,15 +302,29 @@ def finite_signal_value(signal: Signal, given: SupportsFloat, when: int | str) -
     return value
 
 
-def _as_float(signal: Signal, given: SupportsFloat, when: int | str) -> float:
+def _as_float(signal: Signal, given: SupportsFloat | str, when: int | str) -> float:
     if getattr(given, "ndim", 0):
         raise _error("TLT0612", when, f"the signal `{signal.name}` is an array, not a number")
+    if isinstance(given, str) and signal.values:
+        return _value_of_name(signal, given, when)
     if isinstance(given, str) or not hasattr(given, "__float__"):
         raise _error("TLT0612", when, f"the signal `{signal.name}` is not a number")
     try:
         return float(given)
     except OverflowError:
         raise _error("TLT0612", when, f"the signal `{signal.name}` is too large for a number") from None
+
+
+def _value_of_name(signal: Signal, name: str, when: int | str) -> float:
+    if name not in signal.values:
+        title = f"{_location(when)}: the signal `{signal.name}` has no value `{name:.40}`"
+        raise MonitorError([Diagnostic("TLT0612", title, help=values_advice(signal))])
+    return float(signal.values.index(name))
+
+
+def values_advice(signal: Signal) -> str:
+    """Return the advice for an enum that has an unknown value."""
+    return f"its values are {name_list(signal.values)}, or the numbers from 0 to {len(signal.values) - 1}"
 
 
 SUGGESTIONS: Final = {

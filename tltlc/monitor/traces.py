@@ -9,7 +9,7 @@ from tltlc.core.record import replace
 from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.sample_times import SampleTimes, times_name
-from tltlc.monitor.samples import name_list
+from tltlc.monitor.samples import name_list, values_advice
 from tltlc.monitor.trace_rows import (
     JSON_LINES_HELP,
     Stream,
@@ -138,24 +138,34 @@ def _suggestion(name: str, columns: Sequence[str]) -> str | None:
 def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> TraceSample:
     sample = {}
     for signal, column in columns:
-        value = cell_number(row[column])
+        value = _named_value(signal, row[column].strip(" \t"))
+        value = cell_number(row[column]) if value is None else value
         if value is None or not _is_allowed(signal, value):
-            message = _problem(signal, value) if row[column] else f"`{signal.name}` has no value"
+            message = _problem(signal, value, row[column]) if row[column] else f"`{signal.name}` has no value"
             raise lines.error(message, _cell_span(lines.text, column), _advice(signal))
         sample[signal.name] = value
     return sample
+
+
+def _named_value(signal: Signal, name: str) -> float | None:
+    """Return the number of the value of an enum with this name; None if there is no such value."""
+    return float(signal.values.index(name)) if name in signal.values else None
 
 
 def _is_allowed(signal: Signal, value: float) -> bool:
     return signal.type != "bool" or value in (0.0, 1.0)
 
 
-def _problem(signal: Signal, value: float | None) -> str:
-    """Return in words what is wrong with the value of a signal."""
+def _problem(signal: Signal, value: float | None, given: object) -> str:
+    """Return in words what is wrong with the value of a signal, which the trace has as ``given``."""
+    if signal.values and value is None:
+        return f"`{signal.name}` has no value `{given!s:.40}`"
     return f"this value of `{signal.name}` is {'not a number' if value is None else 'not true or false'}"
 
 
 def _advice(signal: Signal) -> str:
+    if signal.values:
+        return values_advice(signal)
     return _BOOL_HELP if signal.type == "bool" else _NUMBER_HELP
 
 
@@ -199,8 +209,9 @@ def _object_sample(object_: Mapping[str, Any], signals: Sequence[Signal], lines:
         if given is None:
             continue  # the monitor reports missing values
 
-        value = float(given) if isinstance(given, (int, float)) else None
+        number = _named_value(signal, given) if isinstance(given, str) else None
+        value = float(given) if isinstance(given, (int, float)) else number
         if value is None or not _is_allowed(signal, value):
-            raise lines.error(_problem(signal, value), help=_advice(signal))
+            raise lines.error(_problem(signal, value, given), help=_advice(signal))
         sample[signal.name] = value
     return sample

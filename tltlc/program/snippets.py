@@ -11,7 +11,7 @@ from tltlc.resolve.spec import Param, Signal
 
 _LONGEST_EXAMPLE = 60
 _UNITS = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
-_KINDS = {"ratio": "A ratio in"}
+_KINDS = {"ratio": "A ratio in", "int": "A whole number in"}
 
 
 def title_comment(fspa: Fspa, comment: Callable[[str], list[str]]) -> str:
@@ -43,6 +43,8 @@ def values_sentence(field: Signal | Param) -> str:
     """Return a sentence with the possible values of a signal or parameter, in SI units, such as "In [0, 1]."."""
     if field.type == "bool":
         return "True or false."
+    if isinstance(field, Signal) and field.values:
+        return f"{', '.join(f'{number} {name}' for number, name in enumerate(field.values))}."
     return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
 
 

@@ -41,10 +41,12 @@ class SignalInfo:
     has_range: bool
     """Whether the range is written in the declaration, not taken from the type."""
     place: Label
+    values: tuple[str, ...] = ()
+    """The names of the values of an enum; empty for other signals."""
 
     def signal_of(self, entities: tuple[str, ...]) -> Signal:
         """Return the signal of this declaration that has these entities as its arguments."""
-        return Signal(self.name, self.type, self.low, self.high, self.doc, entities)
+        return Signal(self.name, self.type, self.low, self.high, self.doc, entities, self.values)
 
 
 @record
@@ -87,6 +89,8 @@ class Context:
     - ``expanding`` maps the identity of a declaration to its name, for each let or predicate that is
       being expanded, outermost first.
     - ``broken`` has the identities of the declarations whose error has been reported.
+    - ``values_of_signals`` maps the atoms that compare a signal with one value, such as ``phase == 2``
+      and ``mode(g1) is alert``, to the name of the signal.
     - ``bounds`` has the bounds resolved so far, and ``bound_of`` the first bound of each bounded
       operator.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
@@ -116,6 +120,7 @@ class Context:
         "signal_infos",
         "signals",
         "values",
+        "values_of_signals",
     )
 
     def __init__(self) -> None:
@@ -128,6 +133,7 @@ class Context:
         self.atoms: dict[str, Atom] = {}
         self.registers: dict[str, RegisterDraft] = {}
         self.recalls = self.levels = 0
+        self.values_of_signals: dict[str, str] = {}
         self.bounds: list[Bound] = []
         self.bound_of: dict[Formula, Bound] = {}
         self.instances: dict[tuple[int, Any], Instance] = {}

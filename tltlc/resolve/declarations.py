@@ -12,6 +12,7 @@ from tltlc.resolve import units
 from tltlc.resolve.clock import LONGEST_S, SHORTEST_S, period_s
 from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
+from tltlc.resolve.enums import value_names
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.predicates import unknown_type_error
 from tltlc.resolve.problem import ResolutionError, problem
@@ -56,7 +57,13 @@ def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> t
         if type_ == "bool":
             title = f"`{declaration.name}` is a bool, so it cannot have a range"
             raise problem("TLT0303", title, env.scope.source, declaration.interval.span, advice="leave out the range")
-        return interval(declaration.interval, units.TYPES[type_], env)
+        low, high = interval(declaration.interval, units.TYPES[type_], env)
+        if type_ == "int" and not all(end is None or end.is_integer() for end in (low, high)):
+            title, span = "the range of an int has whole ends", declaration.interval.span
+            raise problem("TLT0303", title, env.scope.source, span, advice="write whole numbers, e.g. `in [0, 5]`")
+        return low, high
+    if isinstance(declaration, SignalDecl) and declaration.values:
+        return 0.0, len(declaration.values) - 1.0
     return (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
 
 
@@ -72,15 +79,16 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)
     names = tuple(parameter.name for parameter in declaration.parameters)
+    values = value_names(declaration, scope)
     new = SignalInfo(
-        declaration.name, names, type_, low, high, declaration.doc, declaration.interval is not None, place
+        declaration.name, names, type_, low, high, declaration.doc, declaration.interval is not None, place, values
     )
     table = env.context.signal_infos
     old = table.get(new.name)
     if old is None:
         table[new.name] = new
         return
-    if (old.type, len(old.parameters)) == (new.type, len(new.parameters)):
+    if (old.type, len(old.parameters), old.values) == (new.type, len(new.parameters), new.values):
         if (old.low, old.high) == (new.low, new.high) or not new.has_range:
             return
         if not old.has_range:
@@ -95,6 +103,9 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)
     value = number(declaration.value, units.TYPES[type_], env, f"`{declaration.name}`")
+    if type_ == "int" and not value.is_integer():
+        title, advice = f"`{declaration.name}` is an int, so its value is a whole number", "write a whole number"
+        raise problem("TLT0307", title, scope.source, declaration.value.span, advice=advice)
     lowest, highest = -inf if low is None else low, inf if high is None else high
     if not lowest <= value <= highest:
         raise problem(

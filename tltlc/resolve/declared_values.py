@@ -28,7 +28,9 @@ def param(binding: Binding, env: Env) -> Quantity:
         raise ResolutionError(None)
     low = -inf if declared.low is None else declared.low
     high = inf if declared.high is None else declared.high
-    return Quantity(ParamNode(declared.name), units.TYPES[declared.type], low, high, declared.name)
+    return Quantity(
+        ParamNode(declared.name), units.TYPES[declared.type], low, high, declared.name, is_whole=declared.type == "int"
+    )
 
 
 def signal(expr: NameExpr | CallExpr, binding: Binding, env: Env) -> Quantity:
@@ -63,5 +65,6 @@ def signal_value(signal: Signal) -> Quantity:
         high,
         signal.name,
         is_bool=signal.type == "bool",
+        is_whole=signal.type == "int",
         call=(signal.base, signal.arguments),
     )

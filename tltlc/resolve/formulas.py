@@ -19,6 +19,7 @@ from tltlc.grammar.tree import (
     Constant,
     Expr,
     GroupExpr,
+    IsExpr,
     LetDecl,
     NameExpr,
     Quantified,
@@ -34,6 +35,8 @@ from tltlc.resolve.bounds import bounded_operator, with_bound
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, expansion_error, too_many_expansions_error
 from tltlc.resolve.declared_values import signal
+from tltlc.resolve.enums import is_value
+from tltlc.resolve.equality import EQUALITIES, equality
 from tltlc.resolve.groups import entities
 from tltlc.resolve.kinds import kind_of, lookup, not_a_formula_error
 from tltlc.resolve.predicates import argument_value, predicate
@@ -60,7 +63,7 @@ _BINARY: dict[str, Callable[[Formula, Formula], Formula]] = {
     "M": logic.strong_release,
     "then": logic.then,
 }
-_COMPARISONS = ("<", "<=", ">", ">=")
+_COMPARISONS = ("<", "<=", ">", ">=", *EQUALITIES)
 _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 
@@ -97,7 +100,7 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
         return (yield _resolve_name(expr, env))
     if isinstance(expr, CallExpr) and memory.is_memory(expr, env):
         return _recalled_bool(expr, env)
-    if isinstance(expr, CallExpr) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
+    if isinstance(expr, (CallExpr, IsExpr)) or (isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS):
         return (yield _resolve_once(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
@@ -127,7 +130,7 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
     raise not_a_formula_error(expr, env)
 
 
-def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
+def _resolve_once(expr: CallExpr | BinaryExpr | IsExpr, env: Env) -> FormulaGenerator:
     """Resolve a call or comparison, or return the cached result.
 
     A result is cached with the values of the parameters and quantified variables in the expression,
@@ -136,8 +139,14 @@ def _resolve_once(expr: CallExpr | BinaryExpr, env: Env) -> FormulaGenerator:
     values, names = env.context.values, env.context.names_in(expr)
     memo = (id(expr), env.symbolic, env.unbounded, tuple([env.local.get(name) for name in names]))
     if memo not in values:
-        values[memo] = comparison(expr, env) if isinstance(expr, BinaryExpr) else (yield _resolve_name(expr, env))
+        values[memo] = (yield _resolve_name(expr, env)) if isinstance(expr, CallExpr) else _comparison(expr, env)
     return values[memo]
+
+
+def _comparison(expr: BinaryExpr | IsExpr, env: Env) -> Formula:
+    if isinstance(expr, IsExpr):
+        return is_value(expr, env)
+    return equality(expr, env) if expr.op in EQUALITIES else comparison(expr, env)
 
 
 def _resolve_name(expr: NameExpr | CallExpr, env: Env) -> FormulaGenerator:
@@ -259,7 +268,7 @@ def _expand_quantifier(expr: Quantified, env: Env) -> FormulaGenerator:
     subject = f"`{'all' if expr.all else 'any'} {expr.variable}`"
     parts: list[Formula] = []
     size = 0
-    for member in entities(expr.entities, env):
+    for member in entities(expr.entities, env, brackets=expr.brackets):
         _count_expansion(expr.span, env)
         part = yield _formula(expr.body, env.with_local(expr.variable, member))
         parts.append(part)

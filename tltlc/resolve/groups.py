@@ -11,13 +11,15 @@ from tltlc.resolve.scope import Binding
 from tltlc.resolve.values import Entity, Env
 
 
-def entities(names: Sequence[NameExpr], env: Env) -> tuple[Entity, ...]:
+def entities(names: Sequence[NameExpr], env: Env, *, brackets: bool = True) -> tuple[Entity, ...]:
     """Return the entities that a quantifier lists, each once, with the members of groups in place of the groups.
 
+    Without ``brackets``, as in ``all x in guards: p``, an unknown name is called a group in the error.
     Raises ResolutionError: the errors of :func:`~tltlc.resolve.kinds.entity`, and TLT0207 if a group
     contains itself, directly or through others.
     """
-    return tuple(dict.fromkeys(member for name in names for member in _members(name, env, ())))
+    noun = "entity" if brackets else "group"
+    return tuple(dict.fromkeys(member for name in names for member in _members(name, env, (), noun)))
 
 
 def check_group(binding: Binding, env: Env) -> None:
@@ -33,12 +35,12 @@ def check_group(binding: Binding, env: Env) -> None:
                 pass
 
 
-def _members(name: NameExpr, env: Env, outer: tuple[GroupDecl, ...]) -> Iterator[Entity]:
+def _members(name: NameExpr, env: Env, outer: tuple[GroupDecl, ...], noun: str = "entity") -> Iterator[Entity]:
     """Yield the entity with a name, or the members of the group with this name.
 
-    ``outer`` are the groups that contain the name, outermost first.
+    ``outer`` are the groups that contain the name, outermost first. An error calls an unknown name a ``noun``.
     """
-    binding = None if name.name in env.local else lookup(name, env, ("entity", "group"), "entity")
+    binding = None if name.name in env.local else lookup(name, env, ("entity", "group"), noun)
     if binding is None or not isinstance(binding.declaration, GroupDecl):
         yield entity(name, env)
         return

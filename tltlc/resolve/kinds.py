@@ -11,27 +11,15 @@ from tltlc.grammar.mistakes.insertion import declaration_edit
 from tltlc.grammar.tree import CallExpr, Expr, GroupDecl, GroupExpr, NameExpr, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.resolve import units
+from tltlc.resolve.enums import enum_as_formula_error, enum_of
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import FUNCTIONS, MEMORY_FUNCTIONS, Binding, BindingKind, closest_name
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = (
-    "and",
-    "or",
-    "implies",
-    "iff",
-    "U",
-    "W",
-    "R",
-    "M",
-    "since",
-    "then",
-    "within",
-    "<",
-    "<=",
-    ">",
-    ">=",
+    *("and", "or", "implies", "iff", "U", "W", "R", "M", "since", "then", "within"),
+    *("<", "<=", ">", ">=", "==", "!="),
 )
 
 _MOST_LETTERS = 4
@@ -44,6 +32,7 @@ _DECLARATIONS = {
     "predicate": "signal {name}: bool",
     "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
+    "group": "entity {name} = a, b",
 }
 """Maps what an unknown name is used as to the declaration that the error suggests.
 
@@ -99,7 +88,7 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if library:
         advice = f"`{use.name}` is in the library {library}: add `{line}`"
     else:
-        advice = f"declare it: `{line}`" if noun == "entity" else _OTHERWISE.format(line)
+        advice = f"declare it: `{line}`" if noun in ("entity", "group") else _OTHERWISE.format(line)
     fixes: tuple[Fix, ...] = ()
     # A call would need a declaration with parameters, which this fix does not offer.
     if gets_help and (library or isinstance(use, NameExpr)):
@@ -230,7 +219,7 @@ def kind_in_words(expr: Expr, env: Env) -> str:
         expr = expr.inner
     if isinstance(expr, tree.Constant):
         return f"`{'true' if expr.value else 'false'}`"
-    if isinstance(expr, tree.BinaryExpr) and expr.op in ("<", "<=", ">", ">="):
+    if isinstance(expr, tree.BinaryExpr) and expr.op in ("<", "<=", ">", ">=", "==", "!="):
         return "a comparison"
     if is_group(expr, env):
         return "a group of entities"
@@ -241,6 +230,9 @@ def kind_in_words(expr: Expr, env: Env) -> str:
 def not_a_formula_error(expr: Expr, env: Env) -> ResolutionError:
     """Return the error for a number or an entity in place of a formula."""
     advice = None
+    info = enum_of(expr, env)
+    if info is not None:
+        return enum_as_formula_error(expr, info, env)
     if kind_of(expr, env) == "number":
         advice = _comparison_help(expr, env)
     elif is_group(expr, env):
@@ -270,5 +262,7 @@ def _threshold(expr: Expr, env: Env) -> str:
     binding = env.scope.names.get(expr.name) if isinstance(expr, (NameExpr, CallExpr)) else None
     declaration = binding.declaration if binding else None
     type_ = declaration.type if isinstance(declaration, (SignalDecl, tree.ParamDecl)) else None
+    if type_ == "int":
+        return "1"
     unit = units.si_unit(units.TYPES[type_]) if type_ in units.TYPES else None
     return f"0.5 {unit}" if unit else "0.5"

@@ -59,4 +59,7 @@ def _override_param(old: Param, text: str) -> Param | Diagnostic:
     if not low <= parsed[0] <= high:
         advice = f"its range is {range_text(low, high, dimension)}"
         return Diagnostic("TLT0307", f"`{text}` lies outside the range of the param `{old.name}`", (), advice)
+    if old.type == "int" and not parsed[0].is_integer():
+        title = f"`{text}` is not a whole number, and the param `{old.name}` is an int"
+        return Diagnostic("TLT0307", title, (), f"write a whole number, e.g. `{old.name}={number_text(old.value)}`")
     return replace(old, value=parsed[0])

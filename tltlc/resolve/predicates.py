@@ -115,7 +115,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
         return entity(argument, env)
     type_ = parameter_type(parameter, binding)
     if type_ and kind_of(argument, env) == "entity":
-        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_ == 'angle' else 'a'} {type_}, not an entity"
+        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_[0] in 'ai' else 'a'} {type_}, not an entity"
         name = env.scope.source.slice(argument.span)
         advice = f"for `{name}`, write another `{binding.name}(…)`, and join the two with `and`, `or` or `then`"
         raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
@@ -127,8 +127,16 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
         return value
     dimension = units.TYPES[type_]
     if value.dimension != dimension:
-        article = "an" if type_ == "angle" else "a"
+        article = "an" if type_[0] in "ai" else "a"
         raise mismatch(dimension, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
+    if type_ == "int" and not value.is_whole:
+        raise problem(
+            "TLT0307",
+            f"`{parameter.name}` is an int: it must be a whole number",
+            env.scope.source,
+            argument.span,
+            advice="write a whole number, or a signal or param of the type `int`",
+        )
     if type_ == "ratio" and isinstance(value.expression, Const) and not 0 <= value.expression.value <= 1:
         raise problem(
             "TLT0307",
@@ -151,7 +159,8 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
 
 
 _TYPES_ELSEWHERE: Final = {
-    **dict.fromkeys(("int", "integer", "float", "double", "real"), "number"),
+    **dict.fromkeys(("float", "double", "real"), "number"),
+    "integer": "int",
     "boolean": "bool",
     "distance": "length",
     "duration": "time",
@@ -166,6 +175,8 @@ def unknown_type_error(name: str, at: Parameter | tree.SignalDecl | tree.ParamDe
     elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
     suggestion = elsewhere or likely_name(name, known)
     advice = f"did you mean `{suggestion}`?" if suggestion else f"the types are {', '.join(known)}"
+    if name.lower() == "enum" and isinstance(at, tree.SignalDecl):
+        suggestion, advice = None, f"list the values: `signal {at.name}: (idle, alert)`"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
     fixes = (replacement_fix(scope.source, span, suggestion),) if suggestion and start >= 0 else ()

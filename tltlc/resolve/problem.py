@@ -39,7 +39,7 @@ class ResolutionError(Exception):
             )
 
 
-_OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
+_OF_ARGUMENTS: Final = {"TLT0110", "TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
 """The codes of problems that a definition may have with some arguments but not with others."""
 
 _MOST_PLACES: Final = 4

@@ -16,6 +16,7 @@ from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.declared_values import param, signal, signal_value
 from tltlc.resolve.dimensions import mismatch, same_dimension
+from tltlc.resolve.enums import enum_as_number_error, enum_distance
 from tltlc.resolve.kinds import entity_help, kind_in_words, kind_of, lookup
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
@@ -26,7 +27,7 @@ from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant
 
 _ARITHMETIC = ("+", "-", "*", "/", "^")
-_COMPARISONS = ("<", "<=", ">", ">=")
+_COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
 
 
 def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
@@ -64,6 +65,8 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
         right, right_text = condition(expr.right, env, depth + 1)
         op = cast(ConditionOp, expr.op)
         return Condition(op, (left, right)), f"({left_text}) {expr.op} ({right_text})"
+    if isinstance(expr, tree.IsExpr) or (isinstance(expr, tree.BinaryExpr) and expr.op in ("==", "!=")):
+        return _equality_condition(expr, env)
     if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
         a, b = quantity(expr.left, env, depth), quantity(expr.right, env, depth)
         same_dimension(a, b, expr.right, env)
@@ -82,6 +85,18 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
         expr.span,
         advice="compare two numbers, e.g. `when distance(target) < 2 m: …`, or use a `bool` signal",
     )
+
+
+def _equality_condition(expr: tree.BinaryExpr | tree.IsExpr, env: Env) -> tuple[Condition, str]:
+    from tltlc.resolve.equality import distance_of_sides
+
+    if isinstance(expr, tree.IsExpr):
+        distance, text = enum_distance(expr, env)
+        is_equal = not expr.negated
+    else:
+        left, right, difference = distance_of_sides(expr, env)
+        distance, text, is_equal = difference.expression, f"{left.text} {expr.op} {right.text}", expr.op == "=="
+    return Condition("<" if is_equal else ">=", (distance, Const(0.5))), text
 
 
 def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
@@ -138,7 +153,7 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
         if isinstance(local, Unknown):
             placeholder = Signal(local.name, "number", None, None)
             env.context.signals.setdefault(placeholder.name, placeholder)
-            return replace(signal_value(placeholder), dimension=None)
+            return replace(signal_value(placeholder), dimension=None, is_whole=True)
         raise _not_a_number_error(expr, env)
     if env.constant:
         raise _not_constant_error(expr, env)
@@ -150,6 +165,8 @@ def _resolve_name(expr: NameExpr | CallExpr, env: Env, depth: int) -> Quantity:
         match(expr, binding, (), env.scope)
         return param(binding, env)
     if binding.kind == "signal":
+        if isinstance(binding.declaration, tree.SignalDecl) and binding.declaration.values:
+            raise enum_as_number_error(expr, binding.declaration.values, env)
         return signal(expr, binding, env)
     if binding.kind == "predicate":
         from tltlc.resolve.predicates import predicate
@@ -263,6 +280,7 @@ def _when(expr: tree.WhenExpr, env: Env, depth: int) -> Quantity:
         LOOSEST,
         1 + deepest,
         overflows=any(value.overflows for value in values),
+        is_whole=all(value.is_whole for value in values),
     )
 
 
@@ -289,7 +307,7 @@ def _not_constant_error(expr: NameExpr | CallExpr, env: Env) -> ResolutionError:
 
 def _not_a_number_error(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
-    if isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS:
+    if isinstance(expr, tree.IsExpr) or (isinstance(expr, tree.BinaryExpr) and expr.op in _COMPARISONS):
         advice = "a comparison is a formula: name one with `let rich = coins > 30`, and join two with `and`"
     elif kind_of(expr, env) == "entity":
         advice = entity_help(env.scope.source.slice(expr.span), env, number=True)

@@ -13,7 +13,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
 
-ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "bool"]
+ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "int", "bool"]
 JudgeMode = Literal["goal", "limit"]
 
 
@@ -22,7 +22,8 @@ class Signal:
     """A number that the game supplies at each step, in SI units.
 
     ``low`` or ``high`` is None where the range is open. ``arguments`` are the entities (objects of
-    the level) that the signal is about.
+    the level) that the signal is about. ``values`` are the names of the values of an enum: 0, 1, 2
+    in order; the type is then ``int``.
     """
 
     base: str
@@ -31,6 +32,7 @@ class Signal:
     high: float | None
     doc: str = ""
     arguments: tuple[str, ...] = ()
+    values: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:

@@ -17,6 +17,7 @@ from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.deadlines import with_timers
+from tltlc.resolve.enums import exclusive_values
 from tltlc.resolve.formulas import with_bounds
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.registers import memory_of
@@ -92,14 +93,17 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
     """Return the atoms with the names ``used``, and the signals, params and groups that belong to them.
 
     ``groups`` has the names of the atoms of each ``exclusive`` declaration. A group belongs to the atoms
-    if ``used`` or the registers name at least two of its atoms; then the others are returned, too.
+    if ``used`` or the registers name at least two of its atoms; then the others are returned, too. Atoms
+    that compare one signal with different values, such as ``mode is idle`` and ``mode is alert``, are a
+    group, too.
     """
     used = list(used)
     used += (atom.name for atom in memory_of(_atoms(used, context), context.registers, context.atoms).atoms)
-    exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
+    exclusive: list[Sequence[str]] = [group for group in groups if len(set(group).intersection(used)) > 1]
     names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
     memory = memory_of(_atoms(names, context), context.registers, context.atoms)
     names = list(dict.fromkeys([*names, *(atom.name for atom in memory.atoms)]))
+    exclusive += exclusive_values(names, exclusive, context.values_of_signals)
     atoms = _atoms(names, context)
     read = [*(atom.expression for atom in atoms), *(register.update for register in memory.registers)]
     variables = [node for expression in read for node in _variables(expression)]

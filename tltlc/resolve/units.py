@@ -20,6 +20,7 @@ TYPES: Final[dict[str, Dimension]] = {
     "time": (0.0, 1.0, 0.0),
     "speed": (1.0, -1.0, 0.0),
     "angle": (0.0, 0.0, 1.0),
+    "int": PLAIN,
     "bool": PLAIN,
 }
 

@@ -54,6 +54,7 @@ class Quantity:
     - ``binding`` says how tightly the outermost operator of ``text`` binds.
     - ``depth`` is the depth of the expression.
     - ``is_bool`` marks a value that is 0 or 1 by type.
+    - ``is_whole`` marks a value that is a whole number by type, for ``==``.
     - ``overflows`` marks a value whose arithmetic may overflow although all its inputs have finite
       ranges.
     - ``recall`` marks a count or time of the trace so far whose maximum is not yet found, or is written.
@@ -69,6 +70,7 @@ class Quantity:
     depth: int = 1
     is_bool: bool = False
     overflows: bool = False
+    is_whole: bool = False
     call: tuple[str, tuple[str, ...]] | None = None
     recall: Recall | None = None
 
@@ -134,7 +136,15 @@ def range_text(low: float, high: float, dimension: Dimension | None) -> str:
 
 def constant(value: float, dimension: Dimension | None) -> Quantity:
     """Return a plain number as a quantity."""
-    return Quantity(Const(value), dimension, value, value, number_text(value), SIGN if value < 0 else CLOSED)
+    return Quantity(
+        Const(value),
+        dimension,
+        value,
+        value,
+        number_text(value),
+        SIGN if value < 0 else CLOSED,
+        is_whole=value.is_integer(),
+    )
 
 
 _INFIX = {
@@ -143,6 +153,10 @@ _INFIX = {
     "*": (PRODUCT, PRODUCT, SIGN),
     "/": (PRODUCT, PRODUCT, SIGN),
 }
+
+
+_WHOLE = frozenset({"+", "-", "*", "neg", "min", "max", "abs", "clamp"})
+"""The operators whose result is a whole number if all arguments are."""
 
 
 def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
@@ -166,5 +180,6 @@ def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Q
         binding, text = CLOSED, f"{op}({', '.join(arg.text for arg in args)})"
     expression = Op(op, tuple(arg.expression for arg in args))  # type: ignore[arg-type]
     too_large = any(arg.overflows for arg in args) or overflows(op, ranges)
+    whole = op in _WHOLE and all(arg.is_whole for arg in args)
     depth = 1 + max(arg.depth for arg in args)
-    return Quantity(expression, dimension, low, high, text, binding, depth, overflows=too_large)
+    return Quantity(expression, dimension, low, high, text, binding, depth, overflows=too_large, is_whole=whole)

@@ -23,9 +23,10 @@ syntax match tltlWord "\v%(<judge\s+)@20<=at>"
 syntax match tltlWord "\v<%(within|for|after)>\ze\s*\d"
 syntax match tltlOperator "\v<since>\ze\s+%(%(and|or|implies|iff|then|until|weak_until|release|strong_release|since|in|[UWRM])>)@!%(\a|[_(!¬◇□○⊤⊥[:digit:]])"
 syntax match tltlWord "\v<in>\ze\s*[\[(]"
+syntax match tltlWord "\v%(\w|\))@1<=\s+\zs<is>\ze\s+%(not\s+)?%(%(and|or|implies|iff|then|until|is)>)@!%(\a|_)"
 syntax match tltlWord "\v<as>\ze\s+%(\a|_)"
 syntax match tltlWord "\v%(\"\s*)@8<=<for>\ze\s+%(\a|_)"
-syntax match tltlType "\v:\s*\zs<%(number|ratio|length|time|speed|angle|bool|entity|formula)>%(\s*[.(<>+*/^-])@!"
+syntax match tltlType "\v:\s*\zs<%(number|ratio|length|time|speed|angle|int|bool|entity|formula)>%(\s*[.(<>+*/^-])@!"
 syntax match tltlFunction "\v<%(min|max|abs|clamp|sqrt|exp|tanh|times|time_since|time_holding|previous|initial|highest|lowest)>\ze\s*\("
 
 syntax match tltlNumber "\v<\d+%(\.\d+)?%([eE][+-]?\d+)?%(x>)?" nextgroup=tltlUnit skipwhite

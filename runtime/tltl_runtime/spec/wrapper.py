@@ -186,12 +186,13 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self._sample(f"step {self._monitor.steps}")
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
-        """Call ``signals``, store its result in ``sample``, and return it.
+        """Call ``signals``, store its result in ``sample``, and return it; names of enum values become numbers.
 
         ``when`` is for messages: it says when that was, for example ``step 3``.
 
         Raises:
-            MonitorError: TLT0611, a signal of the spec is missing.
+            MonitorError: TLT0611, a signal of the spec is missing; TLT0612, it has a text that is no
+                value of an enum.
             TypeError: the result is not a mapping.
         """
         sample = self._signals(self.env)
@@ -200,6 +201,9 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         missing = [signal.name for signal in self._inputs if signal.name not in sample]
         if missing:
             raise MonitorError([_missing_signals(missing, [str(name) for name in sample], when)])
+        if named := [signal for signal in self._inputs if isinstance(sample[signal.name], str)]:
+            numbers = {signal.name: monitors.finite_signal_value(signal, sample[signal.name], when) for signal in named}
+            sample = {**sample, **numbers}
         self.sample = sample
         return sample
 

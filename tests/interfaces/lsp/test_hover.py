@@ -70,6 +70,12 @@ def test_the_hover_text_of_a_spec_describes_its_automaton() -> None:
     assert f"{figures.states} states, distance 2." in result.contents.value
 
 
+def test_the_hover_text_of_an_enum_has_the_numbers_of_its_values() -> None:
+    text = "signal mode: (idle, alert)\nsignal phase: int in [0, 5]\nspec a = F mode is alert & F phase == 2\n"
+    assert "0 for idle, 1 for alert." in hover_text("mode is", text)
+    assert "An int signal, supplied by the game as a whole number; its range is [0, 5]." in hover_text("phase ==", text)
+
+
 def test_a_space_has_no_hover_text() -> None:
     document, _, _ = open_text(TEXT)
     assert hover(document, TEXT.index("= 2 m"), None, "utf-16") is None

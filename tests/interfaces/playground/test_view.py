@@ -194,6 +194,13 @@ def test_sliders_have_finite_ends() -> None:
     assert (signals["d"]["unit"], signals["d"]["low"], signals["n"]["high"]) == ("m", None, 3.0)
 
 
+def test_enums_are_set_by_their_values() -> None:
+    text = "signal mode: (idle, alert)\nsignal phase: int in [0, 5]\nspec x = F mode is alert & F phase == 2"
+    mode, phase = view(text)["spec"]["signals"]
+    assert (mode["values"], mode["slider"]) == (["idle", "alert"], [0.0, 1.0])
+    assert (phase["values"], phase["type"]) == ([], "int")
+
+
 def test_the_project_file_of_the_folder_applies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "lib").mkdir()

@@ -89,7 +89,7 @@ def test_a_hello_is_read() -> None:
             "hello/signals/seen/type",
             "boolean",
             'sent `hello.signals.seen.type` as "boolean", but '
-            "it must be one of number, ratio, length, time, speed, angle, bool",
+            "it must be one of number, ratio, length, time, speed, angle, int, bool",
         ),
         (
             "hello/signals/moves/range",

@@ -344,3 +344,28 @@ def test_no_heavy_module_is_imported(tmp_path: Path) -> None:
     loaded_modules("check", EXAMPLE, folder=tmp_path)
     assert not loaded_modules("diff", EXAMPLE, EXAMPLE, folder=tmp_path) & HEAVY
     assert not loaded_modules("breaking", EXAMPLE, "--against", "old", folder=tmp_path) & HEAVY
+
+
+@pytest.mark.parametrize(
+    ("values", "severity"),
+    [
+        ("(idle, alert, chase)", "error"),
+        ("(alert, idle)", "error"),
+        ("(idle, alert, asleep)", "note"),
+    ],
+)
+def test_other_values_of_an_enum_break_a_game_unless_each_keeps_its_number(
+    values: str,
+    severity: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    tltlc: Run,  # noqa: F811
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = "signal mode: {}\nspec s = F mode is alert\n"
+    old = "(idle, calm, alert)" if values == "(idle, alert, chase)" else "(idle, alert)"
+    write(old__s=text.format(old), s=text.format(values))
+    outcome = tltlc("breaking", "s.tltl", "--against", "old", "--format", "json")
+    found = [item for item in json.loads(outcome.out)["diagnostics"] if item["code"] == "TLT0755"]
+    assert [item["severity"] for item in found] == [severity]
+    assert found[0]["title"] == f"the signal `mode` is now {values} (it was {old})"

@@ -61,6 +61,8 @@ def declaration(random: Random) -> list[str]:
             return ["import", random.choice(["stealth", '"a.tltl"', "stealth ( near, alive )", "core as c"])]
         case 1:
             parameters = random.choice([[], ["(", *commas(["q : entity"] * random.randint(1, 9)), ")"]])
+            if random.random() < 0.3:
+                return ["signal", name, *parameters, ":", "(", *names(random), ")"]
             return ["signal", name, *parameters, *random.choice([[":", "length"], []]), *interval(random)]
         case 2:
             return ["entity", *names(random)]
@@ -140,12 +142,15 @@ def formula(random: Random, depth: int) -> list[str]:
 
 def atom(random: Random) -> list[str]:
     name = random.choice(NAMES)
-    match random.randrange(5):
+    match random.randrange(6):
+        case 5:
+            operand = random.choice([[name], [name, "(", *names(random), ")"]])
+            return [*operand, "is", *random.choice([[], ["not"], ["!"]]), "a_rather_long_value"]
         case 0:
             arguments = [random.choice([["s1"], ["close", "=", *number(random, 1)], number(random, 2)])]
             return [name, "(", *commas(arguments * random.randint(1, 3)), ")"]
         case 1:
-            return [*number(random, 2), random.choice(["<", "<=", ">", ">=", "≤", "≥"]), *number(random, 2)]
+            return [*number(random, 2), random.choice(["<", "<=", ">", ">=", "≤", "≥", "==", "!="]), *number(random, 2)]
         case 2:
             return [random.choice(["true", "⊤", "false", "⊥"])]
         case _:

@@ -16,6 +16,9 @@ signal turn: angle in [-1 rad, 1 rad]
 signal heat: number in [0, 8]
 signal hot: bool
 signal cold: number in [0, 8]
+signal phase: int in [0, 5]
+signal floor: int in [0, 9]
+signal mode: (idle, alert)
 param most: length in [1 m, 5 m] = 3 m
 """
 SAMPLE = {
@@ -27,6 +30,9 @@ SAMPLE = {
     "heat": 6.0,
     "hot": 1.0,
     "cold": -1.0,
+    "phase": 3.0,
+    "floor": 7.0,
+    "mode": 1.0,
     "distance(exit)": 2.0,
 }
 
@@ -50,6 +56,11 @@ def measured(formula: str) -> Measure | None:
         ("heat / 2 > 2", Measure("heat / 2", 3.0, 1.0, "")),
         ("x < most", Measure("x", 6.5, 3.5, "m")),
         ("x > y", Measure("x", None, 4.5, "m")),
+        ("phase == 5", Measure("phase", 3.0, 2.0, "")),
+        ("phase != 3", Measure("phase", 3.0, 0.0, "")),
+        ("phase == 0", Measure("phase", 3.0, 3.0, "")),
+        ("floor - phase == 0", Measure("floor - phase", 4.0, 4.0, "")),
+        ("phase == floor", Measure("phase", None, 4.0, "")),
         ("x < y + 1 m", Measure("y + 1", None, 3.5, "m")),
     ],
 )
@@ -57,6 +68,6 @@ def test_the_sides_of_a_comparison_are_measured_in_their_unit(formula: str, expe
     assert measured(formula) == expected
 
 
-@pytest.mark.parametrize("formula", ["hot", "near(exit)", "heat / 2 > 0", "sqrt(cold) > 1"])
+@pytest.mark.parametrize("formula", ["hot", "near(exit)", "heat / 2 > 0", "sqrt(cold) > 1", "mode is idle"])
 def test_an_atom_without_measurable_sides_has_no_measure(formula: str) -> None:
     assert measured(formula) is None

@@ -67,6 +67,16 @@ def test_signals_are_declared_once_with_the_entities_that_they_are_about() -> No
     assert vocabulary_of_columns(columns_of_traces).library.text == expected
 
 
+def test_values_of_enums_are_atoms() -> None:
+    text = "entity g1\nsignal mode(g: entity): (idle, alert)\nsignal phase: (day, night)\n"
+    assert names(text, {"mode(g1)", "phase"}) == [
+        "mode(g1) is idle",
+        "mode(g1) is alert",
+        "phase is day",
+        "phase is night",
+    ]
+
+
 def test_a_duplicate_column_is_reported() -> None:
     kinds = columns(b"a,a\ntrue,false\n", "run.csv")
     assert kinds == {"a": True}

@@ -22,6 +22,9 @@ from tltlc.tools.witness.samples import MissingSample, SampleFinder, Unsatisfied
             "F above(x, 0.1, 2e-7) & F about(x, y, 0.001) & F less(x, y, 0.5)",
         ),
         ("signal x in [0, 1]", "F x > 0.9995"),
+        ("signal n: int in [0, 1000]", "F n == 777 & F n > 998 & F n == 3"),
+        ("signal n: int in [0, 9]  signal m: int in [0, 9]", "F n + m == 17 & F n - m == 8"),
+        ("signal mode: (idle, alert, chase)", "F mode is idle & F mode is alert & F mode is chase"),
         ("signal v in [0, 60]  signal w: bool", "F v * v > 35 * 35 & F v * w > 59 & F w"),
         ("signal x in [0, 100]  predicate narrow = clamp(1 - 40 * abs(x - 37.123), -1, 1)", "F narrow"),
         (
@@ -58,6 +61,23 @@ def test_values_between_thresholds_are_found(thresholds: list[int], data: st.Dat
         assert isinstance(sample, UnsatisfiedLiterals)
         (low, low_holds), (high, high_holds) = sorted(sample.literals, key=lambda literal: thresholds[literal[0]])
         assert not low_holds and high_holds and thresholds[low] < thresholds[high]
+
+
+def test_the_values_of_integers_and_enums_are_whole_numbers() -> None:
+    text = "signal n: int in [0, 9]  signal mode: (idle, alert, chase)  signal x in [0, 9]\n"
+    (fspa,) = tltlc.compile_text(text + "spec s = F (n == 4 & x > 2.5) & F mode is alert & F n + x > 17 & F n != 5")
+    finder = SampleFinder(fspa)
+    for index in range(len(fspa.atoms)):
+        for holds in (True, False):
+            sample = finder.sample_for_literals(((index, holds),))
+            assert isinstance(sample, dict)
+            assert sample["n"].is_integer() and sample["mode"].is_integer()
+
+
+def test_an_enum_has_no_value_besides_its_own() -> None:
+    (fspa,) = tltlc.compile_text("signal mode: (idle, alert)\nspec s = F (mode is not idle & mode is not alert)")
+    literals = tuple((index, False) for index in range(2))
+    assert isinstance(SampleFinder(fspa).sample_for_literals(literals), UnsatisfiedLiterals)
 
 
 def test_exclusive_atoms_do_not_hold_together() -> None:

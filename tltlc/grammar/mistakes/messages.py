@@ -21,6 +21,7 @@ from tltlc.grammar.mistakes.english import plain_english
 from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.habits import HABITS, dash_comment, value_end
+from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token
 from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
@@ -57,12 +58,11 @@ def unexpected_token(
     ``tokens`` are one declaration, clause, line of a test or formula. The parser read them as the
     nonterminal ``start`` and raised ``error``.
     """
-    failure = ParseFailure(source, tokens, error, start)
+    at = misread_index(tokens, error.index, start)
+    failure = ParseFailure(source, tokens, error if at == error.index else stop_at(tokens, at, start), start)
     if failure.allowed_terminals == {"OF"}:
         # Only `within 5 s of a, b` begins with a time. Explain anything else as a time without an operator.
-        before = error.index - 2
-        states = lalr.stack_after(load(), start, tokens[:before])
-        failure = ParseFailure(source, tokens, lalr.UnexpectedTokenError(before, states), start)
+        failure = ParseFailure(source, tokens, stop_at(tokens, failure.stop.index - 2, start), start)
     for rule in _RULES:
         diagnostic = rule(failure)
         if diagnostic:

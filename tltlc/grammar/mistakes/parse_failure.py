@@ -21,7 +21,7 @@ NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
 CLOSING: Final = frozenset(OPENING.values())
-COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
+COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST", "EQUALS", "UNEQUAL"}
 ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", *COMPARISONS}
 UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
 INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", *UNTILS}
@@ -139,7 +139,7 @@ class ParseFailure:
         items = []
         if self.wants_operator:
             items.append("an operator")
-            allowed -= INFIX | ARITHMETIC | {"UNIT", "LPAR"}
+            allowed -= INFIX | ARITHMETIC | {"UNIT", "LPAR", "IS"}
         items += [text for kind, text in _KINDS.items() if kind in allowed]
         signs = _spellings({**load().soft, **load().signs})
         items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]

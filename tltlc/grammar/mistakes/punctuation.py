@@ -206,6 +206,22 @@ def argument_by_name(failure: ParseFailure) -> Diagnostic | None:
     return failure.error("TLT0101", title, f"write `{text}`", span=span_of([before, failure.token]), write=text)
 
 
+def empty_group(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a group without members, as in ``entity guards =`` and ``all x in (): p``, else None."""
+    at = failure.stop.index
+    if failure.tokens[0].type == "ENTITY" and at == 3 and failure.tokens[2].type == "EQUAL":
+        name = failure.tokens[1].text
+        help_ = f"name its members: `entity {name} = a, b`"
+        return failure.error("TLT0101", f"the group `{name}` has no members", help_, span=failure.tokens[1].span)
+    before = failure.tokens[max(0, at - 4) : at]
+    if [token.type for token in before[:2]] not in (["ALL", "NAME"], ["ANY", "NAME"]) or failure.token.type != "RPAR":
+        return None
+    if [token.text for token in before[2:]] != ["in", "("]:
+        return None
+    brackets = span_of([before[3], failure.token])
+    return failure.error("TLT0101", "these brackets are empty", "name the entities in them: `(a, b)`", span=brackets)
+
+
 def empty_brackets(failure: ParseFailure) -> Diagnostic | None:
     """Return an error if a call has no arguments, as in ``alive()``, else None."""
     at = failure.stop.index
@@ -336,6 +352,7 @@ def leave_out_help(failure: ParseFailure) -> str:
 PUNCTUATION: Final[tuple[Callable[[ParseFailure], Diagnostic | None], ...]] = (
     comma,
     argument_by_name,
+    empty_group,
     empty_brackets,
     quoted_name,
     invalid_name,

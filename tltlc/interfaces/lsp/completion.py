@@ -121,6 +121,11 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
 def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
     """Yield completions for the names that may stand at the cursor."""
     first, before = place.first, place.piece[-1].text if place.piece else ""
+    enum = _enum_before_is(document, place.piece)
+    if enum is not None:
+        for number, name in enumerate(value.name for value in enum.values):
+            yield types.CompletionItem(name, kind=_ItemKind.EnumMember, detail=f"{number} of {enum.name}")
+        return
     if place.start == "clause" and first in ("level", "judge", "semantics", "tag"):
         yield from _settings(document, first)
     elif place.start == "test_item" and before == "expect":
@@ -148,6 +153,22 @@ def _names(document: Document, place: Cursor) -> Iterator[types.CompletionItem]:
         return
     else:
         yield from _expression_names(document, place)
+
+
+def _enum_before_is(document: Document, piece: tuple[Token, ...]) -> SignalDecl | None:
+    """Return the enum of which a value follows, if the tokens end with ``mode is`` or ``mode(g1) is not``."""
+    at = len(piece) - 1
+    at -= at > 0 and piece[at].type == "NOT"
+    if at < 1 or piece[at].text != "is":
+        return None
+    at -= 1
+    if piece[at].type == "RPAR":
+        while at > 0 and piece[at].type != "LPAR":
+            at -= 1
+        at -= 1
+    binding = document.scope.names.get(piece[max(at, 0)].text)
+    declaration = binding.declaration if binding else None
+    return declaration if isinstance(declaration, SignalDecl) and declaration.values else None
 
 
 def _settings(document: Document, clause: str) -> Iterator[types.CompletionItem]:

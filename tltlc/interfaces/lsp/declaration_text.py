@@ -35,6 +35,7 @@ _SUPPLIED_AS: Final = {
     "time": "seconds",
     "speed": "metres per second",
     "angle": "radians",
+    "int": "a whole number",
     "bool": "true or false",
 }
 
@@ -132,6 +133,10 @@ def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
 def _signal(declaration: SignalDecl, context: Context) -> Iterator[str]:
     info = context.signal_infos.get(declaration.name)
     if info is None:
+        return
+    if info.values:
+        numbers = ", ".join(f"{number} for {name}" for number, name in enumerate(info.values))
+        yield f"An enum, supplied by the game as the name of a value, or as its number: {numbers}."
         return
     text = f"{_article(info.type)} signal, supplied by the game as {_SUPPLIED_AS.get(info.type, 'a plain number')}"
     yield f"{text}{_range(info.low, info.high, info.type)}."

@@ -17,7 +17,7 @@ unless it is 0.
 
 
 def signal_values(fspa: Fspa) -> list[dict[str, Any]]:
-    """Return for each signal a dict with its name, type, unit, documentation, range and slider range.
+    """Return for each signal a dict with its name, type, enum values, unit, documentation, range and slider range.
 
     ``low`` and ``high`` are None where the range has no end; ``slider`` always has two finite ends.
     """
@@ -25,6 +25,7 @@ def signal_values(fspa: Fspa) -> list[dict[str, Any]]:
         {
             "name": signal.name,
             "type": signal.type,
+            "values": list(signal.values),
             "unit": UNITS.get(signal.type, ""),
             "doc": signal.doc,
             "low": signal.low,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
+from tltlc.core.names import ComparisonName
 from tltlc.logic.bounded_operators import LEAST, Bounded, bounded_operator, operands_with_bounds
 from tltlc.logic.formula import Formula, FormulaOp, bound_of
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
@@ -189,7 +190,8 @@ def _push_infix(stack: list[_TextItem], node: Formula, spelling: Spelling) -> No
 
 def _needs_brackets(node: Formula, least: int, spelling: Spelling) -> bool:
     """Whether a formula needs brackets in a place where operators below the strength ``least`` need them."""
-    if spelling.brackets_around_comparisons and node.op == "atom" and least and not _SIGNS.isdisjoint(node.name):
+    is_comparison = node.op == "atom" and (isinstance(node.name, ComparisonName) or not _SIGNS.isdisjoint(node.name))
+    if spelling.brackets_around_comparisons and is_comparison and least:
         return True  # The grammar reads F a > 0 as F(a > 0), but a person might not.
     if STRENGTH[node.op] >= least:
         return False

@@ -81,7 +81,8 @@ def check_predicate(
             return (_unchecked_problem("range", f"it has more than {LARGEST_SIZE:,} operands and operators"),)
         try:
             box, bools = box_of(expression, signals, params)
-            return _findings(Predicate(expression, box, bools, low, high))
+            stepped = bools | _ints(expression, signals, params)
+            return _findings(Predicate(expression, box, bools, stepped, low, high))
         except (RecursionError, OutOfWorkError):
             return (_unchecked_problem("range", _TOO_LONG),)
 
@@ -134,12 +135,14 @@ class Predicate:
     """The predicate to check: its expression, the ranges of its variables, and its declared range.
 
     A variable is a signal or a param. ``box`` maps each to its range. ``bools`` are the variables that
-    are bools.
+    are bools, and ``stepped`` those that are bools or ints: their values change in steps, so a jump of the
+    predicate there is no mistake.
     """
 
     expression: Expression
     box: Box
     bools: frozenset[Variable]
+    stepped: frozenset[Variable]
     low: float
     high: float
 
@@ -194,7 +197,7 @@ def _check_continuity(predicate: Predicate) -> RangeProblem | None:
         doubtful += goals
         from tltlc.resolve.range_proof.jumps import find_jump
 
-        jump = find_jump(cases(when), predicate.expression, predicate.box, predicate.bools)
+        jump = find_jump(cases(when), predicate.expression, predicate.box, predicate.bools, predicate.stepped)
         if jump is not None:
             values = _by_name(jump.point)
             message = (
@@ -216,7 +219,7 @@ def _doubtful_borders(when: When, predicate: Predicate) -> list[ProofGoal]:
         return []
     from tltlc.resolve.range_proof.continuity import agreement_goal, meetings, proves_agreement
 
-    pairs = meetings(all_cases, ConstrainedBox(predicate.box, {}), predicate.bools)
+    pairs = meetings(all_cases, ConstrainedBox(predicate.box, {}), predicate.stepped)
     return [agreement_goal(meeting) for meeting in pairs if not proves_agreement(meeting)]
 
 
@@ -242,7 +245,7 @@ def _proves_exactly(kind: str, predicate: Predicate, goals: Sequence[ProofGoal],
             return proof_cache.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
 
     text = proof_cache.question(
-        kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high
+        kind, predicate.expression, predicate.box, predicate.stepped, predicate.low, predicate.high
     )
     answer = proof_cache.answer(text, compute)
     spend(answer.steps)
@@ -265,6 +268,17 @@ def box_of(
             most = inf if declared.high is None else float(declared.high)
             box[variable] = (least, most)
     return box, frozenset(bools)
+
+
+def _ints(
+    expression: Expression, signals: Mapping[str, spec.Signal], params: Mapping[str, spec.Param]
+) -> frozenset[Variable]:
+    """Return the variables of the expression that are ints."""
+    return frozenset(
+        variable
+        for variable in variables(expression)
+        if (signals[variable.name] if isinstance(variable, SignalValue) else params[variable.name]).type == "int"
+    )
 
 
 def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:

@@ -40,7 +40,7 @@ class Meeting:
 
 
 def meetings(
-    all_cases: Sequence[ConstrainedValue], whole: ConstrainedBox, bools: frozenset[Variable]
+    all_cases: Sequence[ConstrainedValue], whole: ConstrainedBox, stepped: frozenset[Variable]
 ) -> Iterator[Meeting]:
     """Yield each pair of cases that may meet, except pairs with the same expression as their value.
 
@@ -53,7 +53,7 @@ def meetings(
         if first.value == second.value:
             continue
         constraints = tuple(
-            _closed_constraint(constraint, bools)
+            _closed_constraint(constraint, stepped)
             for constraint in dict.fromkeys((*first.constraints, *second.constraints))
             if holds_at_once(
                 constraint.difference, whole, -inf, inf
@@ -82,12 +82,12 @@ def agreement_goal(meeting: Meeting) -> ProofGoal:
     return ProofGoal(difference, meeting.constraints, 0.0, 0.0)
 
 
-def _closed_constraint(constraint: Constraint, bools: frozenset[Variable]) -> Constraint:
+def _closed_constraint(constraint: Constraint, stepped: frozenset[Variable]) -> Constraint:
     """Return the constraint with ``>=`` in place of ``>`` if it reads a signal that is not a bool.
 
     Such a signal can come arbitrarily close to the border.
     """
-    if any(isinstance(v, SignalValue) and v not in bools for v in variables(constraint.difference)):
+    if any(isinstance(v, SignalValue) and v not in stepped for v in variables(constraint.difference)):
         return Constraint(constraint.difference, False)
     return constraint
 

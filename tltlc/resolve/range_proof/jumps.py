@@ -30,12 +30,17 @@ class Jump:
 
 
 def find_jump(
-    all_cases: Sequence[ConstrainedValue], expression: Expression, box: Box, bools: frozenset[Variable]
+    all_cases: Sequence[ConstrainedValue],
+    expression: Expression,
+    box: Box,
+    bools: frozenset[Variable],
+    stepped: frozenset[Variable],
 ) -> Jump | None:
     """Search for a point on the border of two cases where the expression clearly jumps.
 
     ``all_cases`` are the cases of one ``when`` in the expression. Returns None if the search finds no
-    such point, which does not prove that there is none.
+    such point, which does not prove that there is none. The values of variables in ``stepped`` change in
+    steps: jumps along these are not searched for.
     """
     crossings = 0
     candidates = list(points(expression, box, bools))
@@ -44,7 +49,7 @@ def find_jump(
         if here is None:
             continue
         for variable in box:
-            if variable in bools or not isinstance(variable, SignalValue):
+            if variable in stepped or not isinstance(variable, SignalValue):
                 continue
             for end in _points_along(start, variable, box, expression):
                 there = _case_at(all_cases, end)

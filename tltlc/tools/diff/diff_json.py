@@ -91,7 +91,8 @@ def _difference(difference: Difference) -> dict[str, Any]:
 def _value(value: object) -> Any:
     match value:
         case Signal():
-            return {"type": value.type, "range": [value.low, value.high]}
+            values = {"values": list(value.values)} if value.values else {}
+            return {"type": value.type, "range": [value.low, value.high], **values}
         case Param():
             return {"type": value.type, "range": [value.low, value.high], "value": value.value}
         case Atom():

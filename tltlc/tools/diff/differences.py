@@ -99,10 +99,10 @@ def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> 
 
 
 def type_and_range(value: DifferingValue) -> object:
-    """Return the type, range and param value of a signal or param; None for other values."""
+    """Return the type, range and param value or enum values of a signal or param; None for anything else."""
     if not isinstance(value, (Signal, Param)):
         return None
-    return (value.type, value.low, value.high, value.value if isinstance(value, Param) else None)
+    return (value.type, value.low, value.high, value.value if isinstance(value, Param) else value.values)
 
 
 def _differences(a: Fspa, b: Fspa) -> Iterator[Difference]:

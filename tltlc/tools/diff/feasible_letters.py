@@ -99,7 +99,9 @@ def _common_signal(one: Signal, other: Signal) -> Signal | None:
     """
     lows = [low for low in (one.low, other.low) if low is not None]
     highs = [high for high in (one.high, other.high) if high is not None]
-    common = replace(one, low=max(lows, default=None), high=min(highs, default=None))
+    # A value is whole only if both sides say so.
+    base = other if one.type == "int" else one
+    common = replace(base, low=max(lows, default=None), high=min(highs, default=None))
     if (one.type == "bool") != (other.type == "bool"):
         return None
     return None if common.low is not None and common.high is not None and common.low > common.high else common

@@ -103,11 +103,19 @@ def signal_changed(difference: Difference, specs: Sequence[str], place: Label) -
 
 
 def signal_type_changed(old: Signal, new: Signal, place: Label) -> Diagnostic:
-    """Return TLT0755: a signal has another type, unit or range."""
+    """Return TLT0755: a signal has another type, unit or range, or other values of an enum."""
     name = new.name
     if old.type != new.type:
         title = f"the signal `{name}` is now {_with_article(new.type)} (it was {_with_article(old.type)})"
         return Diagnostic("TLT0755", title, (place,), f"have the game supply it as {type_text(new)}", BREAKING)
+    if old.values != new.values:
+        title = f"the signal `{name}` is now {type_text(new)} (it was {type_text(old)})"
+        if old.values and new.values[: len(old.values)] == old.values:
+            return Diagnostic(
+                "TLT0755", title, (place,), "nothing needs to be done: each value keeps its number", COMPATIBLE
+            )
+        help_ = "check what the game supplies: a value may have another number, or be gone"
+        return Diagnostic("TLT0755", title, (place,), help_, BREAKING)
     title = f"the range of the signal `{name}` is now {ends_text(new)} (it was {ends_text(old)})"
     if _is_within(old, new):
         help_ = "nothing needs to be done in hosts; atoms that the range scales have messages of their own"
@@ -310,7 +318,7 @@ def _is_in_range(value: float, new: Param) -> bool:
 
 
 def _with_article(type_: str) -> str:
-    return f"{'an' if type_ == 'angle' else 'a'} {type_}"
+    return f"{'an' if type_[0] in 'ai' else 'a'} {type_}"
 
 
 def _traces(semantics: object) -> str:

@@ -99,7 +99,14 @@ def _meaning(binding: Binding, open_parameters: tuple[Parameter, ...], env: Env)
         dimension = units.TYPES[type_] if parameter.type else None
         low, high = (0.0, 1.0) if bounded else (-inf, inf)
         local[parameter.name] = Quantity(
-            SignalNode(signal.name), dimension, low, high, signal.name, is_bool=type_ == "bool", call=(signal.base, ())
+            SignalNode(signal.name),
+            dimension,
+            low,
+            high,
+            signal.name,
+            is_bool=type_ == "bool",
+            is_whole=type_ == "int" or parameter.type is None,
+            call=(signal.base, ()),
         )
     span = binding.span
     arguments = tuple(Argument(parameter.name, NameExpr(parameter.name, span), span) for parameter in open_parameters)

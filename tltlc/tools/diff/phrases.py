@@ -43,8 +43,10 @@ def name_list(names: Sequence[str], most: int = 4) -> str:
 def type_text(value: Union[Signal, Param]) -> str:
     """Return the type and range of a signal or param: ``length in [0 m, inf]``.
 
-    Without a range, and for a bool, return the type alone.
+    Without a range, and for a bool, return the type alone; for an enum, its values: ``(idle, alert)``.
     """
+    if isinstance(value, Signal) and value.values:
+        return f"({', '.join(value.values)})"
     if value.type == "bool" or (value.low is None and value.high is None):
         return value.type
     return f"{value.type} in {ends_text(value)}"

@@ -97,9 +97,11 @@ def value_difference(one: Meaning, other: Meaning) -> ValueDifference | None:
 
     box, bools = _common_box(one, other)
     values = [Const(param.value) for param in (*one.params, *other.params)]
+    ints = {signal.name for signal in (*one.signals, *other.signals) if signal.type == "int"}
     fallback: ValueDifference | None = None
     for point in points(Op("+", (one.expression, other.expression, *values)), box, bools):
-        difference = _difference_at({variable.name: value for variable, value in point.items()}, one, other)
+        sample = {variable.name: float(round(v)) if variable.name in ints else v for variable, v in point.items()}
+        difference = _difference_at(sample, one, other)
         if difference is not None and difference.differs_in_truth:
             return _shorten(difference, one, other, box)
         fallback = fallback or difference

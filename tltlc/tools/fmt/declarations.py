@@ -35,6 +35,10 @@ class DeclarationPrinter:
         match node:
             case tree.Import():
                 self._put_import(node)
+            case tree.SignalDecl() if node.values:
+                self._put_head("signal", node, "", None, node.span.end - 1)
+                self._page.put(": ")
+                self._expressions.put_in_brackets([*map(name_item, node.values)], node.span.end)
             case tree.SignalDecl():
                 self._put_head("signal", node, node.type, node.interval, node.span.end - 1)
             case tree.EntityDecl():

@@ -155,6 +155,11 @@ class Expressions:
             case tree.CallExpr():
                 self._page.put(node.name)
                 self.put_in_brackets([*map(argument_item, node.arguments)], node.span.end, reserved)
+            case tree.IsExpr():
+                tail = self._one_line.is_tail(node)
+                self._page.put_comments(node.span.end, indent)
+                self.put(node.operand, indent, reserved + len(tail))
+                self._page.put(tail)
             case tree.WhenExpr():
                 self._put_when(node, indent)
             case tree.BinaryExpr() if not is_speed(node) and node.op != "within":
@@ -173,7 +178,8 @@ class Expressions:
         for place, (operator, operand) in enumerate(operands):
             operand_reserved = reserved if place == len(operands) - 1 else 0
             if operator is not None:
-                self._page.put_comments(operand.span.end if is_speed(operand) else operand.span.start, indent)
+                is_whole = is_speed(operand) or isinstance(operand, tree.IsExpr)
+                self._page.put_comments(operand.span.end if is_whole else operand.span.start, indent)
                 self._page.end_line(indent)
                 self._page.put(self._one_line.infix(operator))
             self.put(operand, indent + STEP, operand_reserved)

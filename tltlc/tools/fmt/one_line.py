@@ -48,6 +48,10 @@ class OneLinePrinter:
                 text = self._response(node, room)
             case tree.BinaryExpr():
                 text = self._chain(node, room)
+            case tree.IsExpr():
+                tail = self.is_tail(node)
+                operand = self.text(node.operand, room - len(tail))
+                text = None if operand is None else operand + tail
             case tree.Unary():
                 head = self.prefix(node)
                 operand = self.text(node.operand, room - len(head))
@@ -93,6 +97,10 @@ class OneLinePrinter:
     def quantifier(self, node: tree.Quantified) -> str:
         """Return the beginning of a quantifier: ``all x in``."""
         return f"{'all' if node.all else 'any'} {node.variable} in"
+
+    def is_tail(self, node: tree.IsExpr) -> str:
+        """Return the end of a test for a value of an enum: `` is alert`` or `` is not alert``."""
+        return f" is {'not ' * node.negated}{node.value}"
 
     def _arguments(self, node: tree.CallExpr, room: int) -> str | None:
         texts: list[str] = []

@@ -13,7 +13,10 @@ from tltlc.logic.text.notation import ASCII, UNICODE, WORDS, Spelling
 _PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators about the past, which have no letters or symbols."""
 
-_INFIX: Final = {**{op: f" {op} " for op in ("then", "since", "<", "<=", ">", ">=", "+", "-", "*", "/")}, "^": "^"}
+_INFIX: Final = {
+    **{op: f" {op} " for op in ("then", "since", "<", "<=", ">", ">=", "==", "!=", "+", "-", "*", "/")},
+    "^": "^",
+}
 
 
 @record

@@ -60,6 +60,8 @@ def _sides(expression: Expression, name: str) -> tuple[Expression, Expression] |
     """
     if not isinstance(name, ComparisonName):
         return None
+    if name.operator in ("==", "is"):
+        return _equal_sides(expression, name) if name.operator == "==" else None
     node = expression
     while isinstance(node, Op) and (node.op in ("min", "max") or (node.op == "/" and isinstance(node.args[1], Const))):
         node = node.args[0]
@@ -72,6 +74,17 @@ def _sides(expression: Expression, name: str) -> tuple[Expression, Expression] |
     left, right = node.args if name.operator == ">" else node.args[::-1]
     # Where a range is too large for a float, the difference is that of the halves of the sides.
     return None if isinstance(right, Const) and right.value != _number(name.right) else (left, right)
+
+
+def _equal_sides(expression: Expression, name: ComparisonName) -> tuple[Expression, Expression] | None:
+    """Return the sides of an equality, whose expression contains the distance between them."""
+    distance = next((node for node in nodes(expression) if isinstance(node, Op) and node.op == "abs"), None)
+    if distance is None:
+        return None
+    (difference,) = distance.args
+    if name.right == "0":
+        return difference, Const(0.0)
+    return (difference.args[0], difference.args[1]) if isinstance(difference, Op) and difference.op == "-" else None
 
 
 def _varies(side: Expression) -> bool:

@@ -24,7 +24,7 @@ from tltlc.resolve.spec import ResolvedFile, Spec
 from tltlc.resolve.values import Env
 from tltlc.tools.lint.names import MentionedNames, mentioned_names
 
-_COMPARISONS = ("<", "<=", ">", ">=")
+_COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
 
 
 @record

@@ -19,7 +19,7 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.expression.tree import SignalValue, nodes
-from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
+from tltlc.grammar.tree import Module, Parameter, SignalDecl, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.pipeline import CompileOptions, Session
@@ -204,37 +204,36 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 
 
 def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
-    """Apply all predicates and `bool` signals to all entities; return texts such as `near(s1)`.
+    """Apply all predicates, `bool` signals and enums to all entities; return texts such as `near(s1)`.
 
     Also return how many texts are left out: there are at most ``_MOST_INSTANCES`` for each predicate.
     The result has texts, not atoms, because mined specs are written as source text.
     """
     instances: list[str] = []
     left_out = 0
-    for name, parameters in _predicates(bindings):
-        if not parameters:
-            instances.append(name)
-            continue
+    for name, parameters, endings in _predicates(bindings):
         chosen = islice(product(entities, repeat=parameters), _MOST_INSTANCES)
-        instances += [full_name(name, arguments) for arguments in chosen]
-        left_out += max(0, len(entities) ** parameters - _MOST_INSTANCES)
+        instances += [full_name(name, arguments) + ending for arguments in chosen for ending in endings]
+        left_out += max(0, len(entities) ** parameters - _MOST_INSTANCES) * len(endings)
     return instances, left_out
 
 
-def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
-    """Yield the names of the predicates and `bool` signals whose required parameters are all entities.
+def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int, Sequence[str]]]:
+    """Yield the names of the predicates, `bool` signals and enums whose required parameters are all entities.
 
-    Each comes with the number of its required parameters, which are those without a default.
+    Each comes with the number of its required parameters, which are those without a default, and with
+    the texts after it that make it an atom: ` is idle`, ` is alert` for an enum, an empty text for others.
     """
     for binding in bindings:
         declaration = binding.declaration
         is_truth = binding.kind == "signal" and getattr(declaration, "type", None) == "bool"
-        if binding.kind != "predicate" and not is_truth:
+        values = declaration.values if isinstance(declaration, SignalDecl) else ()
+        if binding.kind != "predicate" and not is_truth and not values:
             continue
         parameters: tuple[Parameter, ...] = getattr(declaration, "parameters", ())
         required = [parameter for parameter in parameters if parameter.default is None]
         if all(parameter.type == "entity" for parameter in required):
-            yield binding.name, len(required)
+            yield binding.name, len(required), [f" is {value.name}" for value in values] or [""]
 
 
 def _readable_atoms(

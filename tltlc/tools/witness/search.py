@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import copysign, inf, isfinite, sqrt
+from math import ceil, copysign, floor, inf, isfinite, sqrt
 from sys import float_info
 
 from tltlc.automaton.fspa import Fspa, Implicant
@@ -53,6 +53,7 @@ class AtomGroup:
         self._names = tuple(signal.name for signal in signals)
         self._ranges: dict[str, Interval] = {signal.name: _range(signal) for signal in signals}
         self._bools = frozenset(signal.name for signal in signals if signal.type == "bool")
+        self._ints = frozenset(signal.name for signal in signals if signal.type == "int")
         self._params = {param.name: param.value for param in fspa.params}
         self._expressions = [fspa.atoms[atom].expression for atom in self.atoms]
         self._functions = compile_expressions(self._expressions, self._names, self._params)
@@ -138,7 +139,14 @@ class AtomGroup:
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
-        return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
+        simple = ({variable.name: value for variable, value in point.items()} for point in points(whole, box, bools))
+        return [self._with_whole_numbers(point) for point in simple]
+
+    def _with_whole_numbers(self, point: SignalPoint) -> SignalPoint:
+        """Return a point with the values of its ints rounded; the ends of their ranges are whole numbers."""
+        if not self._ints:
+            return point
+        return {name: float(round(value)) if name in self._ints else value for name, value in point.items()}
 
     def _points(self) -> Iterator[SignalPoint]:
         """Yield the points of :attr:`_simple`, then points at and between the borders of atoms."""
@@ -173,7 +181,10 @@ class AtomGroup:
                 if None not in (below, above) and below != above:
                     borders += self._border({**start}, name, index, low, high)
         borders = sorted(set(borders))
-        for value in (*borders, *(midpoint(low, high) for low, high in pairwise(borders))):
+        values = [*borders, *(midpoint(low, high) for low, high in pairwise(borders))]
+        if name in self._ints:
+            values = [float(whole) for value in values for whole in dict.fromkeys((floor(value), ceil(value)))]
+        for value in values:
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
@@ -212,6 +223,7 @@ class AtomGroup:
             for name, step in steps.items():
                 low, high = sides[name]
                 steps[name] = step / 2
+                step = float(max(1, round(step))) if name in self._ints else step
                 for value in (min(best[name] + step, high), max(best[name] - step, low)):
                     point = {**best, name: value}
                     values, point_deficit = self._values(point), self._deficit(point, goals)
@@ -270,6 +282,9 @@ def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expressio
             stack.append((node.args[0], holds))
         elif isinstance(node, Op) and node.op == ("min" if holds else "max"):
             stack += [(part, holds) for part in node.args]
+        elif isinstance(node, Op) and node.op == "max" and len(node.args) == 2 and _is_negative(node.args[1]):
+            # A least value below 0, as in the atom of an enum, makes a plateau, and never decides the sign.
+            stack.append((node.args[0], holds))
         elif isinstance(node, Op) and node.op == "neg":
             stack.append((node.args[0], not holds))
         else:
@@ -278,6 +293,10 @@ def _sign_parts(expression: Expression, holds: bool) -> Iterator[tuple[Expressio
 
 def _is_positive(node: Expression) -> bool:
     return isinstance(node, Const) and node.value > 0
+
+
+def _is_negative(node: Expression) -> bool:
+    return isinstance(node, Const) and node.value < 0
 
 
 def atom_groups(fspa: Fspa) -> tuple[AtomGroup, ...]:

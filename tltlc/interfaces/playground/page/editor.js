@@ -141,6 +141,7 @@ function kindOf(piece, before, after, value, index) {
   if (words.has(piece)) return "word";
   if (/^(within|for|after)$/.test(piece) && BEFORE_BOUND.has(before)) return "word";
   if (piece === "for" && before.startsWith('"')) return "word";
+  if (piece === "is" && /[\w)]$/.test(before) && !words.has(before) && /^\s+\w/.test(after)) return "word";
   if (piece === "in" && /^\s*[[(]/.test(after)) return "word";
   if (/^(step|expect)$/.test(piece) && /(^|\n)[ \t]*$/.test(value.slice(Math.max(0, index - 40), index))) return "word";
   return "";

@@ -74,18 +74,22 @@ function toggle({ name, follows }, letter, index) {
   });
 }
 
-function setter({ name, type, slider, low, high }, letter, index) {
+function setter({ name, type, values, slider, low, high }, letter, index) {
   const label = `${name} at step ${index + 1}`;
   const set = (value) => {
     letter.signals[name] = value;
     handlers.changed();
   };
   if (type === "bool") return element("input", { type: "checkbox", "aria-label": label, change: (event) => set(Number(event.target.checked)) });
+  if (values.length) {
+    const options = values.map((value, number) => element("option", { value: number }, value));
+    return element("select", { "aria-label": label, change: (event) => set(Number(event.target.value)) }, options);
+  }
   const read = (event) => event.target.value !== "" && Number.isFinite(event.target.valueAsNumber) && set(event.target.valueAsNumber);
-  const step = (slider[1] - slider[0]) / 200;
+  const step = type === "int" ? 1 : (slider[1] - slider[0]) / 200;
   return [
     element("input", { type: "range", min: slider[0], max: slider[1], step, "aria-label": label, input: read }),
-    element("input", { type: "number", min: low, max: high, step: "any", "aria-label": `${label}, as a number`, input: read }),
+    element("input", { type: "number", min: low, max: high, step: type === "int" ? 1 : "any", "aria-label": `${label}, as a number`, input: read }),
   ];
 }
 
@@ -94,7 +98,7 @@ function fill(row, letter, step, mode, columns) {
     const { name, follows } = columns[index];
     const holds = follows ? step?.values?.[index] > 0 : letter.atoms.includes(name);
     const value = mode === "atoms" ? holds : (letter.signals?.[name] ?? 0);
-    for (const input of cell.querySelectorAll("input")) {
+    for (const input of cell.querySelectorAll("input, select")) {
       if (input.type === "checkbox") input.checked = Boolean(value);
       else if (input !== document.activeElement) input.value = input.type === "number" ? shown(value) : value;
     }
