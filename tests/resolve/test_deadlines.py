@@ -153,3 +153,54 @@ def test_timers_agree_with_unfolding_on_random_formulas(monkeypatch: pytest.Monk
 @pytest.mark.slow
 def test_timers_agree_with_unfolding_on_many_random_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
     assert agree_on_random_formulas(2, 2000, monkeypatch) > 400
+
+
+def test_few_states_are_unfolded_and_many_get_timers() -> None:
+    (small,) = compile_text(f"{SIGNALS}spec s {{ keep a implies eventually within 62 steps b }}")
+    (large,) = compile_text(f"{SIGNALS}spec s {{ keep a implies eventually within 63 steps b }}")
+    (both,) = compile_text(f"{SIGNALS}spec s {{ keep within 7 steps of a, b keep within 7 steps of b, c }}")
+    assert not small.registers
+    assert len(large.states) == 3
+    assert [register.kind for register in both.registers].count("waiting") == 2
+
+
+def test_a_bound_without_a_rule_is_unfolded() -> None:
+    (fspa,) = compile_text(f"{SIGNALS}spec s {{ reach next always for 70 steps a }}")
+    assert not fspa.registers
+    assert len(fspa.states) > 70
+
+
+def test_ten_long_deadlines_need_three_states() -> None:
+    signals = "".join(f"signal p{index}: bool\nsignal q{index}: bool\n" for index in range(10))
+    clauses = "".join(f"keep within 10 min of p{index}, q{index}\n" for index in range(10))
+    (fspa,) = compile_text(f"clock 60 Hz\n{signals}spec s {{ {clauses} }}")
+    assert len(fspa.states) == 3
+
+
+def test_waiting_for_an_answer_costs_no_distance(monkeypatch: pytest.MonkeyPatch) -> None:
+    clause = "keep a implies eventually within 5 steps b"
+    unfolded, timed = compiled(clause, monkeypatch, 10**9), compiled(clause, monkeypatch, 0)
+    trace = [(True, False, False)] + [(False, False, False)] * 5
+    for fspa in (unfolded, timed):
+        assert [fspa.states[step.state].distance for step in steps(fspa, trace)] == [1] * 5 + [None]
+
+
+@pytest.mark.parametrize(
+    ("form", "meaning"),
+    [
+        ("reach a then within 3 steps b", "require eventually (a and next F[0,2] b)"),
+        ("reach a then within 3 steps b then c", "require eventually (a and next F[0,2] (b and next eventually c))"),
+        ("reach a then b then within 3 steps c", "require eventually (a and next eventually (b and next F[0,2] c))"),
+        ("keep within 3 steps of a, b", "keep a implies F[0,3] b"),
+        ("require within 3 steps of a, b", "require a implies F[0,3] b"),
+    ],
+)
+def test_spellings_of_deadlines_have_their_meaning(form: str, meaning: str) -> None:
+    (written,), (meant,) = (compile_text(f"{SIGNALS}spec s {{ {clause} }}") for clause in (form, meaning))
+    assert written == meant
+
+
+def test_then_within_no_steps_is_an_error() -> None:
+    with pytest.raises(TltlError) as caught:
+        compile_text(f"{SIGNALS}spec s {{ reach a then within 0 steps b }}")
+    assert [problem.code for problem in caught.value.diagnostics] == ["TLT0312"]

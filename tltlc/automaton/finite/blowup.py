@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Final, NamedTuple
 
@@ -16,7 +16,7 @@ from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.spec import Conjunct, Spec
+from tltlc.resolve.spec import Bound, Conjunct, Spec
 
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
 _RECURSION_ROOM = 10_000
@@ -118,7 +118,25 @@ def error_with_clauses(
     if isinstance(reason, TooManyPrimes):
         return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _guard_advice(spec, reason))])
     title = f"the automaton of `{spec.name}` {too_large}"
+    if bound := longest_bound(alone or sizes):
+        advice = bound_advice(bound)
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
+
+
+def longest_bound(parts: Iterable[Conjunct]) -> Bound | None:
+    """Return the longest bound that is unfolded to states in some clauses; None if none is."""
+    return max((bound for part in parts for bound in part.bounds), key=lambda bound: bound.samples, default=None)
+
+
+def bound_advice(bound: Bound) -> str:
+    """Return how to write a bound that becomes states so that it needs none."""
+    if bound.operator in ("next", "X", "○", "weak_next", "N"):
+        return "shorten it, or choose a slower `clock`"
+    text = " ".join(bound.source.slice(bound.span).split())
+    form = f"`keep p implies {bound.operator} {text} q`"
+    return (
+        f"{form} needs no states if `p` and `q` are about one sample; otherwise shorten it, or choose a slower `clock`"
+    )
 
 
 def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
@@ -140,7 +158,7 @@ def _cause_label(part: Conjunct) -> Label:
     Long bounds make automata large: a bound of n samples may have to be counted from n different
     starts at once.
     """
-    bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
+    bound = longest_bound([part])
     if bound is None:
         return Label(part.source, part.span, "because of this part")
     return Label(bound.source, bound.span, "because of this bound")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from tltlc.automaton.finite.blowup import bound_advice
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.walk import parts
 from tltlc.tools.lint.file_view import FileView, SpecView
@@ -40,7 +41,7 @@ def _finding(spec: SpecView, states: int) -> RuleFinding:
         return RuleFinding(
             title,
             (label,),
-            "shorten it, choose a slower `clock`, or ask about the past, as in `time_holding(p) >= 60 s`",
+            bound_advice(worst),
         )
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember a lot"
