@@ -247,7 +247,8 @@ def test_names_of_macros_are_avoided(compiler: str, tmp_path: Path) -> None:
 
 def test_names_of_headers_do_not_clash() -> None:
     """The name of a spec with one suffix never equals the name of another spec with another suffix."""
-    suffixes = set(re.findall(r"\bZ_(\w+)", header_of(replace(cover_and_hide(), name="Z"))))
+    fspas = (cover_and_hide(), CASES["counts"]().fspa)
+    suffixes = {name for fspa in fspas for name in re.findall(r"\bZ_(\w+)", header_of(replace(fspa, name="Z")))}
     assert {"monitor", "step", "verdict_name"} <= suffixes
     for name in suffixes:
         assert not [other for other in suffixes if name.endswith(f"_{other}")], name

@@ -18,14 +18,17 @@ from typing import Any, Final
 import pytest
 
 from tests.backends.monitors import Programs, Sample, expected, trace_of
+from tests.backends.strategies import HOSTILE
+from tests.backends.test_javascript import awkward
 from tests.tools.conformance.runner import Runner, runners
 from tests.waiting import HANG_S
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.core.record import record, replace
-from tltlc.expression.tree import Condition, Const, Expression, SignalValue, When
+from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When
 from tltlc.monitor import Monitor, MonitorError
+from tltlc.resolve.spec import Register, Signal
 
 TEXT: Final = """\
 signal x: number
@@ -452,3 +455,41 @@ def test_deep_updates_fit_into_a_function(runner: Runner, tmp_path: Path) -> Non
     registers = tuple(replace(each, update=value) if each.kind == "last" else each for each in fspa.registers)
     samples = [{"x": step / 20 - 0.75} for step in range(30)]
     run_traces(runner, tmp_path, replace(fspa, registers=registers), samples)
+
+
+NAMES: Final = (*HOSTILE, "register", "registers", "before", "x", "r_before", "r", "REGISTERS", "Registers", "starts")
+
+
+@pytest.mark.parametrize("runner", [pytest.param(runner, id=runner.name) for runner in runners()])
+def test_hostile_names_of_registers_stay_distinct_and_do_not_become_code(runner: Runner, tmp_path: Path) -> None:
+    """Each register has the name of an atom that reads it; in each sample another atom limits the progress."""
+    if runner.missing():
+        pytest.skip(str(runner.missing()))
+    names = [name.replace("\0", "") for name in NAMES]
+    fspa, _ = awkward(names)
+    signals = tuple(Signal(f"x{place}", "number", -1.0, 1.0) for place in range(len(names)))
+    registers = tuple(
+        Register(
+            name,
+            "last",
+            "",
+            -1.0,
+            1.0,
+            -1.0,
+            Op("min", (SignalValue(signal.name), Op("+", (Before(name), Const(2.0))))),
+        )
+        for name, signal in zip(names, signals, strict=True)
+    )
+    last = replace(registers[-1], update=Op("/", (Const(1.0), SignalValue(signals[-1].name))))
+    fspa = replace(fspa, signals=signals, registers=(*registers[:-1], replace(last, low=None, high=None)))
+    samples = [
+        {signal.name: -0.25 if at == place else 0.5 for at, signal in enumerate(signals)}
+        for place in range(len(names) - 1)
+    ]
+    programs = Programs(runner, tmp_path, [fspa])
+    ((status, out, _),) = programs.run((0, trace_of(samples, [signal.name for signal in signals])))
+    assert (status, out) == expected(fspa, samples)[:2]
+    samples.append(dict.fromkeys(samples[0], 0.0))
+    ((status, _, errors),) = programs.run((0, trace_of(samples, [signal.name for signal in signals])))
+    assert status == 1
+    assert errors.startswith(f"error: step {len(samples)}: the register `starts` divides by zero\n")

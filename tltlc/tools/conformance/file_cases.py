@@ -27,6 +27,7 @@ _ABOUT: Final = {
     "recall": "Numbers of earlier samples.",
     "past": "Past operators.",
     "recurring": "Memory over infinite traces.",
+    "deadlines": "Deadlines beside memory of the trace so far.",
 }
 _RECORDED: Final = ("cover_and_hide", "navigation", "branching", "counting")
 
@@ -44,6 +45,7 @@ _POOLS: Final[dict[str, Pools]] = {
     "recall": {"health": (50.0, 60.0, 65.0), "height": (-3.0, 0.0, 5.0, 80.0), "speed": (-1.0, 0.0, 0.5, 2.0)},
     "past": {"x": (-1.0, -0.6, -0.0, 0.0, 0.25, 1.0)},
     "recurring": {"x": (0.0, 1.0, 5.0, 9.5)},
+    "deadlines": {"alarm": (0.0, 0.0, 0.0, 1.0), "hidden": (0.0, 1.0), "near": (-1.0, 0.0, 0.25, 1.0)},
 }
 
 

@@ -127,7 +127,7 @@ class BatchSamples:
         """
         if not self._fspa.registers:
             return BatchSampleValues(given, registers)
-        program, computations = self._from_atoms
+        program, computations = self._atom_program
         values, _ = program.run(torch.cat([given.to(self._dtype), registers]))
         atoms, after = registers.new_empty((len(self._fspa.atoms), self._count)), registers.clone()
         atoms[list(monitors.given_atoms(self._fspa))] = given.to(self._dtype)
@@ -136,7 +136,7 @@ class BatchSamples:
         return BatchSampleValues(narrow(torch.clamp(atoms, -1.0, 1.0), self._result_dtype), after)
 
     @cached_property
-    def _from_atoms(self) -> tuple[TensorExpressions, list[_Computation]]:
+    def _atom_program(self) -> tuple[TensorExpressions, list[_Computation]]:
         """The program of :meth:`from_atoms`, and what it computes."""
         fspa, given, following = self._fspa, monitors.given_atoms(self._fspa), monitors.registers_from_atoms(self._fspa)
         computations = [
@@ -171,7 +171,7 @@ class BatchSamples:
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """Return the values of the signals that the atoms use, shape [signals, N], with contiguous rows.
 
-        ``signals`` and the errors are those of :meth:`atom_values`.
+        ``signals`` and the errors are those of :meth:`values`.
         """
         if not isinstance(signals, Mapping):
             given = torch.as_tensor(signals)
@@ -299,8 +299,9 @@ def _rows(computations: Sequence[_Computation], is_atom: bool) -> list[int]:
     return [rows[index] for index in range(len(rows))]
 
 
-def _are_finite(values: Tensor) -> bool:
-    return bool(torch.isfinite(values).all())
+def _are_finite(registers: Tensor) -> bool:
+    """Whether all values are finite; without registers, nothing waits for the device."""
+    return not registers.shape[0] or bool(torch.isfinite(registers).all())
 
 
 def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
