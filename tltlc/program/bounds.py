@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Final, Literal
 
 from tltlc.core.record import record, replace
@@ -60,16 +60,17 @@ def range_between(low: float | None, high: float | None) -> ValueRange:
 
 
 def prove_ranges(
-    name: str, statements: Sequence[Statement], known: Mapping[str, ValueRange]
+    name: str, statements: Sequence[Statement], known: Mapping[str, ValueRange], limited: Collection[str] = ()
 ) -> tuple[tuple[Statement, ...], ValueRange | None]:
     """Replace ``divide`` by ``/`` where the divisor is never 0, and find the range of a variable.
 
     ``divide`` is a function that also reports a division by 0. Return the new statements, and the
     range of the variable ``name`` after them. The range is None if nothing is known about the
     value, or if it may be NaN. ``known`` maps the variables that exist before the statements to
-    their ranges.
+    their ranges. For the variables in ``limited``, the ``min`` of the variable and a number that it
+    never exceeds becomes the variable.
     """
-    facts = _Facts({ProgramVariable(variable): range_ for variable, range_ in known.items()}, frozenset())
+    facts = _Facts({ProgramVariable(variable): range_ for variable, range_ in known.items()}, frozenset(), limited)
     written = facts.statements(statements)
     return written, facts.range(ProgramVariable(name))
 
@@ -86,8 +87,9 @@ class _Facts:
         self,
         ranges: dict[ProgramExpression, ValueRange],
         ordered: frozenset[tuple[ProgramExpression, ProgramExpression]],
+        limited: Collection[str],
     ) -> None:
-        self._ranges, self._at_most_pairs = ranges, ordered
+        self._ranges, self._at_most_pairs, self._limited = ranges, ordered, limited
         self._cache: dict[ProgramExpression, ValueRange | None] = {}
         self._compared: set[ProgramExpression] = set()
         self.assigned_variables: dict[str, None] = {}
@@ -155,7 +157,7 @@ class _Facts:
         self.assigned_variables[name] = None
 
     def _copy(self) -> _Facts:
-        copied = _Facts(dict(self._ranges), self._at_most_pairs)
+        copied = _Facts(dict(self._ranges), self._at_most_pairs, self._limited)
         copied._compared = set(self._compared)
         return copied
 
@@ -206,6 +208,9 @@ class _Facts:
                 if divisor is not None and divisor.without_zero():
                     return BinaryNumber("/", left, right)
                 return NumericCall("divide", (left, right))
+            case NumericCall("min", (ProgramVariable(name) as variable, Real(greatest))) if name in self._limited:
+                known = self.range(variable)
+                return variable if known is not None and known.high <= greatest else node
             case NumericCall(function, args):
                 return NumericCall(function, tuple(map(self.rewrite, args)))
             case BinaryNumber(op, left, right):

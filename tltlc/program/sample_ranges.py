@@ -53,6 +53,8 @@ def prove_sample(
 ) -> dict[str, ProvedStatements]:
     """Replace ``divide`` by ``/`` where the divisor is never 0, and find the ranges of atoms and registers.
 
+    Also drop the maximum of a register where the register never exceeds it.
+
     ``computations`` maps the variables of atoms and registers to the statements that assign them, in
     the order in which a monitor computes them. ``known`` has the ranges of signals and params. The
     monitor clamps each atom to [-1, 1], and ends a step in which a register is not finite.
@@ -75,7 +77,7 @@ def _one_sample(
     for name, statements in computations.items():
         read = variables_read(statements) & ranges.keys()
         proved[name] = ProvedStatements(
-            *prove_ranges(name, statements, {variable: ranges[variable] for variable in read})
+            *prove_ranges(name, statements, {variable: ranges[variable] for variable in read}, registers)
         )
         checked = _ANY if name in registers else _ATOM
         ranges[name] = _common(proved[name].range, checked)

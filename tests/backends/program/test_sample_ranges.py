@@ -14,6 +14,7 @@ from tltlc.core.record import replace
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When
 from tltlc.monitor import Monitor
 from tltlc.program.build import program
+from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Register, Signal
 from tltlc.tools.conformance import memory
 from tltlc.tools.conformance.draw import Draw
@@ -62,6 +63,15 @@ def test_one_wrong_range_is_not_used_for_another_register() -> None:
     found = program(replace(fspa, registers=(*fspa.registers, copy_of_r)), ())
     assert found.always_finite == (True, True), "a finite number times one in [-1, 1]"
     assert found.always_in_range == (False,)
+
+
+@pytest.mark.parametrize(("limit", "kept"), [(2.0, True), (7.0, False), (9.0, False)])
+def test_a_maximum_that_a_register_never_exceeds_is_dropped(limit: float, kept: bool) -> None:
+    fspa = remembering(0.0, 7.0, 0.0, Op("min", (MORE, Const(7.0))))
+    value = Op("/", (Op("min", (SignalValue("r"), Const(limit))), Const(10.0)))
+    found = program(replace(fspa, atoms=(replace(fspa.atoms[0], expression=value),)), ())
+    assert ("min" in functions_called(found.values[0])) == kept
+    assert "min" in functions_called(found.updates[0])
 
 
 def test_statements_compute_the_registers_of_the_monitor() -> None:
