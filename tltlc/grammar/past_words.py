@@ -45,3 +45,16 @@ FUNCTIONS: Final = {
     "lowest": PastWord(("lowest(x)",), "The least value of x so far."),
 }
 """The functions by their names, which are not reserved."""
+
+SYNONYMS: Final = {
+    **dict.fromkeys(("count", "counter", "count_of"), "times"),
+    **dict.fromkeys(("prev", "pre", "old"), "previous"),
+    **dict.fromkeys(("duration", "how_long"), "time_holding"),
+    **dict.fromkeys(("elapsed", "elapsed_since"), "time_since"),
+    **dict.fromkeys(("rising", "rises", "rose", "begin", "starts"), "begins"),
+    **dict.fromkeys(("falling", "falls", "fell", "stops"), "ends"),
+    **dict.fromkeys(("max_so_far", "maximum"), "highest"),
+    **dict.fromkeys(("min_so_far", "minimum"), "lowest"),
+    "yesterday": "previously",
+}
+"""Names that functions and operators about the past have elsewhere."""

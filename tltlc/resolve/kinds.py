@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from tltlc.diagnostics.diagnostic import Fix, replacement_fix
-from tltlc.grammar import tree
+from tltlc.grammar import past_words, tree
 from tltlc.grammar.keywords import CONDITIONS
 from tltlc.grammar.mistakes.insertion import declaration_edit
 from tltlc.grammar.tree import CallExpr, Expr, GroupDecl, GroupExpr, NameExpr, SignalDecl
@@ -65,7 +65,14 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if use.name in MEMORY_FUNCTIONS and isinstance(use, NameExpr):
         argument = "p" if use.name in ("times", "time_since", "time_holding") else "x"
         raise problem("TLT0201", title, source, span, advice=f"for the function, write `{use.name}({argument})`")
+    if use.name == "time" and source.text[span.end :].lstrip().startswith("since "):
+        advice = "`time_since` is one word: write it as in `time_since(p) < 5 s`"
+        raise problem("TLT0201", title, source, span, advice=advice)
     gets_help = len(env.context.log) < _MOST_HINTS
+    past = past_words.SYNONYMS.get(use.name) if isinstance(use, CallExpr) and len(use.arguments) == 1 else None
+    if past and not closest_name(use.name, env.scope, kinds, env.local):
+        word = past_words.FUNCTIONS.get(past) or past_words.OPERATORS[past]
+        raise problem("TLT0201", title, source, span, advice=f"`{word.forms[0]}` may be meant: {word.meaning}")
     spaced = _split_operator_letters(use.name, env, kinds) if gets_help and noun == "predicate" else None
     if spaced:
         raise problem(

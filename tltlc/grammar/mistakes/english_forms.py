@@ -74,6 +74,8 @@ FOR_TIME: Final = {
     "then": Form("{c} then (always for {b} {a}) and next after {less} {a}"),
     "": Form("always for {b} {a}"),
 }
+HOLDING: Final = Form("time_holding({a}) >= {b}")
+"""How to write ``reach a for 3 s``. Steps need another form, because this time is in seconds."""
 AFTER_TIME: Final = {
     "reach": Form("next after {b} eventually {a}", "require"),
     "keep": Form("weak_next after {b} always {a}", "require"),
@@ -92,7 +94,7 @@ TIMES: Final[dict[str, Forms]] = {
 minus one step. The key `then` is for `c then a WORD TIME`. There, ``{c} and …`` makes the time begin
 at the step that reaches ``c``.
 """
-TIMED: Final = {form for forms in TIMES.values() for form in forms.values()}
+TIMED: Final = {HOLDING, *(form for forms in TIMES.values() for form in forms.values())}
 
 _PREFIX: Final = {"reach": Form("{b} and {a}"), "avoid": Form("{b} and {a}"), "": Form("{b} implies {a}")}
 PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)

@@ -6,7 +6,7 @@ from typing import Final
 
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, SEQUENCE, TIMED, Form
+from tltlc.grammar.mistakes.english_forms import CONDITION, FORMS, HOLDING, SEQUENCE, TIMED, Form
 from tltlc.grammar.mistakes.one_reading import effective_clause, has_always_before, is_clear_here
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
 from tltlc.grammar.mistakes.rephrasing import formula_start, suggest_rewrite
@@ -41,7 +41,7 @@ def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: F
         # `b` may be a later goal, or something that must not happen before `a`.
         text = ""
     if parts and text:
-        reason = ((word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
+        reason = (form != HOLDING and (word.text == "for" or not is_timed) and _REASONS.get((word.text, kind))) or (
             (_WHERE if _is_of_every_step(failure, at) else _ONCE) if form == CONDITION[""] else ""
         )
         diagnostic = suggest_rewrite(failure, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
@@ -98,7 +98,7 @@ class Parts:
 def _general_help(failure: ParseFailure, at: int, form: Form) -> str:
     """Return a help text that shows ``form`` with the letters a, b and c: "write `b implies a` for `a if b`"."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in TIMED, at == 0 or at < failure.stop.index
-    time = Time("20", "steps") if is_timed else None
+    time = Time("3", "s") if form == HOLDING else Time("20", "steps") if is_timed else None
     parts = Parts("a", time.text if time else "b", "c", time)
     infix = "followed by" if word == "followed" else word
     english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"

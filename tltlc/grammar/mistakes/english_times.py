@@ -6,7 +6,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
-from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, IN_TIME, Forms
+from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, Forms
 from tltlc.grammar.mistakes.english_rewrite import Parts, Time, clause_keyword, goal_starts, rewrite_error
 from tltlc.grammar.mistakes.one_reading import (
     QUANTIFIERS,
@@ -21,6 +21,7 @@ from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
+_IN_SECONDS: Final = ("s", "ms", "min", "h")
 
 
 def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
@@ -46,6 +47,8 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         before, form, is_clear = "", forms[""], _is_clear_time(failure, begin, forms)
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
         is_clear = is_clear and not has_token(failure, formula_start(failure), at, TEMPORAL | QUANTIFIERS)
+    if form == FOR_TIME["reach"] and time.steps is None and time.unit in _IN_SECONDS:
+        form = HOLDING
     if kind != "keep":
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
@@ -65,6 +68,8 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if at == first:
         form = forms.get(kind, forms[""])
+        if form == FOR_TIME["reach"] and time.steps is None and time.unit in _IN_SECONDS:
+            form = HOLDING
         has_own_form = form != forms[""]
         is_clear = is_clear and (
             has_own_form or (_is_clear_time(failure, at, forms) and not has_token(failure, second, stop, INFIX))

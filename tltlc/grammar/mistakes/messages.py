@@ -33,6 +33,7 @@ from tltlc.grammar.mistakes.parse_failure import (
     declares_clock,
     quote_token,
 )
+from tltlc.grammar.mistakes.past import never_counted, past_in_english
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.renaming import word_of_the_past
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, span_of, suggest_rewrite, text_of
@@ -347,6 +348,8 @@ def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
 _RULES: Final = (
     dash_comment,
     unknown_sign,
+    never_counted,
+    past_in_english,
     plain_english,
     comparison_in_words,
     filler_word,

@@ -139,7 +139,7 @@ class ParseFailure:
         items = []
         if self.wants_operator:
             items.append("an operator")
-            allowed -= INFIX | ARITHMETIC | {"UNIT", "LPAR", "IS"}
+            allowed -= INFIX | ARITHMETIC | {"UNIT", "LPAR", "IS", "SINCE"}
         items += [text for kind, text in _KINDS.items() if kind in allowed]
         signs = _spellings({**load().soft, **load().signs})
         items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]

@@ -62,7 +62,9 @@ def operand_text(failure: ParseFailure, start: int, stop: int) -> str:
         operator = OPERATORS[failure.tokens[start].text]
         start += 1
     text = text_of(failure, start, stop)
-    is_compound = any(failure.tokens[index].type in LOOSE for index in outer_indices(failure.tokens, start, stop))
+    outer = [failure.tokens[index] for index in outer_indices(failure.tokens, start, stop)]
+    # The token of `since` is a name, because it is not reserved.
+    is_compound = any(token.type in LOOSE or token.text == "since" for token in outer)
     return f"{operator} {f'({text})' if is_compound else text}".strip()
 
 
