@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
+from tltlc.automaton.memory_phrases import spoken
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.text.counts import NUMBERS, CountPrinter, foreign_range_text, range_text
 from tltlc.logic.text.phrases import with_opposites
@@ -19,7 +20,8 @@ _ENDS: Final = "The trace must end here."
 
 def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
     """Return the formula of an automaton in a notation."""
-    return _text(fspa.formula, notation, endless=fspa.semantics == "infinite")
+    formula = _in_words(fspa.formula, fspa) if notation == "english" else fspa.formula
+    return _text(formula, notation, endless=fspa.semantics == "infinite")
 
 
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
@@ -36,7 +38,12 @@ def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:
             return _GOES_ON
         if label is FALSE and accepting:
             return _ENDS
-    return _text(label, notation, endless=endless)
+    return _text(_in_words(label, fspa) if notation == "english" else label, notation, endless=endless)
+
+
+def _in_words(label: Formula | Text, fspa: Fspa) -> Formula | Text:
+    """Return a formula with phrases for what atoms remember; a formula of another tool is returned unchanged."""
+    return label if isinstance(label, Text) else spoken(label, fspa)
 
 
 def label_range_text(fspa: Fspa, first: int, last: int, notation: Notation = "english") -> str:

@@ -9,6 +9,7 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
 from tltlc.automaton.memory import given_atoms
+from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import formula_text, label_range_text, label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
@@ -166,7 +167,9 @@ def explain(fspa: Fspa) -> Explanation:
         english=formula_text(fspa),
         semantics=fspa.semantics,
         level=fspa.level,
-        outline=_outline(formula, endless=fspa.semantics == "infinite") if isinstance(formula, Formula) else None,
+        outline=_outline(spoken(formula, fspa), endless=fspa.semantics == "infinite")
+        if isinstance(formula, Formula)
+        else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
         memory=tuple(_remembered(register) for register in fspa.registers if register.kind not in ("last", "first")),
         failures=_failures(fspa, guards),
@@ -195,8 +198,8 @@ def _outline(formula: Formula, *, endless: bool) -> Outline:
 
 
 def _guards(fspa: Fspa) -> tuple[Formula, ...]:
-    """Return the guard of each edge as a formula."""
-    return tuple(_formula(fspa, edge.guard) for edge in fspa.edges)
+    """Return the guard of each edge as a formula for people."""
+    return tuple(spoken(_formula(fspa, edge.guard), fspa) for edge in fspa.edges)
 
 
 def _formula(fspa: Fspa, guard: Guard) -> Formula:
