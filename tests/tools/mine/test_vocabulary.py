@@ -163,3 +163,14 @@ def test_an_error_in_a_step_names_its_trace() -> None:
     vocabulary = vocabulary_of_library(SourceFile("game.tltl", text), {"a", "b"}, ResolveOptions())
     with pytest.raises(TltlError, match=r"`two.csv`, step 2: `a` and `b` hold at once"):
         read_traces([TraceFile("one.csv", b"a,b\n0,1\n"), TraceFile("two.csv", b"a,b\n0,1\n1,1\n")], vocabulary)
+
+
+def test_atoms_that_remember_the_trace_so_far_are_left_out() -> None:
+    library = """
+    signal seen: bool
+    signal hp in [0, 9]
+    predicate falling in [-1, 1] = clamp(previous(hp) - hp, -1, 1)
+    spec s { keep times(seen) <= 3  keep seen implies once seen }
+    """
+    # A game may even record a column with the name of a count.
+    assert names(library, {"seen", "hp", "times(seen)", "previous(hp)"}) == ["seen"]

@@ -18,7 +18,6 @@ from tltlc.core.names import full_name, split_name
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
-from tltlc.expression.tree import SignalValue, nodes
 from tltlc.grammar.tree import Module, Parameter, SignalDecl, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
@@ -71,13 +70,7 @@ def vocabulary_of_library(library: SourceFile, columns: Collection[str], options
     names = session.resolution.env.scope.names
     missing = tuple(name for name in _entities(columns) if name not in names and _declares(f"entity {name}\n"))
     own = [name for name, binding in names.items() if binding.kind == "entity"]
-    # Candidates are about one sample: what an atom remembers would be changed by each change of a trace.
-    spec_atoms = [
-        atom.name
-        for spec in session.resolution.program.specs
-        for atom in spec.atoms
-        if not {register.name for register in spec.registers}.intersection(names_read(atom.expression))
-    ]
+    spec_atoms = [atom.name for spec in session.resolution.program.specs for atom in spec.atoms]
 
     extended = _with_entities(library, missing)
     module = _module(extended)
@@ -241,16 +234,14 @@ def _readable_atoms(
 ) -> Vocabulary | None:
     """Return the atoms among ``texts``, such as `near(s1)`, whose signals are all columns of the traces.
 
-    Return None if there is no such atom.
+    Atoms that remember the trace so far are left out: a candidate is about letters that may stand
+    anywhere. Return None if there is no atom left.
     """
     resolved = _resolve(module, texts, options)
     if resolved is None:
         return None
-    names = [
-        atom.name
-        for atom in resolved.atoms
-        if all(node.name in columns for node in nodes(atom.expression) if isinstance(node, SignalValue))
-    ]
+    readable = {*columns} - {register.name for register in resolved.registers}
+    names = [atom.name for atom in resolved.atoms if readable.issuperset(names_read(atom.expression))]
     if names == list(texts):
         return resolved
     return _resolve(module, names, options) if names else None
