@@ -36,3 +36,11 @@ def test_the_goal_closest_to_acceptance_comes_first() -> None:
     task = load_task("import spatial\nentity a, b\nspec either = (F (near(a) & X F near(b))) | F near(b)")
     sample = {"distance(a)": 9.0, "distance(b)": 9.0}
     assert next_goals(task.fspa, 0, sample, {"level_size": 20.0}, ("a", "b"))[0] == "b"
+
+
+def test_a_goal_that_needs_a_remembered_atom_does_not_count() -> None:
+    task = load_task(
+        "import spatial\nentity a, b\nsignal seen: bool\nspec s = F (near(a) & times(seen) > 1) | F near(b)"
+    )
+    sample = {"distance(a)": 9.0, "distance(b)": 9.0, "seen": 0.0}
+    assert next_goals(task.fspa, 0, sample, {"level_size": 20.0}, ("a", "b")) == ("b",)

@@ -19,8 +19,8 @@ def next_goals(
 
     The guards of the edges towards acceptance are disjunctions of prime implicants. In each of
     these, some atoms depend on the distance to an entity in ``places``. All other atoms must already
-    have the required truth values in ``sample``, otherwise the implicant does not count. ``sample``
-    has the values of the spec's signals, and ``params`` those of its params, by name and in SI units.
+    have the required truth values in ``sample``, otherwise the implicant does not count. Nor does it
+    count if an atom in it remembers the trace so far, which ``sample`` does not show. ``sample`` has the values of the spec's signals, and ``params`` those of its params, by name and in SI units.
     """
     current = fspa.states[state].distance
     if not current:
@@ -29,8 +29,11 @@ def next_goals(
     signals = {name: float(sample[name]) for name in {signal.name for signal in fspa.signals}}
     distances = {name: entity for name, entity in distance_signals(fspa).items() if entity in places}
     entities = [_entity(atom, distances) for atom in fspa.atoms]
+    registers = frozenset(register.name for register in fspa.registers)
     settled = [
-        None if entity is not None else expressions.evaluate(atom.expression, signals, values) > 0.0
+        None
+        if entity is not None or not registers.isdisjoint(_read(atom))
+        else expressions.evaluate(atom.expression, signals, values) > 0.0
         for atom, entity in zip(fspa.atoms, entities, strict=True)
     ]
     candidates: list[tuple[int, str]] = []
@@ -49,7 +52,8 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 
     ``entities`` has, for each atom of the spec, the entity on whose distance the atom depends; None
     if it depends on no distance. ``settled`` says, for each atom without an entity, whether it holds
-    now. The result is empty if such an atom does not have the truth value that the implicant requires.
+    now; None if this is not known. The result is empty if such an atom does not have the truth value
+    that the implicant requires.
     """
     goals = []
     for atom, holds in implicant:
@@ -67,8 +71,12 @@ def _entity(atom: Atom, distances: Mapping[str, str]) -> str | None:
 
     ``distances`` maps the names of distance signals to entities, as :func:`distance_signals` does.
     """
-    read = (node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue))
-    return next((distances[name] for name in read if name in distances), None)
+    return next((distances[name] for name in _read(atom) if name in distances), None)
+
+
+def _read(atom: Atom) -> list[str]:
+    """Return the names of the signals and registers that an atom reads."""
+    return [node.name for node in expressions.nodes(atom.expression) if isinstance(node, expressions.SignalValue)]
 
 
 def distance_signals(fspa: Fspa) -> dict[str, str]:

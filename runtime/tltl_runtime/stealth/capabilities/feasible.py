@@ -110,6 +110,8 @@ def _impossible_atoms(level: StealthLevel, reach: Reach, fspa: Fspa) -> frozense
         # A sample outside the declared range is clamped to it.
         least, most = _ends(signal.low, signal.high)
         box[expressions.SignalValue(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
+    for register in fspa.registers:
+        box[expressions.SignalValue(register.name)] = _ends(register.low, register.high)
     known_params = params_from_level(level, fspa)
     for param in fspa.params:
         value = known_params.get(param.name, param.value)

@@ -262,3 +262,11 @@ def test_shipped_levels_need_a_small_part_of_the_work_limit() -> None:
     for name, variant in SHIPPED:
         budget = Budget(WORK["cells of reachable space"] // 20)
         assert compute_reach(load_level(name, variant), budget=budget).highest >= 0.0
+
+
+def test_what_is_remembered_of_a_place_out_of_reach_is_no_error_by_itself() -> None:
+    level = room(wall(0.0, 4.0))
+    text = "import spatial\nentity exit\nspec out { limit 9 steps  reach once near(exit) or times(near(exit)) < 1 }"
+    (warning,) = reach_warnings(level, load_task(text).fspa)
+    assert (warning.code, warning.severity) == ("TLT0814", "warning")
+    assert not is_infeasible(level, load_task(text).fspa)
