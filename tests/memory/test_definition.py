@@ -118,8 +118,8 @@ def test_monitors_agree_with_the_definition(seed: int) -> None:
 
 @pytest.mark.slow
 def test_monitors_agree_with_the_definition_on_a_hundred_thousand_runs() -> None:
-    for seed in range(12_500):
-        check_seed(seed, traces=8)
+    # About one random spec in seven is in error.
+    assert sum(check_seed(seed, traces=8) for seed in range(15_000)) >= 100_000
 
 
 @times(150)
