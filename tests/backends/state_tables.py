@@ -18,7 +18,8 @@ from tltlc.program import shapes
 @cache
 def counting(seconds: float = 10.0) -> Fspa:
     """Return an automaton that counts the steps of some seconds: 602 states by default."""
-    rule = f"spec quiet {{ keep pit implies next always for {seconds} s not pit }}"
+    # A timer would keep the bound without `and true`.
+    rule = f"spec quiet {{ keep pit implies next (always for {seconds} s not pit and true) }}"
     (fspa,) = compile_text(f"clock 60 Hz\nsignal pit: bool\n{rule}\n")
     return fspa
 

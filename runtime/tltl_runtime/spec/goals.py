@@ -20,7 +20,8 @@ def next_goals(
     The guards of the edges towards acceptance are disjunctions of prime implicants. In each of
     these, some atoms depend on the distance to an entity in ``places``. All other atoms must already
     have the required truth values in ``sample``, otherwise the implicant does not count. Nor does it
-    count if an atom in it remembers the trace so far, which ``sample`` does not show. ``sample`` has the values of the spec's signals, and ``params`` those of its params, by name and in SI units.
+    count if an atom in it remembers the trace so far, which ``sample`` does not show. ``sample`` has
+    the values of the spec's signals, and ``params`` those of its params, by name and in SI units.
     """
     current = fspa.states[state].distance
     if not current:

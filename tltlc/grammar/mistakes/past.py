@@ -99,7 +99,10 @@ def _counted(failure: ParseFailure, keyword: str, start: int, end: int) -> Diagn
 
 
 def _number(tokens: Sequence[Token], at: int) -> tuple[str, int] | None:
-    """Return the number of `3 times` or `twice` at an index, as digits, and the index after it; None if there is none."""
+    """Return the number of `3 times` or `twice` at an index, as digits, and the index after it.
+
+    Return None if there is no such number.
+    """
     if at < len(tokens) and tokens[at].text in _NUMBERS:
         return _NUMBERS[tokens[at].text], at + 1
     if at + 1 < len(tokens) and tokens[at].type == "NUMBER" and tokens[at + 1].text in ("times", "time", "x"):
