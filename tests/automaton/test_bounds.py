@@ -9,6 +9,7 @@ import sys
 import pytest
 
 import tltlc
+from tests.unfolded import unfolded
 from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.finite.readback import ObligationWriter
 from tltlc.automaton.finite.successors import Successors
@@ -24,9 +25,10 @@ A, B = f.atom("a"), f.atom("b")
 
 
 def compiled(formula: str, semantics: str) -> Fspa:
-    (fspa,) = tltlc.compile_text(
-        f"signal a: bool signal b: bool signal c: bool spec s {{ semantics {semantics} require {formula} }}"
-    )
+    with unfolded():
+        (fspa,) = tltlc.compile_text(
+            f"signal a: bool signal b: bool signal c: bool spec s {{ semantics {semantics} require {formula} }}"
+        )
     return fspa
 
 

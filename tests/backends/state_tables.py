@@ -8,6 +8,7 @@ from functools import cache
 from math import inf
 from unittest.mock import patch
 
+from tests.unfolded import unfolded
 from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -18,9 +19,9 @@ from tltlc.program import shapes
 @cache
 def counting(seconds: float = 10.0) -> Fspa:
     """Return an automaton that counts the steps of some seconds: 602 states by default."""
-    # A timer would keep the bound without `and true`.
-    rule = f"spec quiet {{ keep pit implies next (always for {seconds} s not pit and true) }}"
-    (fspa,) = compile_text(f"clock 60 Hz\nsignal pit: bool\n{rule}\n")
+    rule = f"spec quiet {{ keep pit implies next always for {seconds} s not pit }}"
+    with unfolded():
+        (fspa,) = compile_text(f"clock 60 Hz\nsignal pit: bool\n{rule}\n")
     return fspa
 
 

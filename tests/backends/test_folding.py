@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tests.fuzzing import times
+from tests.unfolded import unfolded
 from tltlc import compile_text
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Notation, Text
 from tltlc.automaton.text import label_range_text, label_text
@@ -21,7 +22,8 @@ from tltlc.logic.formula import atom
 
 
 def automaton(formula: str) -> Fspa:
-    (fspa,) = compile_text(f"clock 1 Hz signal a: bool signal b: bool signal c: bool spec s = {formula}")
+    with unfolded():
+        (fspa,) = compile_text(f"clock 1 Hz signal a: bool signal b: bool signal c: bool spec s = {formula}")
     return fspa
 
 

@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.backends.strategies import hostile_automata
 from tests.fixtures import cover_and_hide
+from tests.unfolded import unfolded
 from tltlc import backends, compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -82,7 +83,8 @@ def test_folded_runs_are_marked_in_the_picture() -> None:
 
 
 def test_runs_that_count_in_step_are_folded() -> None:
-    (fspa,) = compile_text("clock 1 Hz signal a: bool signal b: bool spec both = F[0,100] a & F[0,100] b")
+    with unfolded():
+        (fspa,) = compile_text("clock 1 Hz signal a: bool signal b: bool spec both = F[0,100] a & F[0,100] b")
     picture = draw_svg(fspa, Options(report=lambda note: pytest.fail(note.title)))
     assert "Dashed: 294 of the 303 states, folded." in text_of(picture)
     states = [number for group in picture.iter(f"{SVG}g") for number in group.get("data-states", "").split()]
