@@ -121,6 +121,13 @@ def test_declared_names_keep_their_meaning() -> None:
     assert re.search(r"write `Y\(e\)`", error.help or "")
 
 
+@pytest.mark.parametrize("clause", ["keep Y e", "keep has key", "keep a S b"])
+def test_what_may_be_an_imported_name_is_no_past_operator(clause: str) -> None:
+    text = f"import stealth\nspec s {{ {clause} }}"
+    error = parse(SourceFile("a.tltl", text))[1][0]
+    assert not re.search("previously|once|since", error.help or "")
+
+
 def test_an_operand_with_since_is_put_in_brackets() -> None:
     text, error = _error("avoid hidden since seen before alarm")
     fixed = apply_edits(SourceFile("a.tltl", text), error.fixes[0].edits) if error.fixes else None

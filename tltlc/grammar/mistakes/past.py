@@ -16,6 +16,8 @@ from tltlc.grammar.mistakes.rephrasing import formula_start, span_of, suggest_re
 _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically"}
 """The letters of past operators in the literature."""
 _HAS_HELD: Final = ("was", "were", "had", "has", "have", "been", "ever", "already")
+_AUXILIARIES: Final = ("had", "has", "have")
+"""Words that mean `once` only before `been`: a predicate may be called `has`."""
 _TIME_UNITS: Final = ("s", "ms", "min", "h")
 _STEPS: Final = ("step", "steps")
 _COUNTS: Final = {
@@ -150,13 +152,13 @@ def _prefix(failure: ParseFailure) -> Diagnostic | None:
     if tokens[at].type != "NAME" or end is None or at + 1 != failure.stop.index or _is_declared(word, failure):
         return None
     operand, title = text_of(failure, at + 1, end), f"{quote_token(tokens[at])} is not an operator"
-    if word in _LETTERS:
+    if word in _LETTERS and not _imports(failure):
         return suggest_rewrite(failure, at, end, f"{_LETTERS[word]} {operand}", title)
     if word == "previous":
         around = {tokens[end].type, tokens[at - 1].type if at else ""}
         text = f"previous({operand})" if around & ARITHMETIC else f"previously {operand}"
         return suggest_rewrite(failure, at, end, text, "`previous` takes brackets" if around & ARITHMETIC else title)
-    if word in _HAS_HELD:
+    if word in _HAS_HELD and (word not in _AUXILIARIES or tokens[at + 1].text == "been"):
         first = next(index for index in range(at, len(tokens)) if tokens[index].text not in _HAS_HELD)
         if (end := _operand_end(tokens, first)) is not None:
             return failure.error("TLT0101", title, _once_help(text_of(failure, first, end)), span=tokens[at].span)
@@ -174,7 +176,11 @@ def _postfix(failure: ParseFailure) -> Diagnostic | None:
     if start is None:
         return None
     title = f"{quote_token(failure.token)} is not an operator"
-    if word == "S" and not _is_declared(word, failure) and (end := _operand_end(tokens, at + 1)) is not None:
+    if (
+        word == "S"
+        and not (_is_declared(word, failure) or _imports(failure))
+        and (end := _operand_end(tokens, at + 1)) is not None
+    ):
         text = f"{text_of(failure, start, at)} since {text_of(failure, at + 1, end)}"
         return suggest_rewrite(failure, start, end, text, title)
     if word in ("begins", "ends") and _operand_end(tokens, at + 1) is None:
@@ -215,3 +221,8 @@ def _operand_start(tokens: Sequence[Token], stop: int) -> int | None:
 def _is_declared(name: str, failure: ParseFailure) -> bool:
     """Whether the file seems to declare a name."""
     return re.search(rf"\b(?:signal|predicate|let|param|entity)\b[^\n]*\b{name}\b", failure.source.text) is not None
+
+
+def _imports(failure: ParseFailure) -> bool:
+    """Whether the file imports names, among which a single letter may be."""
+    return re.search(r"^\s*import\b", failure.source.text, re.MULTILINE) is not None
