@@ -78,3 +78,10 @@ def test_the_text_says_what_was_not_decided() -> None:
     pair = diff(_fspa("semantics infinite  keep times(seen) <= 3"), _fspa("semantics infinite  keep times(seen) <= 2"))
     assert "it was not decided whether B accepts the same traces as A" in text(FileDiff("a", "b", (pair,)))
     assert not pair.is_same
+
+
+def test_an_atom_that_follows_from_others_in_one_version_only_is_not_compared_by_name() -> None:
+    predicate = "signal seen: bool\npredicate calm in [-1, 1] = {}\n"
+    one = _fspa("keep calm", predicate.format("when seen: -1 otherwise: 1"))
+    other = _fspa("keep calm  keep times(seen) <= 1", predicate.format("when times(seen, 5) > 2: -1 otherwise: 1"))
+    assert compare_versions(one, other, 50_000).comparison.relation == "undecided"

@@ -14,7 +14,7 @@ from tltlc.automaton.compare import Letter, Trace
 from tltlc.automaton.memory import given_atoms
 from tltlc.core.record import replace
 from tltlc.expression.tree import AtomValue, Before, Op, SignalValue, nodes
-from tltlc.resolve.registers import SATURATING
+from tltlc.resolve.registers import SATURATING, following_atoms
 from tltlc.resolve.sources import names_read
 from tltlc.tools.diff.expression_shapes import ExpressionLeaf, replace_leaves
 from tltlc.tools.diff.feasible_letters import joint_automaton
@@ -61,7 +61,7 @@ def confirm(
     of a group in ``exclusive`` hold together. With ``by_name``, atoms that do not follow from others
     may hold in any combination.
     """
-    if automata[0].semantics == "infinite":
+    if automata[0].semantics == "infinite" or (by_name and _follows_in_one(named)):
         return Confirmed(None, None, False)
     inputs, are_all = _letters(named, only) if by_name else _samples(named)
     names = [[atom.name for atom in fspa.atoms] for fspa in named]
@@ -80,6 +80,13 @@ def confirm(
             break
     is_decided = not missing or (are_all and search.tried_all)
     return Confirmed(found.get(0), found.get(1), is_decided)
+
+
+def _follows_in_one(named: tuple[Fspa, Fspa]) -> bool:
+    """Whether a common atom follows from others in one automaton only, so that no letter can give it."""
+    following = [following_atoms(fspa.atoms, fspa.registers) for fspa in named]
+    common = {atom.name for atom in named[0].atoms}.intersection(atom.name for atom in named[1].atoms)
+    return any((name in following[0]) != (name in following[1]) for name in common)
 
 
 def _letters(named: tuple[Fspa, Fspa], only: tuple[Trace | None, Trace | None]) -> tuple[list[TraceInput], bool]:
