@@ -89,4 +89,4 @@ def test_the_work_of_a_search_is_bounded() -> None:
     fspa = _fspa("spec s { keep seen implies once seen  keep time_since(alarm) <= 1000 s or times(hidden) < 1000 }")
     names = [signal.name for signal in fspa.signals]
     search = MemorySearch([fspa], [dict(zip(names, values, strict=True)) for values in product((0.0, 1.0), repeat=3)])
-    assert sum(1 for _ in search.positions()) == 48_000
+    assert sum(1 for _ in search.positions()) == 68_000

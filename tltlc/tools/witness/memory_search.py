@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from heapq import heappop, heappush
 from itertools import islice
 from typing import TYPE_CHECKING, Final, NamedTuple, Union
 
@@ -28,9 +29,10 @@ if TYPE_CHECKING:
 
 _SINGLE_STEPS: Final = 8_000
 """The most steps that the search takes one by one, in all sequences together."""
-_HELD_STEPS: Final = 40_000
+_HELD_STEPS: Final = 60_000
 """The most steps that the search takes after that, while it repeats each input until something changes."""
 _FINAL: Final = ("satisfied", "violated")
+_FAR: Final = 1_000_000
 
 
 class _Configuration(NamedTuple):
@@ -145,17 +147,25 @@ class MemorySearch:
                     queue.append(position)
 
     def _held_steps(self) -> Iterator[Position]:
-        start = self._start()
-        seen, queue = {self._key(start.configuration)}, deque([start])
-        while queue:
-            before = queue.popleft()
-            for number in range(len(self.inputs)):
-                for position, is_turn in self._held(before, number):
+        """Yield positions while inputs repeat; those nearest to acceptance are continued first."""
+        start, count = self._start(), 0
+        seen, heap = {self._key(start.configuration)}, [(0, count, start)]
+        while heap:
+            _, _, before = heappop(heap)
+            holds = [self._held(before, number) for number in range(len(self.inputs))]
+            while holds:
+                # All inputs repeat side by side, so that none uses up the work.
+                for hold in list(holds):
+                    position, is_turn = next(hold, (None, False))
+                    if position is None:
+                        holds.remove(hold)
+                        continue
                     yield position
                     key = self._key(position.configuration)
                     if is_turn and key not in seen:
                         seen.add(key)
-                        queue.append(position)
+                        count += 1
+                        heappush(heap, (self._distance(position.configuration), count, position))
 
     def _held(self, before: Position, number: int) -> Iterator[tuple[Position, bool]]:
         """Yield the positions while an input repeats, until something changes or nothing ever will.
@@ -168,13 +178,19 @@ class MemorySearch:
             if step is None:
                 return
             times += 1
-            is_still = step.after == configuration
+            is_still = step.after == configuration or self._is_final(step.after)
             has_changed = previous is not None and (step.letter, step.after.states) != previous
             position = Position(before, number, times, step.edges, step.after)
             yield position, times == 1 or has_changed or is_still
             if has_changed or is_still:
                 return
             configuration, previous = step.after, (step.letter, step.after.states)
+
+    def _distance(self, configuration: _Configuration) -> int:
+        """Return the sum of the distances of all automata to acceptance; a large number in a trap."""
+        pairs = zip(self._automata, configuration.states, strict=True)
+        distances = [fspa.states[state].distance for fspa, state in pairs]
+        return sum(_FAR if distance is None else distance for distance in distances)
 
     def _step(self, before: _Configuration, number: int) -> _Step | None:
         """Return a step, or None if a monitor rejects the input."""
@@ -204,9 +220,11 @@ class MemorySearch:
 
     def _key(self, configuration: _Configuration) -> object:
         """Return what two positions share if only one of them needs a continuation."""
+        return configuration.states if self._is_final(configuration) else configuration
+
+    def _is_final(self, configuration: _Configuration) -> bool:
         pairs = zip(self._automata, configuration.states, strict=True)
-        is_final = all(fspa.states[state].verdict in _FINAL for fspa, state in pairs)
-        return configuration.states if is_final else configuration
+        return all(fspa.states[state].verdict in _FINAL for fspa, state in pairs)
 
 
 def _leaving(fspa: Fspa) -> list[list[int]]:
