@@ -167,11 +167,11 @@ def section(records: Mapping[str, Record]) -> str:
 ## Monitors of automata that count
 
 `keep pit implies next (always for 10 s not pit and true)`, in which no timer keeps the bound, has {states} states at
-60 Hz, most of which count. Monitors of such automata read tables (`python -m benchmarks --only {SECTION}`). *Ladder* is the same monitor without tables, with code
-for each state. *First* and *last* are nanoseconds of a step: of 20 steps after the count began, and of 20 steps 570
-steps later, as medians of {ROUNDS} rounds. Both were measured in turns, with many monitors that take the same steps.
-*last / first* has the median of the ratios, with the quartiles. They are wall times in Rust and GDScript, and CPU times
-in the other languages. Godot 4 does not run here.
+60 Hz, most of which count. Monitors of such automata read tables (`python -m benchmarks --only {SECTION}`). *Ladder* is
+the same monitor without tables, with code for each state. *First* and *last* are nanoseconds of a step: of 20 steps
+after the count began, and of 20 steps 570 steps later, as medians of {ROUNDS} rounds. Both were measured in turns, with
+many monitors that take the same steps. *last / first* has the median of the ratios, with the quartiles. They are wall
+times in Rust and GDScript, and CPU times in the other languages. Godot 4 does not run here.
 
 {table(header, rows)}
 """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Iterator, Sequence
 
@@ -10,7 +11,7 @@ import pytest
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor.monitor import Monitor, Step
-from tltlc.pipeline import compile_text
+from tltlc.pipeline import compile_text, decode_artefact, encode_artefact
 from tltlc.resolve import specs
 
 NAMES = ("a", "b", "c")
@@ -88,6 +89,7 @@ def test_timers_agree_with_unfolding_on_every_prefix(form: str, monkeypatch: pyt
         unfolded, timed = compiled(clause, monkeypatch, 10**9), compiled(clause, monkeypatch, 0)
         assert not unfolded.registers
         assert timed.registers or n == 1, clause
+        assert decode_artefact(json.loads(json.dumps(encode_artefact(timed))), "timed") == timed
         for _ in range(60):
             trace = random_trace(generator, 3 * n + 8)
             for number, (expected, step) in enumerate(zip(steps(unfolded, trace), steps(timed, trace), strict=True)):

@@ -26,7 +26,7 @@ from tltlc.expression.tree import (
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
-SAMPLES: Final = "samples"
+SAMPLES: Final = "samples so far"
 """The name of the register that counts the samples so far."""
 
 FIRST: Final = "first sample"

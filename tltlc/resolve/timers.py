@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tltlc.core.names import full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Const, Expression, Op, SignalValue
@@ -30,29 +31,28 @@ class Timers:
         Without an event, the steps count from the first sample. ``steps`` is at least 1.
         """
         if event is None:
-            return self._atom(f"passed({self._time(steps)})", self._at_least(self._samples(), steps + 1))
-        name = f"passed({self._time(steps)}, {ascii_text(event)})"
-        return self._atom(name, self._at_least(self._time_since(event), steps))
+            return self._atom("passed", self._at_least(self._samples(), steps + 1), self._time(steps))
+        value = self._at_least(self._time_since(event), steps)
+        return self._atom("passed", value, self._time(steps), ascii_text(event))
 
     def between(self, low: int, high: int) -> Formula:
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
-        over = self._atom(f"over({self._time(high)})", self._at_least(self._samples(), high + 2))
+        over = self._atom("over", self._at_least(self._samples(), high + 2), self._time(high))
         return and_(self.passed(low), not_(over)) if low else not_(over)
 
     def recent(self, low: int, high: int, event: Formula) -> Formula:
         """Return the atom of "``event`` held from ``low`` to ``high`` steps ago". ``low`` is 0 or 1."""
+        value = self._at_most(self._age(low, event), high)
         if low == 0:
-            name = f"once within {self._time(high)} {operand_text(event)}"
-        else:
-            name = f"recent({self._time(high)}, {ascii_text(event)})"
-        return self._atom(name, self._at_most(self._age(low, event), high))
+            return self._atom(f"once within {self._time(high)} {operand_text(event)}", value)
+        return self._atom("recent", value, self._time(high), ascii_text(event))
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
         kept, truth = self._kept(state), registers.truth(state)
         self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
-        return self._atom(f"held({self._time(steps)}, {ascii_text(state)})", self._at_least(register, steps))
+        return self._atom("held", self._at_least(register, steps), self._time(steps), ascii_text(state))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for too long".
@@ -61,26 +61,26 @@ class Timers:
         ``low`` is 0 or 1.
         """
         strict = low == 1
-        named = f"next {operand_text(goal)}" if strict else ascii_text(goal)
-        pair = named if request is TRUE else f"{ascii_text(request)}, {named}"
-        due, waiting = f"due({pair})", f"waiting({pair})"
+        answer = f"next {operand_text(goal)}" if strict else ascii_text(goal)
+        pair = (answer,) if request is TRUE else (ascii_text(request), answer)
+        due, waiting = full_name("due", pair), full_name("waiting", pair)
         self._register(registers.due(due, self._value(request), self._value(goal), strict))
         step = registers.step_length(False)
-        draft = registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step)
-        self._register(draft)
-        late = self._atom(f"late({self._time(high)}, {pair})", self._at_least(waiting, high + 1))
-        return self._atom(due, SignalValue(due)), late
+        self._register(registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step))
+        late = self._atom("late", self._at_least(waiting, high + 1), self._time(high), *pair)
+        return self._atom("due", SignalValue(due), *pair), late
 
     def breach(self, low: int, high: int, event: Formula, rule: Formula) -> Formula:
         """Return the atom of "``event`` held from ``low`` to ``high`` steps ago, and ``rule`` does not hold".
 
         One atom, since each further one in a clause multiplies the prime implicants of guards.
         """
-        register, named = self._age(low, event), f"{ascii_text(event)}, {ascii_text(rule)}"
-        name = f"breach({self._time(high)}, {'next ' if low else ''}{named})"
-        value = Op("min", (self._at_most(register, high), self._value(not_(rule))))
+        answer = f"next {operand_text(rule)}" if low else ascii_text(rule)
+        arguments = (self._time(high), ascii_text(event), answer)
+        value = Op("min", (self._at_most(self._age(low, event), high), self._value(not_(rule))))
+        name = full_name("breach", arguments)
         self._register(registers.breach(name, value))
-        return self._atom(name, SignalValue(name))
+        return self._atom("breach", SignalValue(name), *arguments)
 
     def now(self, state: Formula) -> Formula:
         """Return ``state`` as one atom."""
@@ -140,5 +140,5 @@ class Timers:
             return f"{steps} step{'s' * (steps != 1)}"
         return f"{number_text(round(steps * period, 6))} s"
 
-    def _atom(self, name: str, value: Expression) -> Formula:
-        return self.context.atom(name, value, "", self.source, self.span)
+    def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
+        return self.context.atom(base, value, "", self.source, self.span, arguments)
