@@ -23,11 +23,35 @@ from tltlc.expression.tree import (
     When,
     nodes,
 )
-from tltlc.logic.formula import Formula, atom, not_, rebuild
-from tltlc.resolve.spec import Atom, Register
+from tltlc.logic.formula import Formula, and_, atom, eventually, not_, rebuild
+from tltlc.logic.text.phrases import is_state, object_phrase
+from tltlc.resolve.spec import Atom, Register, RegisterKind
 
 _COMPARED: Final = {">": "more than", "<": "less than", ">=": "at least", "<=": "at most"}
 _TIMES: Final = {"1": "once", "2": "twice"}
+_TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
+    "waiting": {"late": ("{2} later than {0} after {1}", "{2} within {0} after {1}")},
+    "due": {"due": ("{1} is due after {0}", "{1} is not due after {0}")},
+    "breach": {"breach": ("not {2} for {0} after {1}", "{2} for {0} after {1}")},
+    "samples": {
+        "passed": ("{0} have passed", "less than {0} have passed"),
+        "lasted": ("{0} are over", "less than {0} have passed"),
+        "over": ("more than {0} have passed", "at most {0} have passed"),
+    },
+    "time_since": {"passed": ("{0} have passed since {1}", "less than {0} have passed since {1}")},
+    "age": {"recent": ("{1} in the {0} before", "no {1} in the {0} before")},
+    "time_holding": {"held": ("{1} for {0}", "{1} for less than {0}")},
+}
+"""What is said of the timers that :mod:`tltlc.resolve.timers` makes: where they hold, and where they do not.
+
+The keys are the kind of the register that a timer reads, and the base of its name. The numbers stand
+for the arguments of the atom.
+"""
+_ALWAYS: Final[Mapping[str, tuple[str, str]]] = {
+    "late": ("no {1} for more than {0}", "{1} again within {0}"),
+    "due": ("{0} is due", "{0} is not due"),
+}
+"""The same for an answer that is due at all times, which has no event before it."""
 
 
 class Phrase(NamedTuple):
@@ -44,11 +68,12 @@ def spoken(formula: Formula, fspa: Fspa) -> Formula:
     """
     if not fspa.registers:
         return formula
-    phrases, before = _phrases(fspa), _previous_atoms(fspa)
+    phrases, before, passed = _phrases(fspa), _previous_atoms(fspa), _passed(fspa)
     done: dict[Formula, Formula] = {}
     for node in formula.bottom_up():
         done[node] = (
             _turning(node, before, done)
+            or _in_time(node, passed, done)
             or _literal(node, phrases)
             or rebuild(node, tuple(done[argument] for argument in node.args))
         )
@@ -84,6 +109,40 @@ def _turning(node: Formula, before: Mapping[str, str], done: Mapping[Formula, Fo
     return found[0] if len(found) + len(rest) == 1 else rebuild(node, (*found, *rest))
 
 
+def _in_time(node: Formula, passed: Mapping[str, str], done: Mapping[Formula, Formula]) -> Formula | None:
+    """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
+
+    Return None for any other formula. ``passed`` has the times of the atoms of these two kinds.
+    """
+    if node.op not in ("U", "R"):
+        return None
+    timer, goal = node.args
+    if node.op == "U":
+        if timer.op != "not" or timer.args[0].name not in passed:
+            return None
+        parts = goal.args if goal.op == "and" else (goal,)
+        present = [part for part in parts if is_state(part)]
+        if not present:
+            return None
+        text = object_phrase(and_(*(done[part] for part in present)))
+        said = atom(f"{text} within {passed[timer.args[0].name]}")
+        return eventually(and_(said, *(done[part] for part in parts if part not in present)))
+    if timer.name not in passed or not is_state(goal):
+        return None
+    return atom(f"{object_phrase(done[goal])} for {passed[timer.name]}")
+
+
+def _passed(fspa: Fspa) -> dict[str, str]:
+    """Return the time of each atom that says that a time has passed, such as "5 s after a"."""
+    kinds = {register.name: register.kind for register in fspa.registers}
+    return {
+        each.name: " after ".join(each.arguments)
+        for each in fspa.atoms
+        if each.base in ("passed", "lasted") and each.arguments
+        if any(kinds.get(name) in ("samples", "time_since") for name in _read(each.expression))
+    }
+
+
 # --- phrases ----------------------------------------------------------------------------------------
 
 
@@ -104,6 +163,10 @@ def _read(expression: Expression) -> set[str]:
 
 def _phrase(each: Atom, register: Register, clock_s: float | None) -> Phrase | None:
     """Return the phrase of an atom that reads one register, and nothing else; None if it has none."""
+    timer = _TIMERS.get(register.kind, {}).get(each.base)
+    if timer is not None and each.arguments:
+        missing = register.kind in ("waiting", "due") and len(each.arguments) < 2 + (each.base == "late")
+        return Phrase(*(text.format(*each.arguments) for text in (_ALWAYS[each.base] if missing else timer)))
     operand = _operand(register)
     if operand is None or len(_read(each.expression)) > 1:
         return None

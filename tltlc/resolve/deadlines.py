@@ -91,13 +91,12 @@ class _Rewriting:
         timers = self._timers
         if window.high == 0:
             return self.at_start(window.body)
-        passed = timers.passed(window.high)
         begun = timers.passed(window.low) if window.low else None
         if window.op == "F":
             body = self._anchored(window.body, timers.between(window.low, window.high))
-            return until(not_(passed), body if begun is None else and_(begun, body))
+            return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
         body = self.inside(window.body)
-        result = release(passed, body if begun is None else implies(begun, body))
+        result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
         return and_(next_(TRUE), result) if window.exists else result
 
     def _invariant(self, node: Formula) -> Formula:

@@ -6,7 +6,7 @@ from tltlc.core.names import full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Const, Expression, Op, SignalValue
-from tltlc.logic.formula import TRUE, Formula, and_, not_
+from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, rebuild
 from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers
 from tltlc.resolve.context import Context
@@ -33,7 +33,14 @@ class Timers:
         if event is None:
             return self._atom("passed", self._at_least(self._samples(), steps + 1), self._time(steps))
         value = self._at_least(self._time_since(event), steps)
-        return self._atom("passed", value, self._time(steps), ascii_text(event))
+        return self._atom("passed", value, self._time(steps), _text(event))
+
+    def lasted(self, steps: int) -> Formula:
+        """Return the atom of "this is sample ``steps``, counted from 0, or a later one".
+
+        It is named by the time that all samples up to this one take.
+        """
+        return self._atom("lasted", self._at_least(self._samples(), steps + 1), self._time(steps + 1))
 
     def between(self, low: int, high: int) -> Formula:
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
@@ -45,14 +52,14 @@ class Timers:
         value = self._at_most(self._age(low, event), high)
         if low == 0:
             return self._atom(f"once within {self._time(high)} {operand_text(event)}", value)
-        return self._atom("recent", value, self._time(high), ascii_text(event))
+        return self._atom("recent", value, self._time(high), _text(event))
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
         kept, truth = self._kept(state), registers.truth(state)
         self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
-        return self._atom("held", self._at_least(register, steps), self._time(steps), ascii_text(state))
+        return self._atom("held", self._at_least(register, steps), self._time(steps + 1), _text(state))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for too long".
@@ -61,13 +68,14 @@ class Timers:
         ``low`` is 0 or 1.
         """
         strict = low == 1
-        answer = f"next {operand_text(goal)}" if strict else ascii_text(goal)
-        pair = (answer,) if request is TRUE else (ascii_text(request), answer)
+        answer = f"next {_operand_text(goal)}" if strict else _text(goal)
+        pair = (answer,) if request is TRUE else (_text(request), answer)
         due, waiting = full_name("due", pair), full_name("waiting", pair)
         self._register(registers.due(due, self._value(request), self._value(goal), strict))
         step = registers.step_length(False)
         self._register(registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step))
-        late = self._atom("late", self._at_least(waiting, high + 1), self._time(high), *pair)
+        time = f"{'the next ' if strict else ''}{self._time(high)}"
+        late = self._atom("late", self._at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
         return self._atom("due", SignalValue(due), *pair), late
 
     def breach(self, low: int, high: int, event: Formula, rule: Formula) -> Formula:
@@ -75,8 +83,9 @@ class Timers:
 
         One atom, since each further one in a clause multiplies the prime implicants of guards.
         """
-        answer = f"next {operand_text(rule)}" if low else ascii_text(rule)
-        arguments = (self._time(high), ascii_text(event), answer)
+        # Like `for` in the language, a rule that begins at the event has a time that counts all of its samples.
+        time = f"the next {self._time(high)}" if low else self._time(high + 1)
+        arguments = (time, _text(event), _text(rule))
         value = Op("min", (self._at_most(self._age(low, event), high), self._value(not_(rule))))
         name = full_name("breach", arguments)
         self._register(registers.breach(name, value))
@@ -84,7 +93,7 @@ class Timers:
 
     def now(self, state: Formula) -> Formula:
         """Return ``state`` as one atom."""
-        return state if state.op == "atom" else self._atom(f"({ascii_text(state)})", SignalValue(self._kept(state)))
+        return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self._kept(state)))
 
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
@@ -101,7 +110,7 @@ class Timers:
         """Return the register with the age of the latest event: at this sample, or before it if ``low`` is 1."""
         if low == 0:
             return self._time_since(event)
-        name, step = f"age({ascii_text(event)})", registers.step_length(False)
+        name, step = f"age({_text(event)})", registers.step_length(False)
         self._register(registers.age(name, self._kept(event), step, "steps"))
         return name
 
@@ -142,3 +151,30 @@ class Timers:
 
     def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
         return self.context.atom(base, value, "", self.source, self.span, arguments)
+
+
+def _text(formula: Formula) -> str:
+    return ascii_text(_with_edges(formula))
+
+
+def _operand_text(formula: Formula) -> str:
+    return operand_text(_with_edges(formula))
+
+
+def _with_edges(formula: Formula) -> Formula:
+    """Return a formula for names, with ``begins p`` in place of ``p & !previously p``, and ``ends p`` likewise."""
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        done[node] = _edge(node) or rebuild(node, tuple(done[operand] for operand in node.args))
+    return done[formula]
+
+
+def _edge(node: Formula) -> Formula | None:
+    if node.op != "and" or len(node.args) != 2:
+        return None
+    now, before = node.args
+    if before.op == "not" and before.args[0] is atom(f"previously {operand_text(now)}"):
+        return atom(f"begins {operand_text(now)}")
+    if now.op == "not" and before is atom(f"previously {operand_text(now.args[0])}"):
+        return atom(f"ends {operand_text(now.args[0])}")
+    return None
