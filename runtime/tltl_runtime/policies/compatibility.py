@@ -115,10 +115,14 @@ def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
     yield from _differing("param", _field_by_name(own.params, "value"), _field_by_name(fspa.params, "value"))
     before, after = _field_by_name(own.atoms, "expression"), _field_by_name(fspa.atoms, "expression")
     yield from _differing("atom", before, after)
+    memory = [{register.name: register for register in spec.registers} for spec in (own, fspa)]
+    yield from _differing("register", *memory)
     if len(own.states) != len(fspa.states):
         yield f"its automaton has {len(fspa.states)} states, and had {len(own.states)}"
     elif list(before) != list(after):
         yield "its atoms are in another order"
+    elif list(memory[0]) != list(memory[1]):
+        yield "its registers are in another order"
     elif before == after:
         yield from _states(own, fspa)
 

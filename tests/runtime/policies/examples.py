@@ -21,9 +21,13 @@ SMALL = Network(hidden=(32, 32), channels=(4, 4))
 
 
 def card_of(
-    level: str = "cover_and_hide", variant: str = "v0", sensors: SensorChoice | None = None, network: Network = SMALL
+    level: str = "cover_and_hide",
+    variant: str = "v0",
+    sensors: SensorChoice | None = None,
+    network: Network = SMALL,
+    spec: str | None = None,
 ) -> Card:
-    env = make_env(level, variant, sensors=sensors)
+    env = make_env(level, variant, spec, sensors=sensors)
     loaded_level = env.get_wrapper_attr("level")
     card = Card(
         level=loaded_level.name,
