@@ -26,6 +26,7 @@ from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, weight_dtype
 from tltl_runtime.policies.spaces.encoder_plan import NORMALIZER, space_weight_shapes
 from tltl_runtime.policies.spaces.layouts import SpaceLayouts
+from tltl_runtime.spec.automaton_observation import automaton_entries
 from tltl_runtime.support.load_errors import LoadErrors
 from tltl_runtime.support.record_json import RecordJsonError, from_json, to_json
 from tltlc.api import Diagnostic, Fspa, TltlError, compiler, fileio
@@ -224,7 +225,7 @@ def _are_sizes(shapes: Collection[tuple[int, ...]]) -> bool:
 
 def _observation_shapes(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
     """Return the shapes of the parts of an observation, by key, for a spec and sensors."""
-    return {"automaton": (len(fspa.states),), "progress": (1,), **sensor_shapes(sensors)}
+    return {"automaton": (len(automaton_entries(fspa)),), "progress": (1,), **sensor_shapes(sensors)}
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:

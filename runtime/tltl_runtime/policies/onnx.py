@@ -26,6 +26,7 @@ from tltl_runtime.policies.spaces.layouts import SpaceLayouts
 from tltl_runtime.policies.spaces.refusals import name_of
 from tltl_runtime.policies.spaces.space_actor import deviations
 from tltl_runtime.policies.torch_actor import torch_actor
+from tltl_runtime.spec.automaton_observation import automaton_entries
 from tltlc.api import label_text, replace
 
 SUFFIX: Final = ".onnx"
@@ -212,7 +213,7 @@ def _entry_names(card: Card) -> list[list[str]]:
     """
     sensors = card.sensors
     names: dict[str, list[str]] = {
-        "automaton": [f"state {state.id}" for state in card.fspa.states],
+        "automaton": [*automaton_entries(card.fspa)],
         "progress": ["progress"],
     }
     if card.spaces is None:

@@ -14,8 +14,8 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import RecordConstructorArgs
-from numpy.typing import NDArray
 
+from tltl_runtime.spec.automaton_observation import AutomatonObservation
 from tltl_runtime.spec.task import load_task
 from tltlc.api import Diagnostic, Fspa, Monitor, MonitorError, RewardOptions, Step, TltlError, monitors, record
 
@@ -46,8 +46,10 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     over those that the environment's method ``tltl_params()`` returns, if it has this method.
 
     Observation: a Dict space gains two keys, both float32. ``automaton`` is the state as a one-hot
-    vector, shape (states,). ``progress`` is the best progress so far, shape (1,), in [0, 1]. An
-    observation of any other space becomes the key ``observation`` beside these two.
+    vector, shape (states,). If the spec has registers, their shares follow the states, see
+    :class:`~tltl_runtime.spec.automaton_observation.AutomatonObservation`. ``progress`` is the best
+    progress so far, shape (1,), in [0, 1]. An observation of any other space becomes the key
+    ``observation`` beside these two.
 
     Reward: the reward of the spec, in the mode that ``reward`` names. The environment's own reward is
     ``info["env_reward"]``.
@@ -108,14 +110,14 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         offered = env.get_wrapper_attr("tltl_params")() if env.has_wrapper_attr("tltl_params") else {}
         self.task = load_task(spec, {} if params is None else params, reward, offered=offered)
         _check_clock(self.task.fspa, env)
-        self.observation_space = _with_automaton(env.observation_space, len(self.task.fspa.states))
+        self._automaton = AutomatonObservation(self.task.fspa)
+        self.observation_space = _with_automaton(env.observation_space, self._automaton.size)
         self._flat = not isinstance(env.observation_space, spaces.Dict)
         self._monitor = self.task.monitor()
         self.sample: Mapping[str, SupportsFloat] = {}
         self.taken: Step | None = None
         self._names = tuple(atom.name for atom in self.task.fspa.atoms)
         self._inputs = self.task.fspa.signals
-        self._one_hot: NDArray[np.float32] = np.eye(len(self.task.fspa.states), dtype=np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -222,7 +224,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     def _with_automaton_keys(self, observation: Any) -> Observation:
         added = {
-            "automaton": self._one_hot[self._monitor.state].copy(),
+            "automaton": self._automaton.of(self._monitor.state, self._monitor.registers),
             "progress": np.array([self._monitor.progress], dtype=np.float32),
         }
         return {"observation": observation, **added} if self._flat else {**observation, **added}
@@ -233,10 +235,10 @@ def _own_signals(env: gymnasium.Env[Any, Any]) -> Mapping[str, SupportsFloat]:
     return signals
 
 
-def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
+def _with_automaton(space: spaces.Space[Any], size: int) -> spaces.Dict:
     """Return an observation space with two more keys, ``automaton`` and ``progress``.
 
-    Their shapes are (states,) and (1,). If the space is not a Dict, it becomes the key
+    Their shapes are (size,) and (1,). If the space is not a Dict, it becomes the key
     ``observation`` of the result.
 
     Raises:
@@ -246,7 +248,7 @@ def _with_automaton(space: spaces.Space[Any], states: int) -> spaces.Dict:
     conflicts = {"automaton", "progress"} & inner.keys()
     if conflicts:
         raise ValueError(f"the environment's observation already has the key {min(conflicts)!r}")
-    inner["automaton"] = spaces.Box(0.0, 1.0, (states,), np.float32)
+    inner["automaton"] = spaces.Box(0.0, 1.0, (size,), np.float32)
     inner["progress"] = spaces.Box(0.0, 1.0, (1,), np.float32)
     return spaces.Dict(inner)
 

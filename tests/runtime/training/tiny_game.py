@@ -38,6 +38,12 @@ predicate there in [-1, 1] = clamp(1 - gap / 0.2, -1, 1)
 predicate right in [-1, 1] = 2 * pressed - 1
 spec press_there { limit 8 steps  reach there and right }
 """
+SPEC_WITH_MEMORY = """\
+clock 10 Hz
+signal gap in [0, 2]
+predicate there in [-1, 1] = clamp(1 - gap / 0.3, -1, 1)
+spec stay_there { limit 10 steps  reach time_holding(there) >= 0.2 s  keep times(there) <= 2 }
+"""
 HIDDEN_TEXT = "text"
 """The variant whose observation has a text, which no policy can read."""
 ENDLESS = "endless"
@@ -164,8 +170,8 @@ def only_game() -> Iterator[None]:
         yield
 
 
-def line_run(folder: Path, variant: str = "v0", **changes: Any) -> TrainingRun:
-    """Return a training on the line; ``changes`` override settings, as in ``runs.run_in``."""
+def line_run(folder: Path, variant: str = "v0", spec: str = SPEC, **changes: Any) -> TrainingRun:
+    """Return a training on the line by a spec; ``changes`` override settings, as in ``runs.run_in``."""
     # Workers import this module, and need not import what learns.
     from tests.runtime.training.runs import SMALL
     from tltl_runtime.training.files.run_file import TrainingRun
@@ -178,4 +184,4 @@ def line_run(folder: Path, variant: str = "v0", **changes: Any) -> TrainingRun:
         table, _, key = name.rpartition(".")
         changed = {table: replace(getattr(settings, table), **{key: value})} if table else {key: value}
         settings = replace(settings, **changed)
-    return TrainingRun(folder, load_task(SPEC).fspa, {}, "line", Variant(variant), NO_SENSORS, settings, 3)
+    return TrainingRun(folder, load_task(spec).fspa, {}, "line", Variant(variant), NO_SENSORS, settings, 3)

@@ -9,6 +9,7 @@ import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
 
+from tltl_runtime.spec.automaton_observation import observed_registers
 from tltl_runtime.spec.batch.guards import PrimeSets, Transitions
 from tltl_runtime.spec.batch.progress_and_reward import VERDICTS, Outcomes
 from tltl_runtime.spec.batch.reward_modes import BatchTransition, reward_mode
@@ -144,6 +145,10 @@ class BatchMonitor:
         )
         # The reward of mode "progress" is that of Algorithm 1, which runs in every mode.
         self._mode = None if options.mode == "progress" else reward_mode(fspa, options, self.device, dtype)
+        observed = observed_registers(fspa)
+        self._observed = torch.tensor([register.index for register in observed], dtype=torch.int64, device=self.device)
+        ranges = torch.tensor([(each.low, each.high - each.low) for each in observed], dtype=dtype, device=self.device)
+        self._low, self._span = ranges.reshape(-1, 2, 1).unbind(1)
         self.reset()
 
     def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
@@ -200,6 +205,18 @@ class BatchMonitor:
         """Return the current states of the automata as one-hot rows, shape [N, states]."""
         rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
         return rows.scatter_(1, self.state[:, None], 1.0)
+
+    def observation(self, dtype: torch.dtype = torch.float32) -> Tensor:
+        """Return what agents observe of the automata, as :class:`~tltl_runtime.spec.wrapper.TltlEnv` does.
+
+        Each of the N rows has the state as a one-hot vector, and then each observed register as its
+        share of its range, in [0, 1]. Without registers, this is :meth:`one_hot`.
+        """
+        one_hot = self.one_hot(dtype)
+        if not len(self._observed):
+            return one_hot
+        shares = (self.registers.index_select(0, self._observed) - self._low) / self._span
+        return torch.cat([one_hot, shares.clamp(0.0, 1.0).t().to(dtype)], 1)
 
     def _take(self, sample: BatchSampleValues) -> BatchStep:
         values = sample.atoms
