@@ -84,7 +84,7 @@ def test_values_of_atoms_move_the_registers_that_follow_from_them(name: str) -> 
     [
         (1e200, 1.0, "environment 2: the register `highest(x * x)` is too large to compute"),
         (1.0, 0.0, "environment 2: the register `lowest(8 / y)` divides by zero"),
-        (1.0, 1e150, "environment 2: the register `last (y * y * y)` is too large to compute"),
+        (1.0, 1e150, "environment 2: the register `last value of (y * y * y)` is too large to compute"),
         (float("nan"), 1.0, "environment 2: the signal `x` is nan, not a finite number"),
     ],
 )
