@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import random
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import torch
+from gymnasium.vector import SyncVectorEnv
 
 from tests.fixtures import cover_and_hide
 from tests.runtime.batch.test_registers import COUNT, MEMORY, columns, draw_samples
@@ -22,6 +24,11 @@ from tltl_runtime.gymnasium_games.scene_episode_file import scene_episode_bytes,
 from tltl_runtime.spec.automaton_observation import AutomatonObservation, automaton_entries, observed_registers
 from tltl_runtime.spec.batch import BatchMonitor
 from tltl_runtime.spec.task import load_task
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode_recorder import RecordEpisode
+from tltl_runtime.stealth.recordings.file import from_bytes, to_bytes
+from tltl_runtime.stealth.recordings.replay_check import check_replay
+from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.monitor import Monitor
@@ -43,6 +50,12 @@ spec waiting { limit 900 steps keep alarm implies eventually within 8 s hidden }
 REMEMBERING = vault.SPEC.replace(
     "reach has_key then at_exit", "reach at_exit keep at_exit implies once has_key"
 ).replace("avoid caught", "avoid caught keep times(caught) <= 2")
+
+WANDERING = """
+clock 0.15 s
+signal position.x: length in [-100 m, 100 m]
+spec wandering { limit 60 steps keep lowest(position.x) > -90 m keep times(position.x > 0 m) <= 40 }
+"""
 
 
 def fspa_of(text: str) -> Fspa:
@@ -147,6 +160,27 @@ def test_resetting_single_environments_of_a_batch_resets_their_shares() -> None:
     assert torch.equal(batch.observation(), torch.stack([start[0], moved[1]]))
 
 
+def test_an_unchecked_batch_observes_without_waiting_for_the_device() -> None:
+    """Tensors on the device "meta" have no values, so reading one raises an error."""
+    fspa = fspa_of(COUNTING)
+    batch = BatchMonitor(fspa, 4096, device="meta", checked=False)
+    batch.step(torch.empty(4096, 2, device="meta"))
+    assert batch.observation().shape == (4096, len(automaton_entries(fspa)))
+
+
+def test_workers_pass_on_the_registers() -> None:
+    actions = np.random.default_rng(4).integers(0, 2, (30, 2, 5))
+    functions = [partial(make_env, "cover_and_hide", "v2", WANDERING)] * 2
+    rows = []
+    for env in (SyncVectorEnv(functions), WorkerVectorEnv(functions, workers=2)):
+        observations = [env.reset(seed=3)[0], *(env.step(action)[0] for action in actions)]
+        rows.append(np.stack([observation["automaton"] for observation in observations]))
+        env.close()
+    assert np.array_equal(*rows)
+    assert rows[0].shape[2] > len(fspa_of(WANDERING).states)
+    assert len(np.unique(rows[0][:, :, -1])) > 1
+
+
 def test_going_back_to_a_moment_gives_the_same_observation() -> None:
     env = playback_env([{"x": 3.0, "y": 1.0}] * 3, COUNTING)
     env.reset()
@@ -167,3 +201,14 @@ def test_a_recorded_episode_of_a_spec_with_registers_is_judged_alike_when_it_is_
     other = replace(episode, atoms=episode.atoms * 0.5)
     (diagnostic, *_) = check(other)
     assert diagnostic.code == "TLT0823"
+
+
+def test_a_recorded_episode_of_a_level_is_judged_alike_when_it_is_replayed() -> None:
+    env = RecordEpisode(make_env("cover_and_hide", "v2", WANDERING))
+    env.reset(seed=3)
+    for action in np.random.default_rng(4).integers(0, 2, (30, 5)):
+        env.step(action)
+    episode = from_bytes(to_bytes(env.episode), "it")
+    env.close()
+    assert len(episode.fspa.registers) > 1
+    assert check(episode) == check_replay(episode) == ()

@@ -10,7 +10,7 @@ from tests.runtime.policies.examples import card_of, policy_of
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.compatibility import check_policy
 from tltl_runtime.policies.file import from_bytes, to_bytes
-from tltl_runtime.policies.onnx import metadata
+from tltl_runtime.policies.onnx import metadata, to_onnx
 from tltl_runtime.spec.task import load_task
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.levels.file import load_level
@@ -44,6 +44,14 @@ def test_the_network_takes_the_registers_beside_the_states(card: Card) -> None:
     seen["automaton"][-1] = 1.0
     assert policy.logits(seen).tolist() != policy.logits(observation).tolist()
     env.close()
+
+
+def test_the_model_takes_the_registers_as_the_policy_does(card: Card) -> None:
+    pytest.importorskip("onnxruntime")
+    from tests.runtime.policies.test_onnx import check_alike
+
+    policy = policy_of(card)
+    check_alike(policy, to_onnx(policy), 2)
 
 
 def test_the_metadata_of_the_model_name_the_registers(card: Card) -> None:

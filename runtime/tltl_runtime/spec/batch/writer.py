@@ -70,7 +70,7 @@ class TensorWriter:
 
     def constant_column(self, constant: float) -> str:
         """Write a line that assigns a column with ``constant`` for each environment; return its name."""
-        return self._line("columns.new_full((columns.shape[1],), {}.item())", self._constant_tensor(constant))
+        return self._line("{}.expand(columns.shape[1])", self._constant_tensor(constant))
 
     def define(self, key: expressions.VariableKey, term: TensorTerm) -> None:
         """Let expressions that are written later read the value of a term; that of an atom is clamped to [-1, 1].
