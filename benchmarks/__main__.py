@@ -11,6 +11,7 @@ import sys
 
 from benchmarks import (
     batch,
+    bounds,
     compile_table,
     edits,
     engine_speed,
@@ -50,6 +51,7 @@ SECTIONS = {
         edits,
         table1,
         tables,
+        bounds,
         infinite,
         mine,
         judge,

@@ -71,7 +71,7 @@ def compare_monitors(name: str) -> Record:
         except ImportError:
             left_out[peer] = "not installed"
 
-    rates = _rates(passes, len(samples))
+    rates = rounds_of(passes, len(samples), ROUNDS)
     return {
         "samples": len(samples),
         "rounds": ROUNDS,
@@ -124,7 +124,7 @@ def _check_peer(
     return run_pass
 
 
-def _rates(passes: dict[str, Callable[[], None]], steps: int) -> dict[str, list[float]]:
+def rounds_of(passes: dict[str, Callable[[], None]], steps: int, rounds: int) -> dict[str, list[float]]:
     """Return steps per second of CPU time for each monitor, one value per round; each round runs all in turn."""
     repeats = {}
     for monitor_name, run_pass in passes.items():
@@ -135,7 +135,7 @@ def _rates(passes: dict[str, Callable[[], None]], steps: int) -> dict[str, list[
             count += 1
         repeats[monitor_name] = count
     rates: dict[str, list[float]] = {monitor_name: [] for monitor_name in passes}
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         for monitor_name, run_pass in passes.items():
             start = time.process_time()
             for _ in range(repeats[monitor_name]):

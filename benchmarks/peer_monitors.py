@@ -11,7 +11,7 @@ runs the monitor over the trace, the other returns the outputs of a new monitor 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 Values = list[dict[str, float]]
@@ -45,43 +45,41 @@ REELAY = {
 }
 
 
-def rtamt_peer(name: str, atoms: Values) -> Peer:
-    """Return RTAMT's online monitor in discrete time, in Python."""
+def rtamt_monitor(formula: str, samples: Values) -> Peer:
+    """Return RTAMT's online monitor of a formula in discrete time, in Python."""
     import rtamt  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     monitor = rtamt.StlDiscreteTimeSpecification()
-    for atom in atoms[0]:
-        monitor.declare_var(NAMES[atom], "float")
-    monitor.declare_var("out", "float")
-    monitor.spec = f"out = {RTAMT[name]}"
+    for signal in samples[0]:
+        monitor.declare_var(signal, "float")
+    monitor.declare_var("out_", "float")
+    monitor.spec = f"out_ = {formula}"
     monitor.parse()
-    samples = [[(NAMES[atom], value) for atom, value in values.items()] for values in atoms]
-    monitor.update(0, samples[0])  # a monitor that has seen nothing cannot be reset
+    rows = [[*sample.items()] for sample in samples]
+    monitor.update(0, rows[0])  # a monitor that has seen nothing cannot be reset
 
     def outputs() -> list[float]:
         monitor.reset()
-        return [float(monitor.update(step, sample)) for step, sample in enumerate(samples)]
+        return [float(monitor.update(step, row)) for step, row in enumerate(rows)]
 
     def run_pass() -> None:
         monitor.reset()
         update = monitor.update
-        for step, sample in enumerate(samples):
-            update(step, sample)
+        for step, row in enumerate(rows):
+            update(step, row)
 
     return run_pass, outputs
 
 
-def reelay_peer(name: str, atoms: Values) -> Peer:
-    """Return Reelay's discrete robustness monitor, a C++ library with a Python interface.
+def reelay_monitor(formula: str, samples: Sequence[Mapping[str, float]], semantics: str) -> Peer:
+    """Return Reelay's discrete monitor of a formula, ``boolean`` or ``robustness``; a C++ library for Python.
 
     It has no reset, and making a monitor takes longer than the trace. So one monitor runs on through all timed passes.
     """
     import reelay  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-    samples = [{NAMES[atom]: value for atom, value in values.items()} for values in atoms]
-
     def new_monitor() -> Any:
-        return reelay.discrete_timed_monitor(pattern=REELAY[name], semantics="robustness", condense=False)
+        return reelay.discrete_timed_monitor(pattern=formula, semantics=semantics, condense=False)
 
     def outputs() -> list[float]:
         monitor = new_monitor()
@@ -96,4 +94,11 @@ def reelay_peer(name: str, atoms: Values) -> Peer:
     return run_pass, outputs
 
 
-PEERS: dict[str, Callable[[str, Values], Peer]] = {"RTAMT": rtamt_peer, "Reelay": reelay_peer}
+def _renamed(atoms: Values) -> Values:
+    return [{NAMES[atom]: value for atom, value in values.items()} for values in atoms]
+
+
+PEERS: dict[str, Callable[[str, Values], Peer]] = {
+    "RTAMT": lambda name, atoms: rtamt_monitor(RTAMT[name], _renamed(atoms)),
+    "Reelay": lambda name, atoms: reelay_monitor(REELAY[name], _renamed(atoms), "robustness"),
+}

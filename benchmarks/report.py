@@ -8,6 +8,7 @@ from pathlib import Path
 
 from benchmarks import (
     batch,
+    bounds_report,
     compile_table,
     edits,
     edits_report,
@@ -69,6 +70,7 @@ def render(store: Store) -> str:
         _monitors(store.section(monitors.SECTION)),
         engine_report.section(store),
         tables.section(store.section(tables.SECTION)),
+        bounds_report.section(store),
         _batch(store.section(batch.SECTION)),
         game_report.speed_section(store.section(game.SECTION)),
         godot.section(store.section(godot.SECTION)),
@@ -167,6 +169,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         )
     yield from engine_report.goals(store)
     yield from tables.goals(store.section(tables.SECTION))
+    yield from bounds_report.goals(store)
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
     yield from godot.goals(store.section(godot.SECTION))

@@ -94,7 +94,7 @@ def generate(engine: Engine, name: str, folder: Path) -> Task:
     fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
     for file, content in emit(engine.target, fspa).items():
         (folder / file).write_bytes(content.encode() if isinstance(content, str) else content)
-    signals = (Signal(signal.name, _field(signal.name), signal.type == "bool") for signal in fspa.signals)
+    signals = (Signal(signal.name, field(signal.name), signal.type == "bool") for signal in fspa.signals)
     return Task(name, tuple(signals), folder)
 
 
@@ -126,5 +126,6 @@ def without_comments(engine: Engine, text: str) -> str:
     return "".join(f"{line}\n" for line in lines if line and not line.startswith(engine.comments))
 
 
-def _field(name: str) -> str:
+def field(name: str) -> str:
+    """Return the name of a signal's field in generated code, if it is no keyword."""
     return re.sub(r"\W+", "_", name).strip("_")

@@ -1,0 +1,5 @@
+// A handwritten monitor.
+
+#include "@BY_HAND@/@SPEC@.h"
+
+#define monitor_begin monitor_reset
