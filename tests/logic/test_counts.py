@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.unfolded import unfolded
 from tltlc import compile_text
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.counts import CountPrinter, foreign_range_text, range_text
@@ -11,7 +12,8 @@ from tltlc.logic.text.printer import ascii_text, english_text
 
 
 def formula(text: str) -> Formula:
-    (fspa,) = compile_text(f"clock 1 Hz signal p: bool signal p2: bool signal p3: bool spec s = {text}")
+    with unfolded():
+        (fspa,) = compile_text(f"clock 1 Hz signal p: bool signal p2: bool signal p3: bool spec s = {text}")
     assert isinstance(fspa.formula, Formula)
     return fspa.formula
 

@@ -19,7 +19,7 @@ Q = "predicate q in [-1, 1] = clamp((p - d) / 3 m, -1, 1) spec s = F q"
         (BOOL + "clock 20 Hz spec s { limit 1e300 s keep a }", "TLT0312"),
         (BOOL + "spec s { limit 1e300 steps keep a }", "TLT0312"),
         (BOOL + "spec s = F[0,1e300] a", "TLT0312"),
-        (BOOL + "spec s = next after 1e8 steps a", "TLT0315"),
+        (BOOL + "spec s = always next after 1e8 steps a", "TLT0315"),
         ("signal d: length in [0 m, 1e308 km] spec s = F d > 1 m", "TLT0109"),
         ("signal d: length in [0 m, 9 m] param p: length = 1e308 km " + Q, "TLT0109"),
     ],

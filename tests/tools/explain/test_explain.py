@@ -16,6 +16,7 @@ from tests.calls import calls
 from tests.fuzzing import times
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, inside, tltlc
 from tests.logic.strategies import formulas
+from tests.unfolded import unfolded
 from tltlc.automaton.compare import Letter
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -153,7 +154,8 @@ def test_single_goals_are_listed_before_goals_at_once() -> None:
     ],
 )
 def test_counting_states_share_a_row(formula: str, rows: list[str]) -> None:
-    (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s = {formula}")
+    with unfolded():
+        (fspa,) = compiler.compile_text(f"signal a: bool  signal b: bool  spec s = {formula}")
     explanation = explain(fspa)
     (section,) = (candidate for candidate in sections(explanation) if candidate.heading == "States")
     (table,) = section.blocks
