@@ -71,7 +71,7 @@ def _compile_goals(record: Record) -> Iterable[Sequence[str]]:
         met_or_missed(times["ten"] < 2000),
     )
     yield (
-        "`tltlc compile examples/metroidvania.tltl` for C, C# and GDScript in under 0.3 s",
+        "`tltlc compile examples/metroidvania.tltl` for C, C# and GDScript in under 0.3 s of CPU time",
         f"{record['command_cpu_ms'] / 1e3:.2f} s",
         met_or_missed(record["command_cpu_ms"] < 300),
     )

@@ -51,15 +51,6 @@ def _responses(count: int) -> list[str]:
     return [clause for i in range(count) for clause in (f"not late{i}", f"due{i} implies next true")]
 
 
-def _begun(pit: int) -> str:
-    return f"(falls(pit{pit}) & !previously falls(pit{pit}))"
-
-
-def _breach(pit: int) -> str:
-    begins = f"falls(pit{pit}) & !previously falls(pit{pit})"
-    return f"breach(10 s, next {begins}, !({begins}))"
-
-
 ATOMS: Final[Mapping[str, Mapping[str, str]]] = {
     "deadlines": {
         "late0": "late(5 s, alarm, hidden)",
@@ -70,10 +61,13 @@ ATOMS: Final[Mapping[str, Mapping[str, str]]] = {
     "metroidvania": {
         "boss_door": "boss_door",
         "once_double_jump": "once double_jump",
-        **{f"breach{pit}": _breach(pit) for pit in (1, 2, 3)},
-        **{f"begun{pit}": _begun(pit) for pit in (1, 2, 3)},
-        "breach4": "breach(1 s, next damage & !previously damage, !damage)",
-        "begun4": "(damage & !previously damage)",
+        **{
+            f"breach{pit}": f"breach(the next 10 s, begins falls(pit{pit}), !begins falls(pit{pit}))"
+            for pit in (1, 2, 3)
+        },
+        **{f"begun{pit}": f"(begins falls(pit{pit}))" for pit in (1, 2, 3)},
+        "breach4": "breach(the next 1 s, begins damage, !damage)",
+        "begun4": "(begins damage)",
         **{f"late{guard}": f"late(5 s, alarm, answers(g{guard + 1}))" for guard in range(3)},
         **{f"due{guard}": f"due(alarm, answers(g{guard + 1}))" for guard in range(3)},
     },

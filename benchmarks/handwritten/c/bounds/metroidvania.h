@@ -11,12 +11,12 @@ typedef struct {
     Verdict verdict;
 } Monitor;
 
-#define FALLS(pit) "(falls(" pit ") & !previously falls(" pit "))"
+#define FALLS(pit) "(begins falls(" pit "))"
 #define APART(pit) \
-    "!breach(10 s, next falls(" pit ") & !previously falls(" pit "), !" FALLS(pit) ") & (" FALLS(pit) " -> X true) & "
+    "!breach(the next 10 s, begins falls(" pit "), !begins falls(" pit ")) & (" FALLS(pit) " -> X true) & "
 #define DUE(guard) "due(alarm, answers(" guard "))"
 #define ANSWER(guard) "!late(5 s, alarm, answers(" guard ")) & (" DUE(guard) " -> X true)"
-#define HURT "(damage & !previously damage)"
+#define HURT "(begins damage)"
 
 static inline void monitor_reset(Monitor *monitor) {
     *monitor = (Monitor){.falls = {1201, 1201, 1201}, .damage = 121, .verdict = PENDING};
@@ -25,7 +25,7 @@ static inline void monitor_reset(Monitor *monitor) {
 static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result *result) {
     static const char label[] =
         "G((boss_door -> once double_jump) & " APART("pit1") APART("pit2") APART("pit3")
-        "!breach(1 s, next damage & !previously damage, !damage) & (" HURT " -> X true) & "
+        "!breach(the next 1 s, begins damage, !damage) & (" HURT " -> X true) & "
         ANSWER("g1") " & " ANSWER("g2") " & " ANSWER("g3") ")";
     static const char *const pits[] = {FALLS("pit1"), FALLS("pit2"), FALLS("pit3")};
     static const char *const guards[] = {DUE("g1"), DUE("g2"), DUE("g3")};
