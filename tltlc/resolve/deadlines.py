@@ -48,7 +48,10 @@ def with_timers(formula: Formula, timers: Timers) -> Formula:
 
     ``formula`` is a whole clause, which is judged from the first sample on.
     """
-    return _Rewriting(timers).at_start(formula)
+    try:
+        return _Rewriting(timers).at_start(formula)
+    except RecursionError:
+        return formula  # Operators nest too deep: the bounds become states.
 
 
 class _Window(NamedTuple):
@@ -69,6 +72,10 @@ class _Rewriting:
         self._timers = timers
         self._inside: dict[Formula, Formula] = {}
 
+    def _fits(self, *formulas: Formula) -> bool:
+        """Whether a timer can be about these formulas: they have no temporal operators, and are not too large."""
+        return all(map(_is_present, formulas)) and self._timers.fits(*formulas)
+
     # --- at the first sample ----------------------------------------------------------------------
 
     def at_start(self, node: Formula) -> Formula:
@@ -82,7 +89,7 @@ class _Rewriting:
         if window is not None:
             return self._from_start(window)
         stay = _window(node.args[0]) if node.op == "F" else None
-        if stay is not None and stay.op == "G" and stay.low == 0 < stay.high and _is_present(stay.body):
+        if stay is not None and stay.op == "G" and stay.low == 0 < stay.high and self._fits(stay.body):
             held = self._timers.held(stay.high, stay.body)
             return eventually(or_(held, and_(stay.body, not_(next_(TRUE)))))
         return self.inside(node)
@@ -116,9 +123,11 @@ class _Rewriting:
         """Return ``G`` of a disjunction with a timer, or None if it has no rule."""
         temporal = [part for part in clause if not _is_present(part)]
         window = _window(temporal[0]) if len(temporal) == 1 else None
-        if window is None or window.low > 1 or window.high == 0 or not _is_present(window.body):
+        if window is None or window.low > 1 or window.high == 0:
             return None
         request = and_(*(_negated(part) for part in clause if part is not temporal[0]))
+        if not self._fits(request, window.body):
+            return None
         if window.op == "F":
             due, late = self._timers.response(request, window.body, window.low, window.high)
             return and_(always(not_(late)), always(implies(due, next_(TRUE))))
@@ -189,6 +198,8 @@ class _Rewriting:
         if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
             return self.inside(body)
         anchor = and_(*present) if reached is None else and_(*present, reached)
+        if not self._fits(anchor):
+            return self.inside(body)
         goal = self._anchored(window.body, self._timers.recent(window.low, window.high, anchor))
         waiting = until(not_(self._timers.passed(window.high, anchor)), goal)
         return and_(*present, next_(waiting) if window.low else waiting)

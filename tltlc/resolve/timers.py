@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.core.names import full_name
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
-from tltlc.expression.tree import Const, Expression, Op, SignalValue
+from tltlc.expression.tree import Const, Expression, Op, SignalValue, depth
+from tltlc.io.limits import ARITHMETIC
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, rebuild
 from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers
 from tltlc.resolve.context import Context
 from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.values import number_text
+
+_MOST_PARTS: Final = 1_000
+"""The most parts of the formulas that one timer is about; their texts are in its name."""
+_MOST_DEPTH: Final = ARITHMETIC.depth // 2
+"""The greatest depth of their robustness, since an update adds operators to it."""
 
 
 @record
@@ -24,6 +32,11 @@ class Timers:
     context: Context
     source: SourceFile
     span: Span
+
+    def fits(self, *formulas: Formula) -> bool:
+        """Whether timers about these formulas, which have no temporal operators, are not too large."""
+        size = sum(self.context.tree_size(formula) for formula in formulas)
+        return size <= _MOST_PARTS and all(depth(registers.robustness(formula)) <= _MOST_DEPTH for formula in formulas)
 
     def passed(self, steps: int, event: Formula | None = None) -> Formula:
         """Return the atom of "``event`` last held ``steps`` or more steps ago", or never.
