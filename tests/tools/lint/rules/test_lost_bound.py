@@ -1,0 +1,57 @@
+"""TLT0437: bounds without effect."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.tools.lint.helpers import findings_in
+from tltlc.automaton.compare import are_equivalent
+from tltlc.pipeline import compile_text
+
+SIGNALS = "clock 10 Hz\nsignal a: bool\nsignal b: bool\n"
+CASES = {
+    "reach eventually within 2 s a": "reach a",
+    "reach a then (eventually within 2 s b)": "reach a then b",
+    "keep always for 2 s a": "keep a",
+    "require eventually F[0,3] a": "require eventually a",
+    "require G (always for 3 steps a)": "require always a",
+    "require b and (eventually (eventually within 3 steps a))": "require b and eventually a",
+}
+"""Maps clauses with a bound that has no effect to the same clauses without it."""
+
+
+def helps(clause: str) -> list[str | None]:
+    text = f"{SIGNALS}spec s {{\n    limit 300 steps\n    {clause}\n}}\n"
+    diagnostics = (finding.diagnostic for finding in findings_in(text))
+    return [diagnostic.help for diagnostic in diagnostics if diagnostic.code == "TLT0437"]
+
+
+@pytest.mark.parametrize(("clause", "without"), CASES.items(), ids=CASES)
+def test_a_bound_without_effect_is_reported(clause: str, without: str) -> None:
+    assert len(helps(clause)) == 1
+    (one,), (other,) = (compile_text(f"{SIGNALS}spec s {{ {text} }}") for text in (clause, without))
+    assert are_equivalent(one, other)
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "require eventually within 2 s a",
+        "reach a then within 2 s b",
+        "keep a implies eventually within 2 s b",
+        "keep eventually within 2 s a",
+        "reach always for 2 s a",
+        "reach F[2,5] a",
+        "reach (eventually within 2 s a) then b",
+        "reach a and (eventually within 2 s b)",
+        "require not eventually within 2 s a",
+    ],
+)
+def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
+    assert helps(clause) == []
+
+
+def test_the_advice_names_the_right_form() -> None:
+    assert helps("reach eventually within 2 s a") == ["write `require eventually within 2 s a`"]
+    assert helps("reach a then (eventually within 2 s b)") == ["write `a then within 2 s b`"]
+    assert helps("reach a then (F[0,7] (a or b))") == ["write `a then within 7 steps (a or b)`"]

@@ -1,0 +1,81 @@
+"""TLT0437: a bound without effect, as in `reach eventually within 5 s a`: `reach` may wait before the bound begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import BinaryExpr, Unary
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
+from tltlc.tools.lint.rule import LintRule, RuleFinding
+
+
+def check(view: FileView) -> Iterator[RuleFinding]:
+    """Yield a finding for each bounded `eventually` that another `eventually` precedes, and likewise for `always`."""
+    for spec in view.specs:
+        for clause, value in spec.clauses("reach", "keep"):
+            op = "F" if clause.kind == "reach" else "G"
+            inner = _bounded(value, op)
+            if inner is not None:
+                bound, awaited = _bound_text(inner), operand_text(_operand(inner))
+                advice = f"write `require eventually {bound} {awaited}`" if op == "F" else f"write `keep {awaited}`"
+                yield _finding(inner, f"`{clause.kind}`", advice)
+        for formula in spec.formulas():
+            for part in formula.parts():
+                yield from _in_sequence(part)
+                yield from _in_operator(part)
+
+
+def _in_sequence(part: ScopedExpression) -> Iterator[RuleFinding]:
+    """Yield a finding for the last goal of a sequence, which may come at any later step.
+
+    A bound of an earlier goal has an effect, if a strange one: the next goal must follow the step from
+    which the bound counts.
+    """
+    tree = part.tree
+    if isinstance(tree, BinaryExpr) and tree.op == "then" and tree.bound is None:
+        inner = _bounded(part.with_tree(tree.right), "F")
+        if inner is not None:
+            before, awaited = operand_text(part.with_tree(tree.left)), operand_text(_operand(inner))
+            yield _finding(inner, "`then`", f"write `{before} then {_bound_text(inner)} {awaited}`")
+
+
+def _in_operator(part: ScopedExpression) -> Iterator[RuleFinding]:
+    tree = part.tree
+    if isinstance(tree, Unary) and tree.op in ("F", "G") and tree.bound is None:
+        inner = _bounded(part.with_tree(tree.operand), tree.op)
+        if inner is not None:
+            word = part.source.slice(tree.op_span)
+            yield _finding(inner, f"the `{word}` before it", "leave out one of the two operators")
+
+
+def _bounded(part: ScopedExpression, op: str) -> ScopedExpression | None:
+    """Return the expression without brackets if it is the operator ``op`` with a bound that begins at once."""
+    tree = without_brackets(part.tree)
+    if not isinstance(tree, Unary) or tree.op != op or tree.bound is None:
+        return None
+    begins_at_once = tree.bound.low is None or tree.bound.low.value == 0
+    return part.with_tree(tree) if begins_at_once else None
+
+
+def _operand(part: ScopedExpression) -> ScopedExpression:
+    assert isinstance(part.tree, Unary)
+    return part.with_tree(part.tree.operand)
+
+
+def _bound_text(part: ScopedExpression) -> str:
+    """Return the bound in words."""
+    assert isinstance(part.tree, Unary)
+    assert part.tree.bound is not None
+    high = part.tree.bound.high
+    return f"within {' '.join(part.source.slice(high.span).split())}{'' if high.unit else ' steps'}"
+
+
+def _finding(part: ScopedExpression, cause: str, advice: str) -> RuleFinding:
+    assert isinstance(part.tree, Unary)
+    assert part.tree.bound is not None
+    label = Label(part.source, part.tree.bound.span, f"{cause} may wait for any time before this time begins")
+    return RuleFinding("this bound has no effect", (label,), advice)
+
+
+RULE = LintRule("TLT0437", "warning", check)
