@@ -133,7 +133,7 @@ def test_the_actions_reach_every_error() -> None:
     refused = " ".join(line.refused for line in expected_lines(True))
     for text in ("`lowest(8 / x)` divides by zero", "`highest(x * x)` is too large", "hold at once", "not a finite"):
         assert text in refused
-    assert "the register `last (x * x * x)` is too large to compute" in refused
+    assert "the register `last value of (x * x * x)` is too large to compute" in refused
     kinds = {register.kind for register in automaton().registers}
     assert kinds == {"highest", "lowest", "previous", "last", "first", "since", "once", "times", "time_since"}
     assert len({line.registers for line in expected_lines(True)}) > 12
