@@ -130,13 +130,15 @@ def longest_bound(parts: Iterable[Conjunct]) -> Bound | None:
 
 def bound_advice(bound: Bound) -> str:
     """Return how to write a bound that becomes states so that it needs none."""
-    if bound.operator in ("next", "X", "○", "weak_next", "N"):
-        return "shorten it, or choose a slower `clock`"
     text = " ".join(bound.source.slice(bound.span).split())
-    form = f"`keep p implies {bound.operator} {text} q`"
-    return (
-        f"{form} needs no states if `p` and `q` are about one sample; otherwise shorten it, or choose a slower `clock`"
-    )
+    shorten = "shorten it, or choose a slower `clock`"
+    if bound.operator in ("eventually", "F", "<>", "◇"):
+        form = f"`keep p implies {bound.operator} {text} q`"
+    elif bound.operator in ("always", "G", "[]", "□"):
+        form = f"`keep p implies {bound.operator} {text} q`, also with `next` before `{bound.operator}`,"
+    else:
+        return shorten
+    return f"{form} needs no states if `p` and `q` are about one sample; otherwise {shorten}"
 
 
 def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:

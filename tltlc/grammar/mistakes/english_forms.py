@@ -63,9 +63,15 @@ FORMS: Final[dict[str, Forms]] = {
 IN_TIME: Final = {
     "reach": Form("eventually within {b} {a}", "require"),
     "avoid": Form("not eventually within {b} {a}", "require"),
-    "then": Form("{c} and F[1,{end}] {a}"),
+    "then": Form("{c} then within {b} {a}"),
     "": Form("eventually within {b} {a}"),
 }
+PAST_TIME: Final = {
+    ("ONCE", "within"): Form("once within {b} {a}"),
+    ("ONCE", "in"): Form("once within {b} {a}"),
+    ("HISTORICALLY", "for"): Form("historically for {b} {a}"),
+}
+"""How to write `once a within TIME` and `historically a for TIME`, by the terminal and the word."""
 FOR_TIME: Final = {
     # After the end of a trace, `always for` requires nothing: one step would satisfy it.
     "reach": Form("(always for {b} {a}) and next after {less} {a}"),
@@ -94,7 +100,7 @@ TIMES: Final[dict[str, Forms]] = {
 minus one step. The key `then` is for `c then a WORD TIME`. There, ``{c} and …`` makes the time begin
 at the step that reaches ``c``.
 """
-TIMED: Final = {HOLDING, *(form for forms in TIMES.values() for form in forms.values())}
+TIMED: Final = {HOLDING, *(form for forms in TIMES.values() for form in forms.values()), *PAST_TIME.values()}
 
 _PREFIX: Final = {"reach": Form("{b} and {a}"), "avoid": Form("{b} and {a}"), "": Form("{b} implies {a}")}
 PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)

@@ -6,7 +6,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
-from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, Forms
+from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, PAST_TIME, Forms
 from tltlc.grammar.mistakes.english_rewrite import Parts, Time, clause_keyword, goal_starts, rewrite_error
 from tltlc.grammar.mistakes.one_reading import (
     QUANTIFIERS,
@@ -49,6 +49,13 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         is_clear = is_clear and not has_token(failure, formula_start(failure), at, TEMPORAL | QUANTIFIERS)
     if form == FOR_TIME["reach"] and time.steps is None and time.unit in _IN_SECONDS:
         form = HOLDING
+    last = last_index_of(failure, INFIX, begin)
+    operator = begin if last is None else last + 1
+    past = PAST_TIME.get((failure.tokens[operator].type, failure.tokens[at].text))
+    if past is not None:
+        is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator + 1, at)
+        parts = Parts(operand_text(failure, operator + 1, at), time.text, "", time)
+        return rewrite_error(failure, at, (operator, stop), past, parts if is_clear else None)
     if kind != "keep":
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)

@@ -66,6 +66,8 @@ def equality(failure: ParseFailure) -> Diagnostic | None:
             boolean_text = f"({a} iff {b})" if is_part or is_unequal else f"{a} iff {b}"
             boolean_text = f"{'not ' * is_unequal}{boolean_text}"
             reason = f", or `{boolean_text}` if both values are true or false"
+            choice = f"{a} is {'not ' * is_unequal}{b}"
+            reason += f", or `{choice}` if `{b}` is a value of an enum" if b.isidentifier() else ""
     general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
     diagnostic = suggest_rewrite(failure, start, stop, text, title, reason, "TLT0110") if a and b else None
     if diagnostic and diagnostic.fixes and boolean_text:

@@ -8,6 +8,7 @@ from typing import Final
 from tltlc.automaton.finite.blowup import bound_advice
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.walk import parts
+from tltlc.resolve.specs import MOST_UNFOLDED
 from tltlc.tools.lint.file_view import FileView, SpecView
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -41,7 +42,7 @@ def _finding(spec: SpecView, states: int) -> RuleFinding:
         return RuleFinding(
             title,
             (label,),
-            bound_advice(worst),
+            bound_advice(worst) if worst.samples > MOST_UNFOLDED else "shorten it, or choose a slower `clock`",
         )
     first, *rest = (Label(part.source, part.span) for part in spec.spec.parts[:_MOST_LABELS])
     message = "the states of its parts multiply" if rest else "this has to remember a lot"
