@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import times
-from tests.tools.lint.helpers import APART, block, codes, labelled_texts_in_block, spec_and_findings
+from tests.tools.lint.helpers import APART, block, codes, findings_in, labelled_texts_in_block, spec_and_findings
 from tests.tools.lint.strategies import World, specs
 from tltlc.logic.formula import and_
 from tltlc.tools.lint.rules import never_answered
@@ -61,3 +61,24 @@ def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tupl
         formula = trees[finding.labels[0].span].formula()
         assert formula and not any(world.traces.holding_at_some_step(and_(*formula.args)))
         assert all(any(world.traces.holding_at_some_step(side)) for side in formula.args)
+
+
+@pytest.mark.parametrize(
+    ("clause", "advice"),
+    [
+        ("keep a implies always for 1 s not a", "for the steps after it, write `a implies next always for 1 s not a`"),
+        (
+            "keep begins a implies (always for 10 s not begins a)",
+            "for the steps after it, write `begins a implies next always for 10 s not begins a`",
+        ),
+        ("keep a implies always not a", "for the steps after it, write `a implies next always not a`"),
+        ("keep a implies next always for 1 s not a", None),
+        ("keep a implies always for 1 s not b", None),
+        ("keep a implies G[1,5] not a", None),
+    ],
+)
+def test_a_rule_that_forbids_its_own_event_is_reported(clause: str, advice: str | None) -> None:
+    settings = "limit 60 s\n    judge at limit"
+    text = f"clock 60 Hz\nsignal a: bool\nsignal b: bool\nspec s {{\n    {settings}\n    {clause}\n}}\n"
+    found = [finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0432"]
+    assert [diagnostic.help for diagnostic in found] == ([] if advice is None else [advice])

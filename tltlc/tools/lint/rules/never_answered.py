@@ -1,4 +1,7 @@
-"""TLT0432: `p implies q` where q never holds at the step of p, so p is forbidden."""
+"""TLT0432: `p implies q` where q never holds at the step of p, so p is forbidden.
+
+The same is true of `p implies always for 1 s q`, which begins at the step of p.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
-from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text
+from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
 _REQUIRING: Final = ("implies", "and", "G", "X", "N")
@@ -50,16 +53,37 @@ def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
 
 
 def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
-    formula = implication.formula()
-    if formula is None or formula.op != "implies" or not is_state(formula):
+    condition, result = (part.formula() for part in _sides(implication))
+    if condition is None or result is None or not is_state(condition) or not is_state(result):
         return False
-    proved = relations(spec, formula.atoms())
+    proved = relations(spec, and_(condition, result).atoms())
 
     def can_be(state: Formula) -> bool:
         return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *proved), spec.spec)
 
-    condition, result = formula.args
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
+
+
+def _sides(implication: ScopedExpression) -> tuple[ScopedExpression, ScopedExpression]:
+    """Return the condition of an implication, and what it requires at the same step.
+
+    `always` requires its operand at this step, too, unless its bound begins later.
+    """
+    tree = implication.tree
+    assert isinstance(tree, BinaryExpr)
+    lasting = _lasting(implication)
+    result = tree.right if lasting is None else lasting.operand
+    return implication.with_tree(tree.left), implication.with_tree(result)
+
+
+def _lasting(implication: ScopedExpression) -> Unary | None:
+    """Return the `always` that an implication requires from its own step on, or None."""
+    assert isinstance(implication.tree, BinaryExpr)
+    right = without_brackets(implication.tree.right)
+    if not isinstance(right, Unary) or right.op != "G":
+        return None
+    low = right.bound.low if right.bound is not None else None
+    return right if low is None or low.value == 0 else None
 
 
 def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
@@ -72,9 +96,13 @@ def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
 
 def _finding(implication: ScopedExpression) -> RuleFinding:
     assert isinstance(implication.tree, BinaryExpr)
-    condition, result = implication.with_tree(implication.tree.left), implication.with_tree(implication.tree.right)
+    condition, result = _sides(implication)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
     help_ = f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
+    lasting = _lasting(implication)
+    if lasting is not None:
+        after = f"next {implication.with_tree(lasting).text}"
+        help_ = f"for the steps after it, write `{operand_text(condition)} implies {after}`"
     return RuleFinding(f"`{result.text}` never holds at the same step as `{condition.text}`", (label,), help_)
 
 
