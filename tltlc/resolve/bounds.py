@@ -80,10 +80,11 @@ def note_bound(node: Formula, steps: int, bound: TemporalInterval, env: Env, ope
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:
     """Return ``F operand`` or ``G operand``, as if the operator had no bound.
 
-    ``X`` and ``N`` have no bound to leave out: they are applied ``steps`` times.
+    ``X`` and ``N`` have no bound to leave out. They are applied once, unless ``steps`` is 0: how often
+    makes no difference to when a spec is judged.
     """
     if op in ("F", "G"):
         return eventually(operand) if op == "F" else always(operand)
-    for _ in range(steps):
-        operand = next_(operand) if op == "X" else weak_next(operand)
-    return operand
+    if steps == 0:
+        return operand
+    return next_(operand) if op == "X" else weak_next(operand)

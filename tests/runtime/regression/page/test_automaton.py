@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.runtime.regression.page import samples
+from tests.unfolded import unfolded
 from tltl_runtime.regression.explain.explained_episode import ExplainedEpisode
 from tltl_runtime.regression.report.page.automaton import counts_table, draw_automaton, picture
 from tltl_runtime.regression.report.page.traffic import Traffic, traffic
@@ -156,7 +157,8 @@ def test_a_folded_run_of_states_is_one_group() -> None:
 
 
 def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
-    (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
+    with unfolded():
+        (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
     # The states in which one of the two atoms has not been true yet.
     inner = {state.id for state in folded_drawing(fspa).folded[4]}
     entering = [(edge.source, edge.target) for edge in fspa.edges if edge.source not in inner and edge.target in inner]
@@ -171,7 +173,8 @@ def test_a_folded_run_counts_episodes_that_enter_at_any_of_its_states() -> None:
 
 
 def test_an_edge_between_two_folded_runs_is_counted_at_the_drawn_edge() -> None:
-    (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
+    with unfolded():
+        (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
     folded = folded_drawing(fspa).folded
     ends = {run[-1].id: first for first, run in folded.items()}
     # The edges of the last states of the runs: beyond the own end, beyond the end of another run, to success.
