@@ -38,7 +38,7 @@ LIBRARY: Final = SourceFile(
     "predicate p in [-1, 1] = v - bound / 2\n",
 )
 SPECS: Final = tltlc.compile_text(
-    f"{LIBRARY.text}spec endless {{ semantics infinite  require G F a & G F p }}\nspec ends = F(a & X p)\n"
+    f"{LIBRARY.text}spec endless {{ semantics infinite  require G F a & G F p }}\nspec stops = F(a & X p)\n"
 )
 ARTEFACTS: Final = [
     json.loads(emit("json", fspa)[f"{fspa.name}.fspa.json"])

@@ -46,7 +46,9 @@ def comment_targets(module: tree.Module) -> list[set[int] | None]:
     None stands for the whole file.
     """
     numbers = {span: number for number, span in enumerate(allowed.statements(module))}
-    blocks = [declaration.span for declaration in module.declarations if isinstance(declaration, tree.SpecDecl)]
+    # A comment on a whole block or list applies to all that is in it.
+    kinds = (tree.SpecDecl, tree.EntityDecl)
+    blocks = [declaration.span for declaration in module.declarations if isinstance(declaration, kinds)]
     targets: list[set[int] | None] = []
     for _, places in allowed.commented_spans(module):
         whole = [place for place in places or () if place in blocks]
