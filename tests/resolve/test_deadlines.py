@@ -206,3 +206,21 @@ def test_then_within_no_steps_is_an_error() -> None:
     with pytest.raises(TltlError) as caught:
         compile_text(f"{SIGNALS}spec s {{ reach a then within 0 steps b }}")
     assert [problem.code for problem in caught.value.diagnostics] == ["TLT0312"]
+
+
+def test_several_rules_from_the_start_need_no_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    clause = "require always for 4 steps a require G[2,6] (b or c) require next G[0,3] not c"
+    unfolded, timed = compiled(clause, monkeypatch, 10**100), compiled(clause, monkeypatch, 0)
+    assert len(timed.states) <= 4
+    generator = random.Random(5)
+    for _ in range(300):
+        trace = random_trace(generator, 10)
+        for expected, step in zip(steps(unfolded, trace), steps(timed, trace), strict=True):
+            assert step.accepting == expected.accepting
+            assert step.verdict in (expected.verdict, "holding" if step.accepting else "pending")
+
+
+def test_times_on_a_fast_clock_tell_steps_apart() -> None:
+    clauses = "require F[0,3] a or G[0,90] b require F[0,4] c"
+    (fspa,) = compile_text(f"clock 2000000 Hz\n{SIGNALS}spec s {{ {clauses} }}")
+    assert {atom.name for atom in fspa.atoms} >= {"passed(3 steps)", "passed(2e-06 s)"}

@@ -164,6 +164,10 @@ def _read(expression: Expression) -> set[str]:
 def _phrase(each: Atom, register: Register, clock_s: float | None) -> Phrase | None:
     """Return the phrase of an atom that reads one register, and nothing else; None if it has none."""
     timer = _TIMERS.get(register.kind, {}).get(each.base)
+    if register.kind == "breach" and len(each.arguments) == 2:
+        return Phrase(
+            "not {1} in the first {0}".format(*each.arguments), "{1} for the first {0}".format(*each.arguments)
+        )
     if timer is not None and each.arguments:
         missing = register.kind in ("waiting", "due") and len(each.arguments) < 2 + (each.base == "late")
         return Phrase(*(text.format(*each.arguments) for text in (_ALWAYS[each.base] if missing else timer)))

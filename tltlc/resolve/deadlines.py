@@ -43,15 +43,23 @@ from tltlc.resolve.timers import Timers
 from tltlc.resolve.unfolding import bounded_parts
 
 
-def with_timers(formula: Formula, timers: Timers) -> Formula:
+def with_timers(formula: Formula, timers: Timers, *, many_rules: bool = False) -> Formula:
     """Return an equivalent formula in which timers replace the bounded operators that have a rule.
 
-    ``formula`` is a whole clause, which is judged from the first sample on.
+    ``formula`` is a whole clause, which is judged from the first sample on. ``many_rules`` says that
+    the spec has several rules for a time from the first sample: then their formulas need no states,
+    but do not know when their time is over.
     """
     try:
-        return _Rewriting(timers).at_start(formula)
+        return _Rewriting(timers, many_rules).at_start(formula)
     except RecursionError:
         return formula  # Operators nest too deep: the bounds become states.
+
+
+def rules_from_start(formula: Formula) -> int:
+    """Return how many conjuncts of a clause are rules for a time from the first sample, ``G[m,n] f``."""
+    conjuncts = formula.args if formula.op == "and" else (formula,)
+    return sum(1 for part in conjuncts if (window := _window(part)) is not None and window.op == "G")
 
 
 class _Window(NamedTuple):
@@ -68,8 +76,8 @@ class _Window(NamedTuple):
 
 
 class _Rewriting:
-    def __init__(self, timers: Timers) -> None:
-        self._timers = timers
+    def __init__(self, timers: Timers, many_rules: bool) -> None:
+        self._timers, self._many_rules = timers, many_rules
         self._inside: dict[Formula, Formula] = {}
 
     def _fits(self, *formulas: Formula) -> bool:
@@ -102,6 +110,9 @@ class _Rewriting:
         if window.op == "F":
             body = self._anchored(window.body, timers.between(window.low, window.high))
             return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
+        if self._many_rules and self._fits(window.body):
+            rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
+            return and_(next_(TRUE), rule) if window.exists else rule
         body = self.inside(window.body)
         result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
         return and_(next_(TRUE), result) if window.exists else result

@@ -16,7 +16,7 @@ from tltlc.grammar.walk import conjuncts
 from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
-from tltlc.resolve.deadlines import with_timers
+from tltlc.resolve.deadlines import rules_from_start, with_timers
 from tltlc.resolve.enums import exclusive_values
 from tltlc.resolve.formulas import with_bounds
 from tltlc.resolve.problem import ResolutionError, problem
@@ -147,10 +147,12 @@ def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
     (:mod:`tltlc.resolve.deadlines`), and the others become states.
     """
     context = env.context
+    many_rules = sum(rules_from_start(part.formula) for part in parts) > 1
     few = prod(_states(node) for part in parts for node in bounded_parts(part.formula)) <= MOST_UNFOLDED
     result = []
     for part in parts:
-        formula = part.formula if few else with_timers(part.formula, Timers(context, part.source, part.span))
+        timers = Timers(context, part.source, part.span)
+        formula = part.formula if few else with_timers(part.formula, timers, many_rules=many_rules)
         bounds = tuple(dict.fromkeys(context.bound_of[node] for node in bounded_parts(formula)))
         result.append(replace(part, formula=unfold(formula, context), bounds=bounds))
     return result

@@ -104,6 +104,21 @@ class Timers:
         self._register(registers.breach(name, value))
         return self._atom("breach", SignalValue(name), *arguments)
 
+    def breach_from_start(self, low: int, high: int, rule: Formula) -> Formula:
+        """Return the atom of "it is sample ``low`` to ``high``, counted from 0, and ``rule`` does not hold"."""
+        samples = self._samples()
+        inside = self._at_most(samples, high + 1)
+        if low:
+            inside = Op("min", (inside, self._at_least(samples, low + 1)))
+        arguments = (
+            (self._time(high + 1), _text(rule))
+            if low == 0
+            else (f"{self._time(low)} to {self._time(high)}", _text(rule))
+        )
+        name = full_name("breach", arguments)
+        self._register(registers.breach(name, Op("min", (inside, self._value(not_(rule))))))
+        return self._atom("breach", SignalValue(name), *arguments)
+
     def now(self, state: Formula) -> Formula:
         """Return ``state`` as one atom."""
         return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self._kept(state)))
@@ -160,7 +175,9 @@ class Timers:
         period = self.context.clock_s
         if period is None:
             return f"{steps} step{'s' * (steps != 1)}"
-        return f"{number_text(round(steps * period, 6))} s"
+        seconds = round(steps * period, 6)
+        # On a fast clock, a rounded time would not tell the steps apart.
+        return f"{number_text(seconds)} s" if abs(seconds / period - steps) < 1e-3 else f"{steps} steps"
 
     def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
         return self.context.atom(base, value, "", self.source, self.span, arguments)

@@ -10,6 +10,7 @@ import torch
 
 from tests.runtime.batch.test_batch_monitor import assert_equal
 from tltl_runtime.spec.batch import BatchMonitor
+from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import given_atoms
 from tltlc.monitor import Monitor, MonitorError
@@ -116,3 +117,13 @@ def test_a_batch_in_float32_counts_as_one_in_float64() -> None:
         assert len({tuple(step.state.tolist()) for step in steps}) == 1
         assert torch.allclose(single.registers.double(), double.registers, rtol=0.0, atol=1e-6)
         assert torch.equal(unchecked.registers, double.registers)
+
+
+@pytest.mark.parametrize("dtype", [torch.bfloat16, torch.float16, torch.float32])
+def test_a_deadline_expires_in_small_formats(dtype: torch.dtype) -> None:
+    (fspa,) = compile_text("signal a: bool\nsignal b: bool\nspec s { keep a implies eventually within 300 steps b }")
+    batch, monitor = BatchMonitor(fspa, 1, dtype=dtype), Monitor(fspa)
+    for number in range(302):
+        sample = {"a": float(number == 0), "b": 0.0}
+        assert batch.step(columns([sample])).state.tolist() == [monitor.step(sample).state]
+    assert fspa.states[monitor.state].verdict == "violated"

@@ -14,6 +14,11 @@ def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
     return all(number == 0.0 or format_.tiny <= abs(number) <= format_.max for number in numbers)
 
 
+def counts_up_to(maximum: float, dtype: torch.dtype) -> bool:
+    """Whether ``dtype`` has all whole numbers and halves from 0 to ``maximum``, so that a counter reaches it."""
+    return maximum * torch.finfo(dtype).eps <= 0.5
+
+
 def narrow(values: Tensor, dtype: torch.dtype) -> Tensor:
     """Convert values to ``dtype``, and keep their signs: only 0 becomes 0.
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.spec.batch.expressions import TensorExpressions
-from tltl_runtime.spec.batch.float_formats import fits, narrow
+from tltl_runtime.spec.batch.float_formats import counts_up_to, fits, narrow
 from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors, record
 
 _NAMED = 5
@@ -55,7 +55,11 @@ class BatchSamples:
         self.clamped: dict[str, int] = {}
         values = monitors.param_values(fspa.params, params or {})
         self._result_dtype = dtype
-        self._dtype = dtype = dtype if fits(_constants(fspa, values), dtype) else torch.float64
+        counters = [each.high for each in fspa.registers if each.unit == "steps" or each.kind == "times"]
+        is_exact = fits(_constants(fspa, values), dtype) and all(
+            high is not None and counts_up_to(high, dtype) for high in counters
+        )
+        self._dtype = dtype = dtype if is_exact else torch.float64
         self._values = values
         self._computations = _computations(fspa)
         self._before = tuple(expressions.Before(register.name) for register in fspa.registers)

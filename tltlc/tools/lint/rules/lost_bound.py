@@ -55,7 +55,7 @@ def _bounded(part: ScopedExpression, op: str) -> ScopedExpression | None:
     if not isinstance(tree, Unary) or tree.op != op or tree.bound is None:
         return None
     begins_at_once = tree.bound.low is None or tree.bound.low.value == 0
-    return part.with_tree(tree) if begins_at_once else None
+    return part.with_tree(tree) if begins_at_once and tree.bound.high.value else None
 
 
 def _operand(part: ScopedExpression) -> ScopedExpression:
@@ -74,7 +74,10 @@ def _bound_text(part: ScopedExpression) -> str:
 def _finding(part: ScopedExpression, cause: str, advice: str) -> RuleFinding:
     assert isinstance(part.tree, Unary)
     assert part.tree.bound is not None
-    label = Label(part.source, part.tree.bound.span, f"{cause} may wait for any time before this time begins")
+    message = f"{cause} may wait for any time before this time begins"
+    if part.tree.op == "G":
+        message = f"{cause} asks for it at every step, so this time never ends"
+    label = Label(part.source, part.tree.bound.span, message)
     return RuleFinding("this bound has no effect", (label,), advice)
 
 
