@@ -38,7 +38,10 @@ _TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
         "lasted": ("{0} are over", "less than {0} have passed"),
         "over": ("more than {0} have passed", "at most {0} have passed"),
     },
-    "time_since": {"passed": ("{0} have passed since {1}", "less than {0} have passed since {1}")},
+    "time_since": {
+        "lately": ("{1} in the last {0}", "no {1} in the last {0}"),
+        "passed": ("{0} have passed since {1}", "less than {0} have passed since {1}"),
+    },
     "age": {"recent": ("{1} in the {0} before", "no {1} in the {0} before")},
     "time_holding": {"held": ("{1} for {0}", "{1} for less than {0}")},
 }

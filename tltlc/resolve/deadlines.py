@@ -75,6 +75,13 @@ class _Window(NamedTuple):
     exists: bool = False
 
 
+class _Reached(NamedTuple):
+    """The condition that a sample of a chain is reached in time, and the words for it: "within 5 s after a"."""
+
+    formula: Formula
+    words: str
+
+
 class _Rewriting:
     def __init__(self, timers: Timers, many_rules: bool) -> None:
         self._timers, self._many_rules = timers, many_rules
@@ -108,7 +115,8 @@ class _Rewriting:
             return self.at_start(window.body)
         begun = timers.passed(window.low) if window.low else None
         if window.op == "F":
-            body = self._anchored(window.body, timers.between(window.low, window.high))
+            first = _Reached(timers.between(window.low, window.high), f"within {timers.time(window.high)}")
+            body = self._anchored(window.body, first)
             return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
         if self._many_rules and self._fits(window.body):
             rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
@@ -197,10 +205,10 @@ class _Rewriting:
             self._inside[node] = known
         return known
 
-    def _anchored(self, body: Formula, reached: Formula | None) -> Formula:
+    def _anchored(self, body: Formula, reached: _Reached | None) -> Formula:
         """Return the body of ``F body``, in which a bounded operator may count from the samples of its conjuncts.
 
-        ``reached`` holds at the samples that ``F`` may choose, and is None if it may choose any.
+        ``reached`` holds at the samples that ``F`` may choose. It is None if ``F`` may choose any.
         """
         parts = body.args if body.op == "and" else (body,)
         temporal = [part for part in parts if not _is_present(part)]
@@ -208,11 +216,15 @@ class _Rewriting:
         present = [part for part in parts if part not in temporal]
         if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
             return self.inside(body)
-        anchor = and_(*present) if reached is None else and_(*present, reached)
+        anchor, said = and_(*present), self._timers.text(and_(*present))
+        if reached is not None:
+            anchor, said = and_(anchor, reached.formula), f"{said} {reached.words}"
         if not self._fits(anchor):
             return self.inside(body)
-        goal = self._anchored(window.body, self._timers.recent(window.low, window.high, anchor))
-        waiting = until(not_(self._timers.passed(window.high, anchor)), goal)
+        in_time = f"within {self._timers.time(window.high)} after {said}"
+        recent = self._timers.recent(window.low, window.high, anchor, said)
+        goal = self._anchored(window.body, _Reached(recent, in_time))
+        waiting = until(not_(self._timers.passed(window.high, anchor, said)), goal)
         return and_(*present, next_(waiting) if window.low else waiting)
 
 

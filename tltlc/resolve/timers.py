@@ -38,41 +38,45 @@ class Timers:
         size = sum(self.context.tree_size(formula) for formula in formulas)
         return size <= _MOST_PARTS and all(depth(registers.robustness(formula)) <= _MOST_DEPTH for formula in formulas)
 
-    def passed(self, steps: int, event: Formula | None = None) -> Formula:
+    def passed(self, steps: int, event: Formula | None = None, said: str | None = None) -> Formula:
         """Return the atom of "``event`` last held ``steps`` or more steps ago", or never.
 
-        Without an event, the steps count from the first sample. ``steps`` is at least 1.
+        Without an event, the steps count from the first sample. ``steps`` is at least 1. ``said`` is the
+        event in words, by default its text.
         """
         if event is None:
-            return self._atom("passed", self._at_least(self._samples(), steps + 1), self._time(steps))
+            return self._atom("passed", self._at_least(self._samples(), steps + 1), self.time(steps))
         value = self._at_least(self._time_since(event), steps)
-        return self._atom("passed", value, self._time(steps), _text(event))
+        return self._atom("passed", value, self.time(steps), said or _text(event))
 
     def lasted(self, steps: int) -> Formula:
         """Return the atom of "this is sample ``steps``, counted from 0, or a later one".
 
         It is named by the time that all samples up to this one take.
         """
-        return self._atom("lasted", self._at_least(self._samples(), steps + 1), self._time(steps + 1))
+        return self._atom("lasted", self._at_least(self._samples(), steps + 1), self.time(steps + 1))
 
     def between(self, low: int, high: int) -> Formula:
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
-        over = self._atom("over", self._at_least(self._samples(), high + 2), self._time(high))
+        over = self._atom("over", self._at_least(self._samples(), high + 2), self.time(high))
         return and_(self.passed(low), not_(over)) if low else not_(over)
 
-    def recent(self, low: int, high: int, event: Formula) -> Formula:
-        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago". ``low`` is 0 or 1."""
+    def recent(self, low: int, high: int, event: Formula, said: str) -> Formula:
+        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago"; ``said`` is the event in words.
+
+        ``low`` is 0 or 1.
+        """
         value = self._at_most(self._age(low, event), high)
         if low == 0:
-            return self._atom(f"once within {self._time(high)} {operand_text(event)}", value)
-        return self._atom("recent", value, self._time(high), _text(event))
+            return self._atom("lately", value, self.time(high), said)
+        return self._atom("recent", value, self.time(high), said)
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
         kept, truth = self._kept(state), registers.truth(state)
         self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
-        return self._atom("held", self._at_least(register, steps), self._time(steps + 1), _text(state))
+        return self._atom("held", self._at_least(register, steps), self.time(steps + 1), _text(state))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for too long".
@@ -87,7 +91,7 @@ class Timers:
         self._register(registers.due(due, self._value(request), self._value(goal), strict))
         step = registers.step_length(False)
         self._register(registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step))
-        time = f"{'the next ' if strict else ''}{self._time(high)}"
+        time = f"{'the next ' if strict else ''}{self.time(high)}"
         late = self._atom("late", self._at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
         return self._atom("due", SignalValue(due), *pair), late
 
@@ -97,7 +101,7 @@ class Timers:
         One atom, since each further one in a clause multiplies the prime implicants of guards.
         """
         # Like `for` in the language, a rule that begins at the event has a time that counts all of its samples.
-        time = f"the next {self._time(high)}" if low else self._time(high + 1)
+        time = f"the next {self.time(high)}" if low else self.time(high + 1)
         arguments = (time, _text(event), _text(rule))
         value = Op("min", (self._at_most(self._age(low, event), high), self._value(not_(rule))))
         name = full_name("breach", arguments)
@@ -111,9 +115,7 @@ class Timers:
         if low:
             inside = Op("min", (inside, self._at_least(samples, low + 1)))
         arguments = (
-            (self._time(high + 1), _text(rule))
-            if low == 0
-            else (f"{self._time(low)} to {self._time(high)}", _text(rule))
+            (self.time(high + 1), _text(rule)) if low == 0 else (f"{self.time(low)} to {self.time(high)}", _text(rule))
         )
         name = full_name("breach", arguments)
         self._register(registers.breach(name, Op("min", (inside, self._value(not_(rule))))))
@@ -122,6 +124,10 @@ class Timers:
     def now(self, state: Formula) -> Formula:
         """Return ``state`` as one atom."""
         return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self._kept(state)))
+
+    def text(self, formula: Formula) -> str:
+        """Return the text of a formula in the names of timers."""
+        return _text(formula)
 
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
@@ -170,7 +176,7 @@ class Timers:
         border = steps + 0.5
         return Op("/", (Op("-", (Const(border), registers.saturated(register, 2 * border))), Const(border)))
 
-    def _time(self, steps: int) -> str:
+    def time(self, steps: int) -> str:
         """Return a number of steps as a text for people: in seconds if there is a clock."""
         period = self.context.clock_s
         if period is None:
