@@ -3,13 +3,13 @@
 Each rule replaces a formula by an equivalent one over atoms that read a register. The proofs are in
 ``docs/semantics.md``, "Deadlines". In the rules, ``p`` and ``q`` are formulas without temporal
 operators, ``f`` is any formula, and ``passed(n, p)`` holds where p last held n or more steps ago, or
-never.
+never. Without a p, the steps count from the first sample.
 
 ========================  ==============================================================
 where it stands           rule
 ========================  ==============================================================
 at the first sample       ``F[m,n] f`` is ``!passed(n) U (passed(m) & f)``
-at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``
+at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``, or ``G !breach`` if there are more
 at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
 at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
 at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
