@@ -38,7 +38,7 @@ DEADLINE: Final = 10
 """The most samples from an alarm to the answer of a guard."""
 
 ENDS: Final = 4
-"""At so many prefixes of a trace, at most, acceptance is compared."""
+"""The most prefixes of a trace at which acceptance is compared."""
 
 BATCH: Final = 1000
 TARGETS: Final = ("c", "csharp", "gdscript", "gdscript3")

@@ -38,7 +38,7 @@ def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
         advice = "write the smaller number first, e.g. `[0, 20]`"
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
     node = bounded("F[]" if expr.op in ("F", "X") else "G[]", low, high, operand)
-    note_bound(node, high, bound, env, source.slice(expr.op_span))
+    note_bound(node, high, expr, bound, env)
     return node
 
 
@@ -56,7 +56,7 @@ def with_bound(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> For
     high = samples(bound.high, env)
     if expr.op == "within":
         answer = eventually(right) if env.unbounded else bounded("F[]", 0, high, right)
-        note_bound(answer, high, bound, env, source.slice(expr.op_span))
+        note_bound(answer, high, expr, bound, env)
         return implies(left, answer)
     if env.unbounded:
         return then(left, right)
@@ -66,13 +66,14 @@ def with_bound(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> For
     # Another `then` begins with an `F`, whose place the bound takes.
     goal = right.args[0] if isinstance(expr.right, BinaryExpr) and expr.right.op == "then" else right
     rest = bounded("F[]", 0, high - 1, goal)
-    note_bound(rest, high, bound, env, source.slice(expr.op_span))
+    note_bound(rest, high, expr, bound, env)
     return eventually(and_(left, next_(rest)))
 
 
-def note_bound(node: Formula, steps: int, bound: TemporalInterval, env: Env, operator: str) -> None:
-    """Record where the bound of a bounded operator is written; ``operator`` is its word."""
-    place = Bound(steps, env.scope.source, bound.span, operator)
+def note_bound(node: Formula, steps: int, expr: Unary | BinaryExpr, bound: TemporalInterval, env: Env) -> None:
+    """Record where the bound of the operator of ``expr`` is written."""
+    source = env.scope.source
+    place = Bound(steps, source, bound.span, source.slice(expr.op_span), expr.op, bound.words)
     env.context.bounds.append(place)
     env.context.bound_of.setdefault(node, place)
 

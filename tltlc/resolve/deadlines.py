@@ -216,15 +216,15 @@ class _Rewriting:
         present = [part for part in parts if part not in temporal]
         if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
             return self.inside(body)
-        anchor, said = and_(*present), self._timers.text(and_(*present))
+        anchor, event_words = and_(*present), self._timers.text(and_(*present))
         if reached is not None:
-            anchor, said = and_(anchor, reached.formula), f"{said} {reached.words}"
+            anchor, event_words = and_(anchor, reached.formula), f"{event_words} {reached.words}"
         if not self._fits(anchor):
             return self.inside(body)
-        in_time = f"within {self._timers.time(window.high)} after {said}"
-        recent = self._timers.recent(window.low, window.high, anchor, said)
+        in_time = f"within {self._timers.time(window.high)} after {event_words}"
+        recent = self._timers.recent(window.low, window.high, anchor, event_words)
         goal = self._anchored(window.body, _Reached(recent, in_time))
-        waiting = until(not_(self._timers.passed(window.high, anchor, said)), goal)
+        waiting = until(not_(self._timers.passed(window.high, anchor, event_words)), goal)
         return and_(*present, next_(waiting) if window.low else waiting)
 
 

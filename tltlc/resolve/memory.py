@@ -13,7 +13,7 @@ from typing import Final
 from tltlc.core.record import replace
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, depth
+from tltlc.expression.tree import Before, Condition, Expression, Op, SignalValue, depth
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, Unary
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic import formula as logic
@@ -26,6 +26,7 @@ from tltlc.resolve.recall import check_closed, up_to
 from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.resolve.spec import Signal
+from tltlc.resolve.timers import Timers
 from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
@@ -102,11 +103,9 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
         return logic.atom(name)
     watched = operand if expr.op == "once" else logic.not_(operand)
     register = _time_since(watched, expr, env)
-    # Between n and n + 1 steps lies the border of `within`, between n - 1 and n steps that of `for`.
-    border = steps + 0.5 if expr.op == "once" else steps - 0.5
-    age = registers.saturated(register, 2 * border)
-    margin = (Const(border), age) if expr.op == "once" else (age, Const(border))
-    return _atom(name, Op("/", (Op("-", margin), Const(border))), expr.span, env)
+    timers = _timers(expr, env)
+    value = timers.at_most(register, steps) if expr.op == "once" else timers.at_least(register, steps)
+    return _atom(name, value, expr.span, env)
 
 
 def _check_operand(operand: Formula, expr: Expr, env: Env) -> None:
@@ -164,18 +163,20 @@ def _check_depth(value: Expression | Condition, expr: Expr, env: Env) -> None:
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
 
 
+def _timers(expr: Expr, env: Env) -> Timers:
+    return Timers(env.context, env.scope.source, expr.span)
+
+
 def _kept(operand: Formula, expr: Expr, env: Env) -> str:
     """Return the name of the register that keeps the robustness of a formula for the next sample."""
-    name = f"last {operand_text(operand)}"
-    _register(registers.last(name, _value(operand, expr, env), -1.0, 1.0, -1.0), expr, env)
-    return name
+    _check_depth(registers.robustness(operand), expr, env)
+    return _timers(expr, env).kept(operand)
 
 
 def _time_since(operand: Formula, expr: Expr, env: Env) -> str:
-    name = f"time_since({ascii_text(operand)})"
-    step = registers.step_length(False)
-    _register(registers.time_since(name, _truth(operand, expr, env), step, "steps"), expr, env)
-    return name
+    """Return the name of the register with the time since a formula last held."""
+    _check_depth(registers.truth(operand), expr, env)
+    return _timers(expr, env).time_since(operand)
 
 
 # --- functions --------------------------------------------------------------------------------------

@@ -124,12 +124,18 @@ class Register:
 
 @record
 class Bound:
-    """A bound of a temporal operator: its upper end, in samples, its place in the text, and the operator's word."""
+    """A bound of a temporal operator: its upper end, in samples, and its place in the text.
+
+    ``operator`` is the word of the operator, and ``op`` says which one it is, as in the syntax tree. If
+    not ``words``, the bound is in brackets.
+    """
 
     samples: int
     source: SourceFile
     span: Span
-    operator: str = ""
+    operator: str
+    op: str
+    words: bool
 
 
 @record

@@ -38,45 +38,45 @@ class Timers:
         size = sum(self.context.tree_size(formula) for formula in formulas)
         return size <= _MOST_PARTS and all(depth(registers.robustness(formula)) <= _MOST_DEPTH for formula in formulas)
 
-    def passed(self, steps: int, event: Formula | None = None, said: str | None = None) -> Formula:
+    def passed(self, steps: int, event: Formula | None = None, event_words: str | None = None) -> Formula:
         """Return the atom of "``event`` last held ``steps`` or more steps ago", or never.
 
-        Without an event, the steps count from the first sample. ``steps`` is at least 1. ``said`` is the
+        Without an event, the steps count from the first sample. ``steps`` is at least 1. ``event_words`` is the
         event in words, by default its text.
         """
         if event is None:
-            return self._atom("passed", self._at_least(self._samples(), steps + 1), self.time(steps))
-        value = self._at_least(self._time_since(event), steps)
-        return self._atom("passed", value, self.time(steps), said or _text(event))
+            return self._atom("passed", self.at_least(self._samples(), steps + 1), self.time(steps))
+        value = self.at_least(self.time_since(event), steps)
+        return self._atom("passed", value, self.time(steps), event_words or _text(event))
 
     def lasted(self, steps: int) -> Formula:
         """Return the atom of "this is sample ``steps``, counted from 0, or a later one".
 
         It is named by the time that all samples up to this one take.
         """
-        return self._atom("lasted", self._at_least(self._samples(), steps + 1), self.time(steps + 1))
+        return self._atom("lasted", self.at_least(self._samples(), steps + 1), self.time(steps + 1))
 
     def between(self, low: int, high: int) -> Formula:
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
-        over = self._atom("over", self._at_least(self._samples(), high + 2), self.time(high))
+        over = self._atom("over", self.at_least(self._samples(), high + 2), self.time(high))
         return and_(self.passed(low), not_(over)) if low else not_(over)
 
-    def recent(self, low: int, high: int, event: Formula, said: str) -> Formula:
-        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago"; ``said`` is the event in words.
+    def recent(self, low: int, high: int, event: Formula, event_words: str) -> Formula:
+        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago".
 
-        ``low`` is 0 or 1.
+        ``event_words`` is the event in words. ``low`` is 0 or 1.
         """
-        value = self._at_most(self._age(low, event), high)
+        value = self.at_most(self._age(low, event), high)
         if low == 0:
-            return self._atom("lately", value, self.time(high), said)
-        return self._atom("recent", value, self.time(high), said)
+            return self._atom("lately", value, self.time(high), event_words)
+        return self._atom("recent", value, self.time(high), event_words)
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
-        kept, truth = self._kept(state), registers.truth(state)
+        kept, truth = self.kept(state), registers.truth(state)
         self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
-        return self._atom("held", self._at_least(register, steps), self.time(steps + 1), _text(state))
+        return self._atom("held", self.at_least(register, steps), self.time(steps + 1), _text(state))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for too long".
@@ -92,7 +92,7 @@ class Timers:
         step = registers.step_length(False)
         self._register(registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step))
         time = f"{'the next ' if strict else ''}{self.time(high)}"
-        late = self._atom("late", self._at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
+        late = self._atom("late", self.at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
         return self._atom("due", SignalValue(due), *pair), late
 
     def breach(self, low: int, high: int, event: Formula, rule: Formula) -> Formula:
@@ -103,7 +103,7 @@ class Timers:
         # Like `for` in the language, a rule that begins at the event has a time that counts all of its samples.
         time = f"the next {self.time(high)}" if low else self.time(high + 1)
         arguments = (time, _text(event), _text(rule))
-        value = Op("min", (self._at_most(self._age(low, event), high), self._value(not_(rule))))
+        value = Op("min", (self.at_most(self._age(low, event), high), self._value(not_(rule))))
         name = full_name("breach", arguments)
         self._register(registers.breach(name, value))
         return self._atom("breach", SignalValue(name), *arguments)
@@ -111,9 +111,9 @@ class Timers:
     def breach_from_start(self, low: int, high: int, rule: Formula) -> Formula:
         """Return the atom of "it is sample ``low`` to ``high``, counted from 0, and ``rule`` does not hold"."""
         samples = self._samples()
-        inside = self._at_most(samples, high + 1)
+        inside = self.at_most(samples, high + 1)
         if low:
-            inside = Op("min", (inside, self._at_least(samples, low + 1)))
+            inside = Op("min", (inside, self.at_least(samples, low + 1)))
         arguments = (
             (self.time(high + 1), _text(rule)) if low == 0 else (f"{self.time(low)} to {self.time(high)}", _text(rule))
         )
@@ -123,7 +123,7 @@ class Timers:
 
     def now(self, state: Formula) -> Formula:
         """Return ``state`` as one atom."""
-        return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self._kept(state)))
+        return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self.kept(state)))
 
     def text(self, formula: Formula) -> str:
         """Return the text of a formula in the names of timers."""
@@ -143,12 +143,13 @@ class Timers:
     def _age(self, low: int, event: Formula) -> str:
         """Return the register with the age of the latest event: at this sample, or before it if ``low`` is 1."""
         if low == 0:
-            return self._time_since(event)
+            return self.time_since(event)
         name, step = f"age({_text(event)})", registers.step_length(False)
-        self._register(registers.age(name, self._kept(event), step, "steps"))
+        self._register(registers.age(name, self.kept(event), step, "steps"))
         return name
 
-    def _time_since(self, event: Formula) -> str:
+    def time_since(self, event: Formula) -> str:
+        """Return the name of the register with the time since ``event`` last held."""
         name = f"time_since({ascii_text(event)})"
         step = registers.step_length(False)
         self._register(registers.time_since(name, registers.truth(event), step, "steps"))
@@ -157,7 +158,8 @@ class Timers:
     def _register(self, draft: RegisterDraft) -> None:
         self.context.register(draft, self.source, self.span)
 
-    def _kept(self, state: Formula) -> str:
+    def kept(self, state: Formula) -> str:
+        """Return the name of the register that keeps the robustness of ``state`` for the next sample."""
         name = f"last {operand_text(state)}"
         self._register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
         return name
@@ -165,13 +167,13 @@ class Timers:
     def _value(self, state: Formula) -> Expression:
         return registers.robustness(state)
 
-    def _at_least(self, register: str, steps: int) -> Expression:
+    def at_least(self, register: str, steps: int) -> Expression:
         """Return the robustness of "the register is at least ``steps``", a number of at least 1."""
         border = steps - 0.5
         margin = Op("-", (registers.saturated(register, 2 * border), Const(border)))
         return Op("/", (margin, Const(border)))
 
-    def _at_most(self, register: str, steps: int) -> Expression:
+    def at_most(self, register: str, steps: int) -> Expression:
         """Return the robustness of "the register is at most ``steps``"."""
         border = steps + 0.5
         return Op("/", (Op("-", (Const(border), registers.saturated(register, 2 * border))), Const(border)))

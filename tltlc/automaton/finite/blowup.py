@@ -132,11 +132,9 @@ def bound_advice(bound: Bound) -> str:
     """Return how to write a bound that becomes states so that it needs none."""
     text = " ".join(bound.source.slice(bound.span).split())
     shorten = "shorten it, or choose a slower `clock`"
-    if text.startswith("["):
-        return shorten
-    if bound.operator in ("eventually", "F", "<>", "◇"):
+    if bound.op == "F" and bound.words:
         form = f"`keep p implies {bound.operator} {text} q`"
-    elif bound.operator in ("always", "G", "[]", "□"):
+    elif bound.op == "G" and bound.words:
         form = f"`keep p implies {bound.operator} {text} q`, also with `next` before `{bound.operator}`,"
     else:
         return shorten
