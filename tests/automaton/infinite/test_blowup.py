@@ -60,7 +60,7 @@ def test_a_part_that_is_too_large_alone_is_the_only_label() -> None:
 def test_a_large_bound_is_labelled(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(blowup, "_FOR_A_PART", 20_000)
     spec = with_parts(read_formula("F c"), read_formula(f"G(a -> {'X ' * 12}b)"))
-    bound = Bound(12, spec.source, Span(2, 3))
+    bound = Bound(12, spec.source, Span(2, 3), "next", "X", words=False)
     spec = replace(spec, parts=(spec.parts[0], replace(spec.parts[1], bounds=(bound,))))
     assert diagnostic_of(spec).labels == (Label(spec.source, Span(2, 3), "because of this bound"),)
 
