@@ -30,7 +30,7 @@ GAMES = cases("game")
 """Messages about games; `tests/runtime/gymnasium_games/test_messages.py` compares them."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {
-    *("TLT0007", "TLT0009", "TLT0624", "TLT0712", "TLT0730", "TLT0731", "TLT0764", "TLT0768"),
+    *("TLT0007", "TLT0009", "TLT0619", "TLT0624", "TLT0712", "TLT0730", "TLT0731", "TLT0764", "TLT0768"),
     *("TLT0770", "TLT0771", "TLT0775", "TLT0776", "TLT0777"),
     *("TLT0790", "TLT0791", "TLT0792", "TLT0793"),
     *("TLT0830", "TLT0850", "TLT0851", "TLT0852", "TLT0854"),

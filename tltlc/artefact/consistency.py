@@ -32,14 +32,14 @@ class Problem:
 def problems(fspa: Fspa) -> Iterator[Problem]:
     """Yield the contradictions in an automaton that was read from an artefact.
 
-    There are seven checks. Later checks rely on earlier ones, so all contradictions come from the first
+    There are eight checks. Later checks rely on earlier ones, so all contradictions come from the first
     check that finds any. Two checks have a limit on their work, so large automata are checked only in
     part:
 
     - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
     - over infinite traces, the check of accepting states and verdicts (:data:`CYCLES_WORK`).
     """
-    for check in (_names, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
+    for check in (_names, _clock, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
         failed = False
         for problem in check(fspa):
             failed = True
@@ -94,6 +94,21 @@ def _registers(fspa: Fspa, known: Mapping[str, set[str]]) -> Iterator[Problem]:
             elif isinstance(node, AtomValue) and not reads[node.name] & everywhere <= earlier:
                 yield Problem(path, f"the atom `{node.name}` reads a register that comes later")
         earlier.add(register.name)
+
+
+def _clock(fspa: Fspa) -> Iterator[Problem]:
+    """Check that registers count time as the clock says: in seconds if it varies, else in steps."""
+    path: JsonPath = ("spec", "clock_varies")
+    if fspa.clock_varies and fspa.clock_s is not None:
+        yield Problem(path, "the clock varies, so it has no `clock_s`")
+    for index, register in enumerate(fspa.registers):
+        reads_length = any(isinstance(node, StepLength) for node in nodes(register.update))
+        if reads_length and not fspa.clock_varies:
+            message = f"`{register.name}` reads the length of a step, but the clock does not vary"
+            yield Problem(("registers", index, "update"), message)
+        if register.unit == "steps" and fspa.clock_varies:
+            message = f"`{register.name}` counts steps as a time, but the clock varies"
+            yield Problem(("registers", index, "unit"), message)
 
 
 def _values(fspa: Fspa) -> Iterator[Problem]:

@@ -108,6 +108,7 @@ def _fspa(document: dict[str, Any]) -> Fspa:
         semantics=document["semantics"],
         tags=tuple(spec.get("tags", ())),
         clock_s=_number(spec.get("clock_s")),
+        clock_varies=spec.get("clock_varies", False),
         signals=tuple(_signal(signal) for signal in document["signals"]),
         params=tuple(_param(param) for param in document["params"]),
         atoms=atoms,

@@ -10,7 +10,7 @@ from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Param, Register, Signal
 
 VERSION: Final = 2
-"""The newest version of the format. Automata without registers are written as version 1."""
+"""The newest version of the format. Automata without registers on a fixed clock are written as version 1."""
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
@@ -20,7 +20,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
     """
     return {
         "format": "fspa",
-        "version": VERSION if fspa.registers else 1,
+        "version": VERSION if fspa.registers or fspa.clock_varies else 1,
         "spec": {
             "name": fspa.name,
             "doc": fspa.doc,
@@ -30,6 +30,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
             "level": fspa.level,
             "tags": list(fspa.tags),
             "clock_s": fspa.clock_s,
+            **({"clock_varies": True} if fspa.clock_varies else {}),
         },
         "semantics": fspa.semantics,
         "signals": [_signal(signal) for signal in fspa.signals],

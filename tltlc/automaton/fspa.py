@@ -117,6 +117,9 @@ class Fspa:
 
     ``registers`` are the memory that atoms read, each after the registers that its update reads at the
     same sample (``docs/semantics.md``, "Memory").
+
+    ``clock_s`` is the time between two samples in seconds, None without a clock. ``clock_varies`` says
+    that each sample brings its own time since the sample before; then ``clock_s`` is None.
     """
 
     name: str
@@ -137,6 +140,7 @@ class Fspa:
     spec_size: int
     acceptance: tuple[Pair, ...] = ()
     registers: tuple[Register, ...] = ()
+    clock_varies: bool = False
 
     def edges_from(self, state: int) -> tuple[Edge, ...]:
         """Return the edges that leave a state, in order of target."""

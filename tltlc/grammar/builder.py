@@ -119,6 +119,9 @@ class Builder:
     def make_clock(self, span: Span, value: tree.NumberExpr) -> tree.ClockDecl:
         return tree.ClockDecl(value, span)
 
+    def make_varying_clock(self, span: Span, _varies: Token) -> tree.ClockDecl:
+        return tree.ClockDecl(None, span)
+
     def make_predicate(
         self,
         span: Span,
@@ -171,7 +174,14 @@ class Builder:
         return tree.TestDecl(title.text[1:-1], name, items, self._doc(span), span)
 
     def make_step(
-        self, span: Span, _step: Token, times: Token | None, _x: Token | None, atoms: tuple[Expr, ...]
+        self,
+        span: Span,
+        _step: Token,
+        times: Token | None,
+        _x: Token | None,
+        _for: Token | None,
+        length: tree.NumberExpr | None,
+        atoms: tuple[Expr, ...],
     ) -> tree.TestStep:
         count = 1
         if times is not None:
@@ -180,7 +190,7 @@ class Builder:
                 title = f"a step cannot be repeated {times.text} times"
                 advice = f"write a whole number from 1 to {MOST_REPETITIONS}, as in `step 3x alive`"
                 self._error("TLT0109", title, times.span, advice)
-        return tree.TestStep(count, atoms, times.span if times else None, span)
+        return tree.TestStep(count, length, atoms, times.span if times else None, span)
 
     def make_expect(self, span: Span, _expect: Token, verdict: Token) -> tree.TestExpect:
         return tree.TestExpect("verdict", verdict.text, None, None, span)

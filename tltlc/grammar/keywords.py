@@ -12,7 +12,7 @@ DECLARATIONS: Final = {
     "signal": "`signal NAME: TYPE in [low, high]`",
     "entity": "`entity NAME, NAME` or `entity GROUP = NAME, NAME`",
     "param": "`param NAME: TYPE in [low, high] = VALUE`",
-    "clock": "`clock 20 Hz` or `clock 0.05 s`",
+    "clock": "`clock 20 Hz`, `clock 0.05 s` or `clock varies`",
     "predicate": "`predicate NAME(x: entity) in [-1, 1] = EXPRESSION`",
     "let": "`let NAME(x) = FORMULA`",
     "exclusive": "`exclusive ATOM, ATOM`",
@@ -33,7 +33,7 @@ CLAUSES: Final = {
 }
 
 TEST_ITEMS: Final = {
-    "step": "`step a, not b` or `step 3x a`",
+    "step": "`step a, not b`, `step 3x a` or `step for 2 s a`",
     "expect": '`expect satisfied` (or holding, pending, violated), `expect progress >= 0.5` or `expect state "F a"`',
 }
 

@@ -258,9 +258,9 @@ class ParamDecl:
 
 @record
 class ClockDecl:
-    """A declaration of the clock: ``clock 20 Hz`` or ``clock 0.05 s``."""
+    """A declaration of the clock: ``clock 20 Hz`` or ``clock 0.05 s``; for ``clock varies``, ``value`` is None."""
 
-    value: NumberExpr
+    value: NumberExpr | None
     span: Span
 
 
@@ -333,13 +333,15 @@ class SpecDecl:
 
 @record
 class TestStep:
-    """A line of a test that gives a sample: ``step 3x alive, not near(s1)``.
+    """A line of a test that gives a sample: ``step 3x alive, not near(s1)``, or ``step for 2 s alive``.
 
     The sample is repeated ``times`` times. ``times_span`` is the place of the number ``3``; None if the
-    line has no number, and ``times`` is 1. ``atoms`` are the expressions after it.
+    line has no number, and ``times`` is 1. ``length`` is the time that each takes, None without one.
+    ``atoms`` are the expressions after it.
     """
 
     times: int
+    length: NumberExpr | None
     atoms: tuple[Expr, ...]
     times_span: Span | None
     span: Span

@@ -39,6 +39,26 @@ class BoundName(str):
         return self.low, self.high
 
 
+class TimeBound(str):
+    """The name of an operator that is bounded by a time: it ends ``seconds`` after its first sample.
+
+    ``F`` includes the end, and ``G`` does not. If ``later``, the first sample itself is left out.
+    """
+
+    __slots__ = ("later", "seconds")
+    later: bool
+    seconds: float
+
+    def __new__(cls, seconds: float, later: bool = False) -> TimeBound:
+        """Make the name of the bound of this many seconds."""
+        name = super().__new__(cls, f"[{seconds!r} s{', later' * later}]")
+        name.seconds, name.later = seconds, later
+        return name
+
+    def __getnewargs__(self) -> tuple[float, bool]:  # type: ignore[override]
+        return self.seconds, self.later
+
+
 class Formula:
     """A formula: its outermost operator ``op``, its operands ``args``, and the ``name`` of an atom.
 
@@ -223,9 +243,22 @@ def bounded(op: Literal["F[]", "G[]"], low: int, high: int, operand: Formula) ->
     return _intern(op, (operand,), BoundName(low, high))
 
 
+def timed(op: Literal["F[]", "G[]"], seconds: float, operand: Formula, *, later: bool = False) -> Formula:
+    """Return a node like that of :func:`bounded` with a bound in seconds, for a clock that varies.
+
+    Timers replace all of these nodes, since a time is no number of samples (:class:`TimeBound`).
+    """
+    return _intern(op, (operand,), TimeBound(seconds, later))
+
+
 def bound_of(node: Formula) -> BoundName | None:
-    """Return the bound of a bounded operator, None for any other formula."""
+    """Return the bound of an operator that is bounded by a number of steps, None for any other formula."""
     return node.name if isinstance(node.name, BoundName) else None
+
+
+def time_bound_of(node: Formula) -> TimeBound | None:
+    """Return the bound of an operator that is bounded by a time, None for any other formula."""
+    return node.name if isinstance(node.name, TimeBound) else None
 
 
 def until(left: Formula, right: Formula) -> Formula:

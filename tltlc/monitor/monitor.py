@@ -11,7 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.progress_and_reward import RewardOptions, RewardStep, reward_step
-from tltlc.monitor.samples import Samples, SampleValues, check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples, SampleValues, check_exclusive
 from tltlc.monitor.tables import tables
 
 
@@ -92,28 +92,35 @@ class Monitor:
         self.registers = self._samples.initial
         self._memory: Any = None
 
-    def step(self, signals: Mapping[str, SupportsFloat | str], *, last: bool = False) -> Step:
+    def step(
+        self, signals: Mapping[str, SupportsFloat | str], dt: SupportsFloat | None = None, *, last: bool = False
+    ) -> Step:
         """Take one sample, and return the result.
 
         ``signals`` maps the names of signals to bools, to numbers in SI units, or for an enum to the
-        name of a value. Names that no atom uses are ignored. If ``last``, the episode ends with this
-        sample, whatever the spec says.
+        name of a value. Names that no atom uses are ignored. With ``clock varies``, ``dt`` is the time
+        since the sample before, in seconds, at least 0; at the first sample it counts for nothing. With
+        a fixed clock there is no ``dt``. If ``last``, the episode ends with this sample, whatever the
+        spec says.
 
         Raises:
             MonitorError: TLT0611 missing signals, TLT0612 unusable signals, TLT0613 an atom without
-                a value, TLT0614 exclusive atoms that hold at once. The state stays unchanged.
+                a value, TLT0614 exclusive atoms that hold at once, TLT0619 ``dt`` is missing, wrong, or
+                there although the clock is fixed. The state stays unchanged.
         """
-        return self._take(self._samples.values(signals, self.registers, self.steps + 1), last)
+        sample = signals if dt is None else {**signals, STEP_LENGTH: dt}
+        return self._take(self._samples.values(sample, self.registers, self.steps + 1), last)
 
-    def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
+    def step_atoms(self, values: Sequence[float], dt: SupportsFloat | None = None, *, last: bool = False) -> Step:
         """Take one sample, given as the values of the atoms in order, and return the result.
 
         Each value is in [-1, 1]. Atoms that follow from others have no value: ``times(seen) > 3``
-        follows from ``seen`` (:func:`tltlc.automaton.memory.given_atoms`). If ``last``, the episode
-        ends with this sample, whatever the spec says.
+        follows from ``seen`` (:func:`tltlc.automaton.memory.given_atoms`). ``dt`` and ``last`` are those
+        of :meth:`step`.
 
         Raises:
-            MonitorError: TLT0614 exclusive atoms that hold at once. The state stays unchanged.
+            MonitorError: TLT0614 exclusive atoms that hold at once, TLT0619 ``dt`` is missing, wrong, or
+                there although the clock is fixed. The state stays unchanged.
             ValueError: a value is not in [-1, 1], or the number of values is not the number of
                 atoms that do not follow from others. The state stays unchanged.
         """
@@ -121,7 +128,8 @@ class Monitor:
         if len(values) != count or not all(-1.0 <= value <= 1.0 for value in values):
             needed = "one value in [-1, 1] is" if count == 1 else f"{count} values in [-1, 1] are"
             raise ValueError(f"{needed} needed, not {tuple(values)}")
-        return self._take(self._samples.from_atoms(values, self.registers, self.steps + 1), last)
+        length = self._samples.step_length(dt, self.steps + 1)
+        return self._take(self._samples.from_atoms(values, self.registers, length, self.steps + 1), last)
 
     def _take(self, sample: SampleValues, last: bool) -> Step:
         values = sample.atoms

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from math import isfinite
+from math import inf, isfinite
 from typing import Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.python import compile_expressions
-from tltlc.expression.tree import AtomValue, Before, VariableKey
+from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
@@ -27,6 +27,10 @@ class MonitorError(TltlError):
 
     The state of the monitor stays unchanged.
     """
+
+
+STEP_LENGTH: Final = "length of the step"
+"""The key of a sample under which it has its time since the sample before, in seconds; no signal has this name."""
 
 
 class SampleValues(NamedTuple):
@@ -56,7 +60,8 @@ class Samples:
         self._from_atoms = registers_from_atoms(fspa)
         registers = [register.name for register in fspa.registers]
         atoms = [AtomValue(atom.name) for atom in fspa.atoms] if registers else []
-        variables: tuple[VariableKey, ...] = (*self._names, *registers, *map(Before, registers), *atoms)
+        length = (StepLength(),) if fspa.clock_varies else ()
+        variables: tuple[VariableKey, ...] = (*self._names, *registers, *map(Before, registers), *atoms, *length)
         values = param_values(fspa.params, params or {})
         compiled = compile_expressions(
             [*(atom.expression for atom in fspa.atoms), *(register.update for register in fspa.registers)],
@@ -104,13 +109,15 @@ class Samples:
     ) -> SampleValues:
         """Return the values of the atoms at a sample, and of the registers after it.
 
-        ``registers`` are the values of the registers before the sample. ``when`` says in messages which
-        sample it is: its number, from 1, or a phrase.
+        ``registers`` are the values of the registers before the sample. If the clock varies, the sample
+        has its length under :data:`STEP_LENGTH`. ``when`` says in messages which sample it is: its
+        number, from 1, or a phrase.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
-                an atom has no value.
+                an atom has no value, TLT0619 the length of the step is wrong.
         """
+        dt_s = self.step_length(signals.get(STEP_LENGTH), when)
         missing = [name for name in self._names if name not in signals]
         if missing:
             raise _error("TLT0611", when, f"no value for {name_list(missing)}")
@@ -119,34 +126,57 @@ class Samples:
             for signal, name in zip(self._fspa.signals, self._names, strict=True)
         ]
         if self._updates:
-            return self._with_registers(sample, registers, when)
+            return self._with_registers(sample, registers, dt_s, when)
         values = [self._atom_value(index, sample, when) for index in range(len(self._atoms))]
         return SampleValues(
             tuple(self._clamped_atom_value(index, value, when) for index, value in enumerate(values)), ()
         )
 
-    def from_atoms(self, given: Sequence[float], registers: Sequence[float], when: int | str) -> SampleValues:
+    def step_length(self, given: SupportsFloat | str | None, when: int | str) -> tuple[float, ...]:
+        """Return the length of a step in seconds if the clock varies, else nothing.
+
+        Raises MonitorError (TLT0619) if the clock varies and ``given`` is no finite number of at least 0,
+        or if it is a number although the clock does not vary.
+        """
+        if not self._fspa.clock_varies:
+            if given is not None:
+                advice = "leave it out, or write `clock varies` in the spec"
+                raise _error("TLT0619", when, "it has a length, but the clock of the spec does not vary", advice)
+            return ()
+        if given is None:
+            raise _error("TLT0619", when, "its time since the sample before is missing, and the clock varies")
+        value = float(given) if hasattr(given, "__float__") and not getattr(given, "ndim", 0) else None
+        if value is None or not 0.0 <= value < inf:
+            text = f"{given!r:.40}" if value is None else number_text(value)
+            raise _error("TLT0619", when, f"its time since the sample before is {text}, not a number of seconds")
+        return (value,)
+
+    def from_atoms(
+        self, given: Sequence[float], registers: Sequence[float], dt_s: tuple[float, ...], when: int | str
+    ) -> SampleValues:
         """Return the values of all atoms and registers, from the values of the atoms that do not follow from others.
 
-        ``given`` has a value for each of :func:`tltlc.automaton.memory.given_atoms`, in order.
+        ``given`` has a value for each of :func:`tltlc.automaton.memory.given_atoms`, in order, and
+        ``dt_s`` is a result of :meth:`step_length`.
         Registers that read signals keep their value.
         """
         if not self._updates:
             return SampleValues(tuple(given), ())
         return self._with_registers(
-            [0.0] * len(self._names), registers, when, dict(zip(self.given, given, strict=True))
+            [0.0] * len(self._names), registers, dt_s, when, dict(zip(self.given, given, strict=True))
         )
 
     def _with_registers(
         self,
         sample: Sequence[float],
         before: Sequence[float],
+        dt_s: tuple[float, ...],
         when: int | str,
         given: Mapping[int, float] | None = None,
     ) -> SampleValues:
         """Return the values of atoms and registers at a sample, with the values of the atoms in ``given``."""
         signals, count = len(self._names), len(self._updates)
-        known = [*sample, *before, *before, *[0.0] * len(self._atoms)]
+        known = [*sample, *before, *before, *[0.0] * len(self._atoms), *dt_s]
         for step in self._order:
             index = step.index
             if step.kind == "atom":
@@ -157,7 +187,8 @@ class Samples:
                     known[signals + 2 * count + index] = self._clamped_atom_value(index, value, when)
             elif given is None or self._fspa.registers[index].name in self._from_atoms:
                 known[signals + index] = self._register_value(index, known, when)
-        return SampleValues(tuple(known[signals + 2 * count :]), tuple(known[signals : signals + count]))
+        atoms = known[signals + 2 * count : len(known) - len(dt_s)]
+        return SampleValues(tuple(atoms), tuple(known[signals : signals + count]))
 
     def _register_value(self, index: int, known: Sequence[float], when: int | str) -> float:
         name = self._fspa.registers[index].name
@@ -334,12 +365,13 @@ SUGGESTIONS: Final = {
     "TLT0614": "remove the declaration, or check how the game computes them",
     "TLT0615": "supply it on the declared scale, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
+    "TLT0619": "give the seconds since the sample before, at least 0, as `dt`: `monitor.step(signals, dt)`",
 }
 """The advice of each diagnostic about a sample, by its code."""
 
 
-def _error(code: str, when: int | str, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=SUGGESTIONS[code])])
+def _error(code: str, when: int | str, text: str, advice: str | None = None) -> MonitorError:
+    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=advice or SUGGESTIONS[code])])
 
 
 def _location(when: int | str) -> str:

@@ -67,7 +67,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
         try:
             for _ in range(item.times):
                 before, registers = last, monitor.registers
-                last = monitor.step_atoms(values)
+                last = monitor.step_atoms(values, item.dt_s if fspa.clock_varies else None)
                 if last == before and monitor.registers == registers:
                     break  # Further steps with the same sample would give the same result.
         except MonitorError as error:

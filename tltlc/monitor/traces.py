@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from tltlc.core.record import replace
 from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.sample_times import SampleTimes, times_name
-from tltlc.monitor.samples import name_list, values_advice
+from tltlc.monitor.sample_times import SampleTimes, lengths_name, times_name
+from tltlc.monitor.samples import STEP_LENGTH, name_list, values_advice
 from tltlc.monitor.trace_rows import (
     JSON_LINES_HELP,
     Stream,
@@ -28,28 +28,37 @@ _BOOL_HELP: Final = "write `true`, `false`, 1 or 0"
 
 
 def read_trace(
-    stream: Stream, name: str, signals: Sequence[Signal], clock_s: float | None = None, kind: SourceKind = "file"
+    stream: Stream,
+    name: str,
+    signals: Sequence[Signal],
+    clock_s: float | None = None,
+    kind: SourceKind = "file",
+    *,
+    clock_varies: bool = False,
 ) -> Iterator[TraceSample]:
     """Read a trace line by line, and yield for each sample the values of the given signals.
 
     ``docs/traces.md`` describes the format. ``stream`` is binary; ``name`` is the trace's name in
     messages, and ``kind`` its kind of source. The times in a column ``time`` are checked against
     the clock of the spec; ``clock_s`` is the period of the clock in seconds, None without a clock.
+    If ``clock_varies``, each sample has its time since the sample before under
+    :data:`~tltlc.monitor.samples.STEP_LENGTH`, from the column ``dt``, or else from ``time``.
     Other columns are ignored. In JSON lines, values may be missing; in all traces, numbers may be
     infinite or NaN. The monitor reports both.
 
     Raises:
-        TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, TLT0622 a
-            line cannot be read, TLT0623 the time of a sample is wrong. The iteration yields the
-            samples before the error first.
+        TltlError: TLT0620 the trace has no sample, TLT0621 it has no column for a signal, or for the
+            time although the clock varies, TLT0622 a line cannot be read, TLT0623 the time of a sample
+            is wrong. The iteration yields the samples before the error first.
     """
     lines = TraceLines(stream, name, kind)
     trace = read_rows(lines)
     samples: Iterator[TraceSample] = iter(())
+    times = SampleTimes(clock_s, clock_varies)
     if isinstance(trace, TraceTable):
-        samples = _table_samples(trace, lines, signals, SampleTimes(clock_s))
+        samples = _table_samples(trace, lines, signals, times)
     elif trace is not None:
-        samples = _object_samples(trace, lines, signals, SampleTimes(clock_s))
+        samples = _object_samples(trace, lines, signals, times)
     count = 0
     for count, sample in enumerate(samples, start=1):  # noqa: B007 (counts)
         yield sample
@@ -64,13 +73,48 @@ def in_trace(name: str, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, 
     return tuple(replace(diagnostic, title=f"`{name}`, {diagnostic.title}") for diagnostic in diagnostics)
 
 
-def _check_time(time: float | None, times: SampleTimes, lines: TraceLines, columns: tuple[int, int] | None) -> None:
-    """Raise TltlError (TLT0623) if the time of the next sample is wrong.
+class _TimeColumn(NamedTuple):
+    """The column, or the key, with the times of the samples; or if ``is_length``, with the lengths of the steps."""
 
-    ``time`` is None if its cell does not contain a number.
-    ``columns`` is the part of the line to mark, as in :meth:`TraceLines.error`.
+    name: str
+    is_length: bool
+
+
+def _time_column(names: Iterable[str], signals: Sequence[Signal], varies: bool) -> _TimeColumn | None:
+    """Return the column that says when the samples are; None if there is none."""
+    names = list(names)
+    length = lengths_name(names, signals) if varies else None
+    if length is not None:
+        return _TimeColumn(length, True)
+    time = times_name(names, signals)
+    return None if time is None else _TimeColumn(time, False)
+
+
+def _no_time_error(lines: TraceLines) -> TltlError:
+    title = "the trace has no column `time` or `dt`, and the clock of the spec varies"
+    advice = "record the time of each sample in seconds as `time`, or its time since the sample before as `dt`"
+    return TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
+
+
+def _take_time(
+    sample: TraceSample,
+    time: float | None,
+    column: _TimeColumn,
+    times: SampleTimes,
+    lines: TraceLines,
+    columns: tuple[int, int] | None,
+) -> None:
+    """Check the time of the next sample, and if the clock varies, store its length in the sample.
+
+    ``time`` is None if its cell does not contain a number. ``columns`` is the part of the line to
+    mark, as in :meth:`TraceLines.error`. Raises TltlError (TLT0623) if the time is wrong.
     """
-    problem = "this is not a number" if time is None else times.problem(time)
+    if time is None:
+        problem: str | None = "this is not a number"
+    else:
+        problem = times.length_problem(time) if column.is_length else times.problem(time)
+    if times.varies:
+        sample[STEP_LENGTH] = times.length_s
     if problem is not None:
         title = f"the time in line {lines.number} of the trace is wrong"
         advice = "write seconds with a decimal point, such as `12.5`" if time is None else times.advice
@@ -84,14 +128,16 @@ def _table_samples(
     trace: TraceTable, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
 ) -> Iterator[TraceSample]:
     columns = _columns(trace.header, lines, signals)
-    time = times_name(trace.header, signals)
-    time_column = None if time is None else trace.header.index(time)
-    if time is not None and trace.header.count(time) > 1:
-        raise lines.error(f"two columns are called `{time}`", help="keep one of them")
+    time = _time_column(trace.header, signals, times.varies)
+    if time is None and times.varies:
+        raise _no_time_error(lines)
+    position = None if time is None else trace.header.index(time.name)
+    if time is not None and trace.header.count(time.name) > 1:
+        raise lines.error(f"two columns are called `{time.name}`", help="keep one of them")
     for row in trace.rows:
         sample = _row_sample(row, columns, lines)
-        if time_column is not None:
-            _check_time(cell_number(row[time_column]), times, lines, _cell_span(lines.text, time_column))
+        if time is not None and position is not None:
+            _take_time(sample, cell_number(row[position]), time, times, lines, _cell_span(lines.text, position))
         yield sample
 
 
@@ -187,18 +233,21 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 def _object_samples(
     trace: TraceObjects, lines: TraceLines, signals: Sequence[Signal], times: SampleTimes
 ) -> Iterator[TraceSample]:
-    time_key: str | None = None
+    first: _TimeColumn | None = None
     for number, object_ in enumerate(trace.rows):
         sample = _object_sample(object_, signals, lines)
-        name = times_name(object_, signals)
+        column = _time_column(object_, signals, times.varies)
         if number == 0:
-            time_key = name
-        if name != time_key:
-            has = "has no time" if name is None else f"has `{name}`"
+            first = column
+            if column is None and times.varies:
+                raise _no_time_error(lines)
+        if column != first:
+            has = "has no time" if column is None else f"has `{column.name}`"
             raise lines.error(f"this row {has}, unlike the first row", help="give every row its time, or none")
-        if name is not None:
-            time = object_[name]
-            _check_time(float(time) if isinstance(time, (int, float)) else None, times, lines, None)
+        if column is not None:
+            time = object_[column.name]
+            number_given = float(time) if isinstance(time, (int, float)) else None
+            _take_time(sample, number_given, column, times, lines, None)
         yield sample
 
 

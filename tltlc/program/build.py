@@ -8,7 +8,7 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import Computation, schedule
 from tltlc.core.record import record
-from tltlc.expression.tree import AtomValue, Before, VariableKey
+from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
 from tltlc.monitor.tables import ends_on_entry, tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
@@ -22,6 +22,9 @@ from tltlc.resolve.spec import Register, Signal
 
 TEMPORARY = "t"
 """The prefix of temporary variables: ``t_1``, ``t_2``, …, or ``t2_1``, … if another name begins with ``t_``."""
+
+DT = "dt"
+"""The variable with the time since the sample before, in seconds, if the clock varies."""
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
@@ -136,7 +139,7 @@ def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
     ``reserved`` are the names that no variable may have: keywords of the language in which the
     program will be printed, and names in the template of its file.
     """
-    names = VariableNames([*reserved, *_OWN])
+    names = VariableNames([*reserved, *_OWN, *([DT] if fspa.clock_varies else [])])
     # Expressions of deeply nested predicates need a higher recursion limit.
     with recursion_room():
         return _program(fspa, names)
@@ -158,6 +161,8 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         variables |= {each.register.name: each.now, Before(each.register.name): each.before}
     if registers:
         variables |= {AtomValue(atom.name): name for atom, name in zip(fspa.atoms, atoms, strict=True)}
+    if fspa.clock_varies:
+        variables[StepLength()] = DT
     arithmetic = ExpressionTranslator(variables, params, _prefix([*variables.values(), *params.values(), *atoms]))
     order = schedule(fspa)
     computations = {
@@ -170,6 +175,7 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
     ranges |= {
         name: range_between(param.low, param.high) for name, param in zip(params.values(), fspa.params, strict=True)
     }
+    ranges |= {DT: range_between(0.0, None)} if fspa.clock_varies else {}
     proved = prove_sample(
         {name: arithmetic.assign(name, expression) for name, expression in computations.items()}, registers, ranges
     )

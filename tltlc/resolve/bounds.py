@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tltlc.grammar.tree import BinaryExpr, TemporalInterval, Unary
-from tltlc.logic.formula import Formula, always, and_, bounded, eventually, implies, next_, then, weak_next
-from tltlc.resolve.constants import samples
-from tltlc.resolve.problem import problem
+from tltlc.logic.formula import Formula, always, and_, bounded, eventually, implies, next_, then, timed, weak_next
+from tltlc.resolve.constants import samples, seconds
+from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Bound
 from tltlc.resolve.values import Env
 
@@ -15,13 +15,15 @@ def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
 
     ``within n`` means ``[0,n]``, ``for n`` means ``[0,n-1]``, and ``next after n`` means n times
     ``next``, which is ``F[n,n]``. If ``env.unbounded`` is set, the bound of ``F`` or ``G`` is left out
-    instead.
+    instead. With ``clock varies``, the result is the node of :func:`tltlc.logic.formula.timed`.
 
     Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
-    without a clock.
+    without a clock, TLT0323 for a bound that needs a fixed clock.
     """
     bound = expr.bound
     assert bound is not None
+    if env.context.clock_varies:
+        return _timed_operator(expr, operand, bound, env)
     if env.unbounded:
         return _drop_bound(expr.op, samples(bound.high, env), operand)
     source = env.scope.source
@@ -53,21 +55,77 @@ def with_bound(expr: BinaryExpr, left: Formula, right: Formula, env: Env) -> For
     """
     bound, source = expr.bound, env.scope.source
     assert bound is not None, "a bound"
+    if env.unbounded:
+        return implies(left, eventually(right)) if expr.op == "within" else then(left, right)
+    if env.context.clock_varies:
+        return _timed_pair(expr, left, right, bound, env)
     high = samples(bound.high, env)
     if expr.op == "within":
-        answer = eventually(right) if env.unbounded else bounded("F[]", 0, high, right)
+        answer = bounded("F[]", 0, high, right)
         note_bound(answer, high, expr, bound, env)
         return implies(left, answer)
-    if env.unbounded:
-        return then(left, right)
     if high == 0:
         advice = "`then` means at a later sample: write e.g. `then within 20 steps b`"
         raise problem("TLT0312", "`then within` needs at least one step", source, bound.high.span, advice=advice)
-    # Another `then` begins with an `F`, whose place the bound takes.
-    goal = right.args[0] if isinstance(expr.right, BinaryExpr) and expr.right.op == "then" else right
-    rest = bounded("F[]", 0, high - 1, goal)
+    rest = bounded("F[]", 0, high - 1, _goal(expr, right))
     note_bound(rest, high, expr, bound, env)
     return eventually(and_(left, next_(rest)))
+
+
+def _goal(expr: BinaryExpr, right: Formula) -> Formula:
+    """Return the formula that ``a then within n b`` must reach in time: another ``then`` begins with an ``F``."""
+    return right.args[0] if isinstance(expr.right, BinaryExpr) and expr.right.op == "then" else right
+
+
+def _timed_operator(expr: Unary, operand: Formula, bound: TemporalInterval, env: Env) -> Formula:
+    """Return ``eventually within 5 s p`` or ``always for 5 s p``, where the clock varies."""
+    if expr.op in ("X", "N"):
+        title = "`next after` needs a fixed clock"
+        advice = "write `next`, or a bound in which it must happen: `eventually within 2 s p`"
+        raise problem("TLT0323", title, env.scope.source, bound.span, advice=advice)
+    word = "within" if expr.op == "F" else "for"
+    time = seconds(bound.high, f"{word} 2 s", env)
+    if not bound.words:
+        high = " ".join(env.scope.source.slice(bound.high.span).split())
+        advice = f"write `{'eventually' if expr.op == 'F' else 'always'} {word} {high}`"
+        raise problem("TLT0323", "a bound in brackets needs a fixed clock", env.scope.source, bound.span, advice=advice)
+    if env.unbounded:
+        return eventually(operand) if expr.op == "F" else always(operand)
+    _check_above_0(time, word, bound, env)
+    node = timed("F[]" if expr.op == "F" else "G[]", time, operand)
+    note_bound(node, 0, expr, bound, env)
+    return node
+
+
+def _timed_pair(expr: BinaryExpr, left: Formula, right: Formula, bound: TemporalInterval, env: Env) -> Formula:
+    """Return ``a then within 5 s b`` or ``within 5 s of a, b``, where the clock varies."""
+    time = seconds(bound.high, "within 2 s", env)
+    _check_above_0(time, "within", bound, env)
+    if expr.op == "within":
+        answer = timed("F[]", time, right)
+        note_bound(answer, 0, expr, bound, env)
+        return implies(left, answer)
+    rest = timed("F[]", time, _goal(expr, right), later=True)
+    note_bound(rest, 0, expr, bound, env)
+    return eventually(and_(left, rest))
+
+
+def _check_above_0(time: float, word: str, bound: TemporalInterval, env: Env) -> None:
+    if time <= 0:
+        title = f"`{word}` needs a time above 0"
+        advice = f"write e.g. `{word} 2 s`"
+        raise problem("TLT0312", title, env.scope.source, bound.high.span, advice=advice)
+
+
+def no_timer_error(bound: Bound) -> ResolutionError:
+    """Return the error for a bound that no timer can replace, which cannot become states if the clock varies."""
+    advice = (
+        "declare the rate of the game, e.g. `clock 60 Hz`, or use a form that a timer can decide: `reach a then within "
+        "2 s b`, `keep a implies eventually within 2 s b`, `keep a implies always for 2 s b`, with `a` and `b` about "
+        "one sample"
+    )
+    title = "this bound needs a fixed clock"
+    return problem("TLT0323", title, bound.source, bound.span, "no timer can decide it here", advice=advice)
 
 
 def note_bound(node: Formula, steps: int, expr: Unary | BinaryExpr, bound: TemporalInterval, env: Env) -> None:

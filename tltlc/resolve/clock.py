@@ -36,5 +36,6 @@ def clock_from_text(text: str) -> float | None:
     if errors or module.comments or len(module.declarations) != 1:
         return None
     (clock,) = module.declarations
-    period = period_s(clock.value.value, clock.value.unit) if isinstance(clock, ClockDecl) else None
+    value = clock.value if isinstance(clock, ClockDecl) else None
+    period = None if value is None else period_s(value.value, value.unit)
     return period if period is not None and SHORTEST_S <= period <= LONGEST_S else None

@@ -10,6 +10,7 @@ from tltlc.expression.tree import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr, GroupExpr, Interval, NumberExpr
 from tltlc.resolve import units
+from tltlc.resolve.clock import LONGEST_S
 from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
@@ -74,6 +75,9 @@ def samples(value: NumberExpr, env: Env) -> int:
     period = env.context.clock_s
     if period is None and env.context.clock_failed:
         raise ResolutionError(None)
+    if env.context.clock_varies:
+        advice = "write the limit in steps, e.g. `limit 1000 steps`"
+        raise problem("TLT0323", "a limit in seconds needs a fixed clock", source, value.span, advice=advice)
     if period is None:
         raise problem(
             "TLT0313",
@@ -85,6 +89,29 @@ def samples(value: NumberExpr, env: Env) -> int:
         )
     # Subtract a tolerance, so that a rounding error of the division does not add a sample.
     return _sample_count(in_si[0] / period - 1e-9, value, env)
+
+
+def seconds(value: NumberExpr, example: str, env: Env) -> float:
+    """Return the time in a bound, such as ``2 s``, in seconds, for a clock that varies.
+
+    ``example`` is a bound that is right, for the help. Raises ResolutionError: TLT0323 for a number of
+    steps, TLT0312 for anything else that is no time.
+    """
+    source = env.scope.source
+    if value.unit in (None, "step", "steps"):
+        title = "a bound in steps needs a fixed clock"
+        message = "with `clock varies`, steps differ in length"
+        advice = f"write a time, e.g. `{example}`"
+        raise problem("TLT0323", title, source, value.span, message, advice=advice)
+    in_si = units.in_si(value.value, value.unit)
+    if in_si is None or in_si[1] != units.TYPES["time"]:
+        described = units.dimension_text(in_si[1]) if in_si else f"`{value.unit}`"
+        title = f"expected a time, found {described}"
+        raise problem("TLT0312", title, source, value.span, advice=f"write e.g. `{example}`")
+    if in_si[0] > LONGEST_S:
+        title = f"this is more than {LONGEST_S:,.0f} s"
+        raise problem("TLT0312", title, source, value.span, advice="write a shorter time")
+    return in_si[0]
 
 
 def _sample_count(steps: float, value: NumberExpr, env: Env) -> int:

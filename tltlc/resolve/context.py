@@ -76,8 +76,8 @@ class Context:
 
     - ``log`` collects the diagnostics.
     - ``signal_infos`` and ``params`` have the declared signals and params, by name.
-    - ``clock_s`` is the time between two samples in seconds, None without a clock. ``clock_failed``
-      is true if a declaration of a clock is in error.
+    - ``clock_s`` is the time between two samples in seconds, None without a clock or if it varies;
+      ``clock_varies`` says so. ``clock_failed`` is true if a declaration of a clock is in error.
     - ``registers`` has the memory that any formula or predicate asked for, by name, each register
       after those that it reads at the same sample. ``signals`` has a signal in place of each, so that
       its range is known. ``recalls`` counts the functions of the past around the current expression, and
@@ -109,6 +109,7 @@ class Context:
         "broken",
         "clock_failed",
         "clock_s",
+        "clock_varies",
         "expanding",
         "expansions",
         "instances",
@@ -128,6 +129,7 @@ class Context:
         self.signal_infos: dict[str, SignalInfo] = {}
         self.params: dict[str, Param] = {}
         self.clock_s: float | None = None
+        self.clock_varies = False
         self.clock_failed = False
         self.signals: dict[str, Signal] = {}
         self.atoms: dict[str, Atom] = {}

@@ -36,10 +36,11 @@ from tltlc.logic.formula import (
     or_,
     rebuild,
     release,
+    time_bound_of,
     until,
     weak_next,
 )
-from tltlc.resolve.timers import Timers
+from tltlc.resolve.timers import TimerAtoms, Timers
 from tltlc.resolve.unfolding import bounded_parts
 
 
@@ -51,7 +52,7 @@ def with_timers(formula: Formula, timers: Timers, *, many_rules: bool = False) -
     but do not know when their time is over.
     """
     try:
-        return _Rewriting(timers, many_rules).at_start(formula)
+        return _StepRewriting(timers, many_rules).at_start(formula)
     except RecursionError:
         return formula  # Operators nest too deep: the bounds become states.
 
@@ -59,7 +60,8 @@ def with_timers(formula: Formula, timers: Timers, *, many_rules: bool = False) -
 def rules_from_start(formula: Formula) -> int:
     """Return how many conjuncts of a clause are rules for a time from the first sample, ``G[m,n] f``."""
     conjuncts = formula.args if formula.op == "and" else (formula,)
-    return sum(1 for part in conjuncts if (window := _window(part)) is not None and window.op == "G")
+    windows = [window for window in map(_window, conjuncts) if window is not None]
+    return sum(1 for window in windows if window.op == "G") + sum(1 for part in conjuncts if is_timed_rule(part))
 
 
 class _Window(NamedTuple):
@@ -75,60 +77,67 @@ class _Window(NamedTuple):
     exists: bool = False
 
 
-class _Reached(NamedTuple):
+class Reached(NamedTuple):
     """The condition that a sample of a chain is reached in time, and the words for it: "within 5 s after a"."""
 
     formula: Formula
     words: str
 
 
-class _Rewriting:
-    def __init__(self, timers: Timers, many_rules: bool) -> None:
-        self._timers, self._many_rules = timers, many_rules
+class Rewriting:
+    """Replaces bounded operators by timers. Subclasses have the rules for a fixed clock and for one that varies.
+
+    The rules return None for a formula that they do not cover.
+    """
+
+    def __init__(self, timers: TimerAtoms) -> None:
+        self._atoms = timers
         self._inside: dict[Formula, Formula] = {}
 
-    def _fits(self, *formulas: Formula) -> bool:
-        """Whether a timer can be about these formulas: they have no temporal operators, and are not too large."""
-        return all(map(_is_present, formulas)) and self._timers.fits(*formulas)
+    def stay(self, node: Formula) -> Formula | None:
+        """Return ``F node``, where ``node`` asks to stay in a state for a time."""
+        raise NotImplementedError
 
-    # --- at the first sample ----------------------------------------------------------------------
+    def from_start(self, node: Formula) -> Formula | None:
+        """Return a bounded operator whose time counts from the first sample."""
+        raise NotImplementedError
+
+    def response(self, clause: tuple[Formula, ...]) -> Formula | None:
+        """Return ``G`` of a disjunction that says what must follow an event."""
+        raise NotImplementedError
+
+    def anchored(self, body: Formula, reached: Reached | None) -> Formula:
+        """Return the body of ``F body``, in which a bounded operator may count from the samples of its conjuncts.
+
+        ``reached`` holds at the samples that ``F`` may choose. It is None if ``F`` may choose any.
+        """
+        raise NotImplementedError
+
+    def dual(self, inner: Formula, operand: Formula) -> Formula | None:
+        """Return the bounded operator that ``!inner`` is, applied to the negated ``operand``."""
+        raise NotImplementedError
+
+    def fits(self, *formulas: Formula) -> bool:
+        """Whether a timer can be about these formulas: they have no temporal operators, and are not too large."""
+        return all(map(is_present, formulas)) and self._atoms.fits(*formulas)
 
     def at_start(self, node: Formula) -> Formula:
+        """Return a formula that is equivalent to ``node`` at the first sample."""
         if not _is_bounded(node):
             return node
         if node.op in ("and", "or", "not", "implies", "iff"):
             return rebuild(node, tuple(self.at_start(operand) for operand in node.args))
         if node.op == "G":
             return self._invariant(node)
-        window = _window(node)
-        if window is not None:
-            return self._from_start(window)
-        stay = _window(node.args[0]) if node.op == "F" else None
-        if stay is not None and stay.op == "G" and stay.low == 0 < stay.high and self._fits(stay.body):
-            held = self._timers.held(stay.high, stay.body)
-            return eventually(or_(held, and_(stay.body, not_(next_(TRUE)))))
-        return self.inside(node)
-
-    def _from_start(self, window: _Window) -> Formula:
-        timers = self._timers
-        if window.high == 0:
-            return self.at_start(window.body)
-        begun = timers.passed(window.low) if window.low else None
-        if window.op == "F":
-            first = _Reached(timers.between(window.low, window.high), f"within {timers.time(window.high)}")
-            body = self._anchored(window.body, first)
-            return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
-        if self._many_rules and self._fits(window.body):
-            rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
-            return and_(next_(TRUE), rule) if window.exists else rule
-        body = self.inside(window.body)
-        result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
-        return and_(next_(TRUE), result) if window.exists else result
+        known = self.from_start(node)
+        if known is None and node.op == "F":
+            known = self.stay(node.args[0])
+        return self.inside(node) if known is None else known
 
     def _invariant(self, node: Formula) -> Formula:
         """Return ``G body`` with timers: a response or a rule for some time after an event, or several of them."""
         clauses = self._clauses(node.args[0])
-        responses = [self._response(clause) for clause in clauses]
+        responses = [self.response(clause) for clause in clauses]
         if all(response is None for response in responses):
             return self.inside(node)
         return and_(
@@ -138,21 +147,6 @@ class _Rewriting:
             )
         )
 
-    def _response(self, clause: tuple[Formula, ...]) -> Formula | None:
-        """Return ``G`` of a disjunction with a timer, or None if it has no rule."""
-        temporal = [part for part in clause if not _is_present(part)]
-        window = _window(temporal[0]) if len(temporal) == 1 else None
-        if window is None or window.low > 1 or window.high == 0:
-            return None
-        request = and_(*(_negated(part) for part in clause if part is not temporal[0]))
-        if not self._fits(request, window.body):
-            return None
-        if window.op == "F":
-            due, late = self._timers.response(request, window.body, window.low, window.high)
-            return and_(always(not_(late)), always(implies(due, next_(TRUE))))
-        rule = always(not_(self._timers.breach(window.low, window.high, request, window.body)))
-        return and_(rule, always(implies(self._timers.now(request), next_(TRUE)))) if window.exists else rule
-
     def _clauses(self, body: Formula) -> list[tuple[Formula, ...]]:
         """Return disjunctions whose conjunction is ``body``; each is a tuple of its parts.
 
@@ -160,10 +154,10 @@ class _Rewriting:
         """
         if body.op == "and":
             return [clause for part in body.args for clause in self._clauses(part)]
-        if body.op == "implies" and _is_present(body.args[0]):
-            return [(_negated(body.args[0]), *clause) for clause in self._clauses(body.args[1])]
+        if body.op == "implies" and is_present(body.args[0]):
+            return [(negated(body.args[0]), *clause) for clause in self._clauses(body.args[1])]
         if body.op == "or":
-            present = tuple(part for part in body.args if _is_present(part))
+            present = tuple(part for part in body.args if is_present(part))
             temporal = [part for part in body.args if part not in present]
             if len(temporal) == 1:
                 return [(*present, *clause) for clause in self._clauses(temporal[0])]
@@ -173,22 +167,17 @@ class _Rewriting:
 
     def _pushed(self, inner: Formula) -> Formula | None:
         """Return ``!inner`` with the negation moved to the operands; None if ``inner`` has no time or no such form."""
-        if _is_present(inner):
+        if is_present(inner):
             return None
-        operands = tuple(_negated(operand) for operand in inner.args)
+        operands = tuple(negated(operand) for operand in inner.args)
         if inner.op in ("and", "or"):
             return (or_ if inner.op == "and" else and_)(*operands)
         if inner.op == "implies":
             return and_(inner.args[0], operands[1])
         if inner.op in ("X", "N"):
             return (weak_next if inner.op == "X" else next_)(*operands)
-        bound = bound_of(inner)
-        if bound is None:
-            return None
-        dual = bounded("G[]" if inner.op == "F[]" else "F[]", bound.low, bound.high, *operands)
-        return self._timers.in_place_of(inner, dual)
-
-    # --- anywhere -----------------------------------------------------------------------------------
+        dual = self.dual(inner, operands[0])
+        return None if dual is None else self._atoms.in_place_of(inner, dual)
 
     def inside(self, node: Formula) -> Formula:
         """Return a formula that is equivalent to ``node`` at every sample."""
@@ -197,21 +186,69 @@ class _Rewriting:
         known = self._inside.get(node)
         if known is None:
             if node.op == "F":
-                known = eventually(self._anchored(node.args[0], None))
+                known = eventually(self.anchored(node.args[0], None))
             else:
                 known = rebuild(node, tuple(self.inside(operand) for operand in node.args))
-                if bound_of(node) is not None:
-                    known = self._timers.in_place_of(node, known)
+                if node.op in ("F[]", "G[]"):
+                    known = self._atoms.in_place_of(node, known)
             self._inside[node] = known
         return known
 
-    def _anchored(self, body: Formula, reached: _Reached | None) -> Formula:
-        """Return the body of ``F body``, in which a bounded operator may count from the samples of its conjuncts.
 
-        ``reached`` holds at the samples that ``F`` may choose. It is None if ``F`` may choose any.
-        """
+class _StepRewriting(Rewriting):
+    """The rules for bounds in steps."""
+
+    def __init__(self, timers: Timers, many_rules: bool) -> None:
+        super().__init__(timers)
+        self._timers, self._many_rules = timers, many_rules
+
+    def stay(self, node: Formula) -> Formula | None:
+        window = _window(node)
+        if window is None or window.op != "G" or window.low or window.high == 0 or not self.fits(window.body):
+            return None
+        return stay_for(window.body, self._timers.held(window.high, window.body))
+
+    def from_start(self, node: Formula) -> Formula | None:
+        timers, window = self._timers, _window(node)
+        if window is None:
+            return None
+        if window.high == 0:
+            return self.at_start(window.body)
+        begun = timers.passed(window.low) if window.low else None
+        if window.op == "F":
+            first = Reached(timers.between(window.low, window.high), f"within {timers.time(window.high)}")
+            body = self.anchored(window.body, first)
+            return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
+        if self._many_rules and self.fits(window.body):
+            rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
+            return and_(next_(TRUE), rule) if window.exists else rule
+        body = self.inside(window.body)
+        result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
+        return and_(next_(TRUE), result) if window.exists else result
+
+    def response(self, clause: tuple[Formula, ...]) -> Formula | None:
+        temporal = [part for part in clause if not is_present(part)]
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        if window is None or window.low > 1 or window.high == 0:
+            return None
+        request = and_(*(negated(part) for part in clause if part is not temporal[0]))
+        if not self.fits(request, window.body):
+            return None
+        if window.op == "F":
+            due, late = self._timers.response(request, window.body, window.low, window.high)
+            return and_(always(not_(late)), always(implies(due, next_(TRUE))))
+        rule = always(not_(self._timers.breach(window.low, window.high, request, window.body)))
+        return and_(rule, always(implies(self._timers.now(request), next_(TRUE)))) if window.exists else rule
+
+    def dual(self, inner: Formula, operand: Formula) -> Formula | None:
+        bound = bound_of(inner)
+        if bound is None:
+            return None
+        return bounded("G[]" if inner.op == "F[]" else "F[]", bound.low, bound.high, operand)
+
+    def anchored(self, body: Formula, reached: Reached | None) -> Formula:
         parts = body.args if body.op == "and" else (body,)
-        temporal = [part for part in parts if not _is_present(part)]
+        temporal = [part for part in parts if not is_present(part)]
         window = _window(temporal[0]) if len(temporal) == 1 else None
         present = [part for part in parts if part not in temporal]
         if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
@@ -219,16 +256,27 @@ class _Rewriting:
         anchor, event_words = and_(*present), self._timers.text(and_(*present))
         if reached is not None:
             anchor, event_words = and_(anchor, reached.formula), f"{event_words} {reached.words}"
-        if not self._fits(anchor):
+        if not self.fits(anchor):
             return self.inside(body)
         in_time = f"within {self._timers.time(window.high)} after {event_words}"
         recent = self._timers.recent(window.low, window.high, anchor, event_words)
-        goal = self._anchored(window.body, _Reached(recent, in_time))
+        goal = self.anchored(window.body, Reached(recent, in_time))
         waiting = until(not_(self._timers.passed(window.high, anchor, event_words)), goal)
         return and_(*present, next_(waiting) if window.low else waiting)
 
 
-def _negated(formula: Formula) -> Formula:
+def stay_for(state: Formula, held: Formula) -> Formula:
+    """Return that ``state`` has held for a time, which ``held`` says, or holds at the last sample."""
+    return eventually(or_(held, and_(state, not_(next_(TRUE)))))
+
+
+def is_timed_rule(formula: Formula) -> bool:
+    """Whether a formula is a rule for a time in seconds, ``G f`` with a :class:`~tltlc.logic.formula.TimeBound`."""
+    return formula.op == "G[]" and time_bound_of(formula) is not None
+
+
+def negated(formula: Formula) -> Formula:
+    """Return the negation of a formula, without a double negation."""
     return formula.args[0] if formula.op == "not" else not_(formula)
 
 
@@ -255,5 +303,6 @@ def _is_bounded(node: Formula) -> bool:
     return any(True for _ in bounded_parts(node))
 
 
-def _is_present(node: Formula) -> bool:
+def is_present(node: Formula) -> bool:
+    """Whether a formula has no temporal operators."""
     return not any(part.is_temporal for part in node.walk())

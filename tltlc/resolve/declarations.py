@@ -149,6 +149,11 @@ def _conflict_error(kind: str, name: str, new: Label, old: Label) -> ResolutionE
 
 def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     source, value = env.scope.source, declaration.value
+    here = Label(source, declaration.span)
+    if value is None:
+        _check_same_clock(None, here, env, old)
+        env.context.clock_varies = True
+        return old or here
     period = period_s(value.value, value.unit)
     if period is None:
         title = "a clock must be a frequency or a period above zero"
@@ -156,18 +161,25 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
     if not SHORTEST_S <= period <= LONGEST_S:
         title = "the time from one step to the next must be between 1e-9 and 1e9 seconds"
         raise problem("TLT0314", title, source, value.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
-    here = Label(source, declaration.span)
+    _check_same_clock(period, here, env, old)
+    env.context.clock_s = period
+    return old or here
+
+
+def _check_same_clock(period: float | None, here: Label, env: Env, old: Label | None) -> None:
+    """Raise ResolutionError (TLT0314) if an earlier declaration ``old`` has another clock.
+
+    ``period`` is the period of the clock declared ``here``; None if it varies.
+    """
     if old is not None and period != env.context.clock_s:
         raise problem(
             "TLT0314",
             "two clocks differ",
-            source,
-            declaration.span,
+            here.source,
+            here.span,
             advice="a program has one clock: keep one of the two",
             related=(Label(old.source, old.span, "the other clock"),),
         )
-    env.context.clock_s = period
-    return old or here
 
 
 def _apply_overrides(options: ResolveOptions, context: Context) -> None:

@@ -20,13 +20,14 @@ from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers, units
-from tltlc.resolve.constants import number, samples
+from tltlc.resolve.constants import number, samples, seconds
+from tltlc.resolve.elapsed import timers_of
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.recall import check_closed, up_to
 from tltlc.resolve.registers import RegisterDraft
 from tltlc.resolve.scope import MEMORY_FUNCTIONS
 from tltlc.resolve.spec import Signal
-from tltlc.resolve.timers import Timers
+from tltlc.resolve.timers import TimerAtoms
 from tltlc.resolve.values import CLOSED, Env, Quantity, Recall, number_text
 
 PAST: Final = ("once", "historically", "previously", "begins", "ends")
@@ -95,16 +96,18 @@ def _window(expr: Unary, operand: Formula, env: Env) -> Formula:
     unit = f" {bound.high.unit}" if bound.high.unit else ""
     word = "within" if expr.op == "once" else "for"
     name = f"{expr.op} {word} {number_text(bound.high.value)}{unit} {operand_text(operand)}"
-    steps = samples(bound.high, env)
-    if expr.op == "historically" and steps == 0:
-        advice = "write e.g. `historically for 20 steps p`"
-        raise problem("TLT0312", "`for` needs at least one step", source, bound.high.span, advice=advice)
+    varies = env.context.clock_varies
+    length = seconds(bound.high, f"{word} 2 s", env) if varies else samples(bound.high, env)
+    if length == 0 and (varies or expr.op == "historically"):
+        title = f"`{word}` needs {'a time above 0' if varies else 'at least one step'}"
+        advice = f"write e.g. `{expr.op} {word} {'2 s' if varies else '20 steps'} p`"
+        raise problem("TLT0312", title, source, bound.high.span, advice=advice)
     if env.symbolic:
         return logic.atom(name)
     watched = operand if expr.op == "once" else logic.not_(operand)
     register = _time_since(watched, expr, env)
     timers = _timers(expr, env)
-    value = timers.at_most(register, steps) if expr.op == "once" else timers.at_least(register, steps)
+    value = timers.at_most(register, length) if expr.op == "once" else timers.at_least(register, length)
     return _atom(name, value, expr.span, env)
 
 
@@ -163,8 +166,8 @@ def _check_depth(value: Expression | Condition, expr: Expr, env: Env) -> None:
         raise problem("TLT0317", title, env.scope.source, expr.span, advice=advice)
 
 
-def _timers(expr: Expr, env: Env) -> Timers:
-    return Timers(env.context, env.scope.source, expr.span)
+def _timers(expr: Expr, env: Env) -> TimerAtoms:
+    return timers_of(env.context, env.scope.source, expr.span)
 
 
 def _kept(operand: Formula, expr: Expr, env: Env) -> str:
@@ -218,22 +221,22 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
     operand = formula(argument, env)
     _check_operand(operand, argument, env)
     name = f"{expr.name}({ascii_text(operand)})"
-    is_time = expr.name != "times"
+    is_time, varies = expr.name != "times", env.context.clock_varies
     unit = _seconds_per_step(expr, env) if is_time else Fraction(1)
     if not env.symbolic:
         if expr.name == "time_since":
             _time_since(operand, expr, env)
         else:
             kept, begun = _kept(operand, expr, env), _truth(operand, expr, env)
-            step = registers.step_length(False)
+            step, step_unit = registers.step_length(varies), "s" if varies else "steps"
             draft = (
-                registers.time_holding(name, begun, kept, step, "steps")
+                registers.time_holding(name, begun, kept, step, step_unit)
                 if is_time
                 else registers.times(name, begun, kept)
             )
             _register(draft, expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
-    read = Recall(name, unit, is_count=not is_time)
+    read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies))
     open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
@@ -252,8 +255,10 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
 def _seconds_per_step(expr: CallExpr, env: Env) -> Fraction:
     """Return the time between two samples in seconds, exactly as the clock was written if it has up to nine digits.
 
-    Raises ResolutionError (TLT0313) without a clock.
+    If the clock varies, registers count seconds: return 1. Raises ResolutionError (TLT0313) without a clock.
     """
+    if env.context.clock_varies:
+        return Fraction(1)
     period = env.context.clock_s
     if period is None and env.context.clock_failed:
         raise ResolutionError(None)

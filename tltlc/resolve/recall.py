@@ -20,7 +20,7 @@ MOST_STEPS: Final = 10**9
 def up_to(
     value: Quantity, maximum: float, expr: Expr, env: Env, text: str | None = None, limit: Label | None = None
 ) -> Quantity:
-    """Return a recalled quantity up to a maximum, which is rounded up to whole steps.
+    """Return a recalled quantity up to a maximum, which is rounded up to whole steps on a fixed clock.
 
     ``expr`` is the expression that gives the maximum, and ``text`` the spelling of the new quantity, by
     default the old one. ``limit`` is the place where the maximum is written, if it is. Raises
@@ -33,7 +33,7 @@ def up_to(
         title = f"`{value.text}` would need a maximum above {most}"
         advice = "choose a smaller number" if read.is_count else "choose a shorter time, or a slower clock"
         raise problem("TLT0303", title, env.scope.source, expr.span, advice=advice)
-    steps = max(1, ceil(maximum / float(read.unit) - 1e-9))
+    steps = max(1, ceil(maximum / float(read.unit) - 1e-9)) if read.is_whole else maximum or 1.0
     expression: Expression = registers.saturated(read.register, steps)
     # Multiply and divide by whole numbers, so that 3 steps of 0.15 s are exactly the number 0.45.
     over, under = float(read.unit.numerator), float(read.unit.denominator)

@@ -32,7 +32,19 @@ SAMPLES: Final = "samples so far"
 FIRST: Final = "first sample"
 """The name of the register that is 1 before the first sample, and 0 from then on."""
 
-SATURATING: Final[tuple[RegisterKind, ...]] = ("times", "time_since", "time_holding", "samples", "age", "waiting")
+ELAPSED: Final = "time so far"
+"""The name of the register with the time from the first sample to this one."""
+
+SATURATING: Final[tuple[RegisterKind, ...]] = (
+    "times",
+    "time_since",
+    "time_holding",
+    "samples",
+    "elapsed",
+    "run",
+    "age",
+    "waiting",
+)
 """The kinds of registers that stop at a maximum, which depends on the comparisons of a spec."""
 
 
@@ -52,9 +64,9 @@ class RegisterDraft:
         """Return the register, which stops at ``maximum`` if it is of a kind that saturates."""
         if self.kind not in SATURATING:
             return Register(self.name, self.kind, self.unit, self.low, self.high, self.initial, self.update)
-        initial = maximum if self.kind in ("time_since", "age") else 0.0
+        initial = maximum if self.kind in ("time_since", "age") else self.initial
         update = Op("min", (self.update, Const(maximum)))
-        return Register(self.name, self.kind, self.unit, 0.0, maximum, initial, update)
+        return Register(self.name, self.kind, self.unit, self.low, maximum, initial, update)
 
 
 # --- updates --------------------------------------------------------------------------------------
@@ -114,6 +126,23 @@ def samples() -> RegisterDraft:
     return RegisterDraft(SAMPLES, "samples", "steps", 0.0, None, 0.0, Op("+", (Before(SAMPLES), Const(1.0))))
 
 
+def elapsed() -> RegisterDraft:
+    """Return the register with the time from the first sample to this one; it is -1 before the first sample."""
+    begun = Condition("<", (Before(ELAPSED), Const(0.0)))
+    update = When(((begun, Const(0.0)),), Op("+", (Before(ELAPSED), StepLength())))
+    return RegisterDraft(ELAPSED, "elapsed", "s", -1.0, None, -1.0, update)
+
+
+def run(name: str, kept: str) -> RegisterDraft:
+    """Return the register with the time from the start of the last run of samples with p to this sample.
+
+    The run is that which includes the sample before. If p did not hold there, the time is 0. ``kept`` is
+    the register that keeps the robustness of p.
+    """
+    update = When(((holds(Before(kept)), Op("+", (Before(name), StepLength()))),), Const(0.0))
+    return RegisterDraft(name, "run", "s", 0.0, None, 0.0, update)
+
+
 def age(name: str, kept: str, step: Expression, unit: str) -> RegisterDraft:
     """Return the register with the time from the latest sample before this one at which p held.
 
@@ -155,6 +184,18 @@ def waiting(name: str, request: Condition, goal: Condition, strict: bool, step: 
     else:
         cases = ((goal, Const(0.0)), older, new)
     return RegisterDraft(name, "waiting", "steps", 0.0, None, 0.0, When(cases, Const(0.0)))
+
+
+def waiting_time(name: str, request: Condition, goal: Condition, deadline_s: float) -> RegisterDraft:
+    """Return the register with the time since the oldest request that waits for its goal; -1 if none waits.
+
+    A request that has waited for more than ``deadline_s`` seconds waits for ever, even if its goal comes now.
+    """
+    waits = Condition("not", (Condition("<", (Before(name), Const(0.0))),))
+    now = Op("+", (Before(name), StepLength()))
+    late = Condition("and", (waits, Condition(">", (now, Const(deadline_s)))))
+    cases = ((late, now), (goal, Const(-1.0)), (waits, now), (request, Const(0.0)))
+    return RegisterDraft(name, "waiting", "s", -1.0, None, -1.0, When(cases, Const(-1.0)))
 
 
 def first() -> RegisterDraft:

@@ -89,6 +89,8 @@ RegisterKind = Literal[
     "highest",
     "lowest",
     "samples",
+    "elapsed",
+    "run",
     "age",
     "due",
     "waiting",
@@ -165,7 +167,8 @@ class Spec:
     that the atoms use, in order of first use. ``registers`` are the memory that the atoms read, each
     after the registers that its update reads at the same sample. ``judge`` says whether an episode is judged when it
     reaches its goal or at its limit; None if no clause says so. ``clock_s`` is the time between two
-    samples in seconds, or None if no clock is declared.
+    samples in seconds, or None if no clock is declared. ``clock_varies`` says that each sample brings its
+    own time since the sample before; then ``clock_s`` is None.
     """
 
     name: str
@@ -185,6 +188,7 @@ class Spec:
     source: SourceFile
     name_span: Span
     registers: tuple[Register, ...] = ()
+    clock_varies: bool = False
 
 
 @record
@@ -201,17 +205,20 @@ class Vocabulary:
     exclusive: tuple[tuple[int, ...], ...]
     clock_s: float | None
     registers: tuple[Register, ...] = ()
+    clock_varies: bool = False
 
 
 @record
 class RepeatedSample:
     """A ``step`` of a test: a sample of truth values, repeated ``times`` times.
 
-    The atoms named in ``holds`` are true at the sample, and all other atoms are false.
+    The atoms named in ``holds`` are true at the sample, and all other atoms are false. ``dt_s`` is the
+    time of each sample since the sample before, in seconds, where the clock varies.
     """
 
     times: int
     holds: frozenset[str]
+    dt_s: float = 0.0
 
 
 @record

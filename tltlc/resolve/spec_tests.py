@@ -7,9 +7,11 @@ from typing import Literal, cast
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import replacement_fix
+from tltlc.grammar.builder import MOST_REPETITIONS
 from tltlc.grammar.tree import Expr, GroupExpr, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.typos import likely_name
 from tltlc.grammar.walk import conjuncts
+from tltlc.resolve.constants import samples, seconds
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.registers import following_atoms
@@ -63,8 +65,9 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
     for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
         if _without_spaces(name) not in names:
-            known = ", ".join(f"`{atom.name}`" for atom in spec.atoms) or "no atoms"
-            verb = "has" if not names else "has the atoms" if len(names) > 1 else "has only the atom"
+            given = [f"`{atom.name}`" for atom in spec.atoms if atom.name not in following]
+            known = ", ".join(given) or "no atoms"
+            verb = "has" if not given else "has the atoms" if len(given) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
         if name in following:
@@ -77,7 +80,28 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
                 literal_expr.span,
                 advice="leave one out",
             )
-    return RepeatedSample(item.times, frozenset(name for name, holds in values.items() if holds))
+    times, dt_s = _length(item, env)
+    return RepeatedSample(times, frozenset(name for name, holds in values.items() if holds), dt_s)
+
+
+def _length(item: TestStep, env: Env) -> tuple[int, float]:
+    """Return how many samples a ``step`` takes, and the seconds before each of them, 0 on a fixed clock.
+
+    On a fixed clock, ``step for 2 s a`` takes as many samples as the game takes in 2 s. On a clock that
+    varies, it takes one sample, 2 s after the sample before. Raises ResolutionError: TLT0312, TLT0313
+    or TLT0323 the length is no time, or has no clock; TLT0217 it takes too many samples.
+    """
+    length = item.length
+    if length is None:
+        return item.times, 0.0
+    if env.context.clock_varies:
+        return item.times, seconds(length, "for 2 s", env)
+    times = item.times * samples(length, env)
+    if not 0 < times <= MOST_REPETITIONS:
+        title = f"this step would take {times:,} samples"
+        advice = "write a time above 0" if times == 0 else "write a shorter time"
+        raise problem("TLT0217", title, env.scope.source, length.span, advice=advice)
+    return times, 0.0
 
 
 def _following_atom_error(name: str, spec: Spec, source: SourceFile, span: Span) -> ResolutionError:

@@ -14,14 +14,17 @@ from tltlc.expression.tree import SignalValue as SignalNode
 from tltlc.grammar.tree import BinaryExpr, Clause, Expr, NameExpr, NumberExpr, SpecDecl
 from tltlc.grammar.walk import conjuncts
 from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
+from tltlc.resolve.bounds import no_timer_error
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.deadlines import rules_from_start, with_timers
+from tltlc.resolve.elapsed import ElapsedTimers
 from tltlc.resolve.enums import exclusive_values
 from tltlc.resolve.formulas import with_bounds
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.registers import memory_of
 from tltlc.resolve.spec import Atom, Conjunct, JudgeMode, Spec, Vocabulary
+from tltlc.resolve.timed_deadlines import with_elapsed_timers
 from tltlc.resolve.timers import Timers
 from tltlc.resolve.unfolding import bounded_parts, unfold
 from tltlc.resolve.values import Env
@@ -86,6 +89,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
         source=source,
         name_span=declaration.name_span,
         registers=words.registers,
+        clock_varies=words.clock_varies,
     )
 
 
@@ -115,6 +119,7 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
         exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
         clock_s=context.clock_s,
         registers=memory.registers,
+        clock_varies=context.clock_varies,
     )
 
 
@@ -147,6 +152,8 @@ def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
     (:mod:`tltlc.resolve.deadlines`), and the others become states.
     """
     context = env.context
+    if context.clock_varies:
+        return _without_time_bounds(parts, context)
     many_rules = sum(rules_from_start(part.formula) for part in parts) > 1
     few = prod(_states(node) for part in parts for node in bounded_parts(part.formula)) <= MOST_UNFOLDED
     result = []
@@ -155,6 +162,22 @@ def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
         formula = part.formula if few else with_timers(part.formula, timers, many_rules=many_rules)
         bounds = tuple(dict.fromkeys(context.bound_of[node] for node in bounded_parts(formula)))
         result.append(replace(part, formula=unfold(formula, context), bounds=bounds))
+    return result
+
+
+def _without_time_bounds(parts: list[Conjunct], context: Context) -> list[Conjunct]:
+    """Return the conjuncts with timers in place of bounded operators, where the clock varies.
+
+    Raises ResolutionError (TLT0323) for a bound that has no timer.
+    """
+    many_rules = sum(rules_from_start(part.formula) for part in parts) > 1
+    result = []
+    for part in parts:
+        timers = ElapsedTimers(context, part.source, part.span)
+        formula = with_elapsed_timers(part.formula, timers, many_rules=many_rules)
+        for node in bounded_parts(formula):
+            raise no_timer_error(context.bound_of[node])
+        result.append(replace(part, formula=formula, bounds=()))
     return result
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.core.names import full_name
-from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Const, Expression, Op, SignalValue, depth
 from tltlc.io.limits import ARITHMETIC
@@ -22,21 +21,87 @@ _MOST_DEPTH: Final = ARITHMETIC.depth // 2
 """The greatest depth of their robustness, since an update adds operators to it."""
 
 
-@record
-class Timers:
+class TimerAtoms:
     """Makes the timers of one clause. ``source`` and ``span`` are the place of the clause, for errors.
 
-    All bounds are numbers of steps.
+    A length of time is a number of steps on a fixed clock (:class:`Timers`), and a number of seconds on
+    one that varies (:class:`tltlc.resolve.elapsed.ElapsedTimers`).
     """
 
-    context: Context
-    source: SourceFile
-    span: Span
+    def __init__(self, context: Context, source: SourceFile, span: Span) -> None:
+        self.context, self.source, self.span = context, source, span
+
+    def at_least(self, register: str, length: float) -> Expression:
+        """Return the robustness of "the register, which counts time, is at least ``length``"."""
+        raise NotImplementedError
+
+    def at_most(self, register: str, length: float) -> Expression:
+        """Return the robustness of "the register, which counts time, is at most ``length``"."""
+        raise NotImplementedError
+
+    def time(self, length: float) -> str:
+        """Return a length of time as a text for people."""
+        raise NotImplementedError
 
     def fits(self, *formulas: Formula) -> bool:
         """Whether timers about these formulas, which have no temporal operators, are not too large."""
         size = sum(self.context.tree_size(formula) for formula in formulas)
         return size <= _MOST_PARTS and all(depth(registers.robustness(formula)) <= _MOST_DEPTH for formula in formulas)
+
+    def now(self, state: Formula) -> Formula:
+        """Return ``state`` as one atom."""
+        return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self.kept(state)))
+
+    def text(self, formula: Formula) -> str:
+        """Return the text of a formula in the names of timers."""
+        return _text(formula)
+
+    def operand_text(self, formula: Formula) -> str:
+        """Return the text of a formula in the names of timers, in brackets if it needs them as an operand."""
+        return _operand_text(formula)
+
+    def in_place_of(self, old: Formula, new: Formula) -> Formula:
+        """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
+        self.context.bound_of.setdefault(new, self.context.bound_of[old])
+        return new
+
+    def _age(self, low: int, event: Formula) -> str:
+        """Return the register with the age of the latest event: at this sample, or before it if ``low`` is 1."""
+        if low == 0:
+            return self.time_since(event)
+        name = f"age({_text(event)})"
+        self._register(registers.age(name, self.kept(event), *self._step()))
+        return name
+
+    def time_since(self, event: Formula) -> str:
+        """Return the name of the register with the time since ``event`` last held."""
+        name = f"time_since({ascii_text(event)})"
+        self._register(registers.time_since(name, registers.truth(event), *self._step()))
+        return name
+
+    def _step(self) -> tuple[Expression, str]:
+        """Return the length of a step, and the unit of registers that count time."""
+        varies = self.context.clock_varies
+        return registers.step_length(varies), "s" if varies else "steps"
+
+    def _register(self, draft: RegisterDraft) -> None:
+        self.context.register(draft, self.source, self.span)
+
+    def kept(self, state: Formula) -> str:
+        """Return the name of the register that keeps the robustness of ``state`` for the next sample."""
+        name = f"last {operand_text(state)}"
+        self._register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
+        return name
+
+    def _value(self, state: Formula) -> Expression:
+        return registers.robustness(state)
+
+    def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
+        return self.context.atom(base, value, "", self.source, self.span, arguments)
+
+
+class Timers(TimerAtoms):
+    """Makes the timers of one clause on a fixed clock. All lengths and bounds are numbers of steps."""
 
     def passed(self, steps: int, event: Formula | None = None, event_words: str | None = None) -> Formula:
         """Return the atom of "``event`` last held ``steps`` or more steps ago", or never.
@@ -121,74 +186,29 @@ class Timers:
         self._register(registers.breach(name, Op("min", (inside, self._value(not_(rule))))))
         return self._atom("breach", SignalValue(name), *arguments)
 
-    def now(self, state: Formula) -> Formula:
-        """Return ``state`` as one atom."""
-        return state if state.op == "atom" else self._atom(f"({_text(state)})", SignalValue(self.kept(state)))
-
-    def text(self, formula: Formula) -> str:
-        """Return the text of a formula in the names of timers."""
-        return _text(formula)
-
-    def in_place_of(self, old: Formula, new: Formula) -> Formula:
-        """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
-        self.context.bound_of.setdefault(new, self.context.bound_of[old])
-        return new
-
-    # --- registers and atoms ------------------------------------------------------------------------
-
     def _samples(self) -> str:
         self._register(registers.samples())
         return registers.SAMPLES
 
-    def _age(self, low: int, event: Formula) -> str:
-        """Return the register with the age of the latest event: at this sample, or before it if ``low`` is 1."""
-        if low == 0:
-            return self.time_since(event)
-        name, step = f"age({_text(event)})", registers.step_length(False)
-        self._register(registers.age(name, self.kept(event), step, "steps"))
-        return name
-
-    def time_since(self, event: Formula) -> str:
-        """Return the name of the register with the time since ``event`` last held."""
-        name = f"time_since({ascii_text(event)})"
-        step = registers.step_length(False)
-        self._register(registers.time_since(name, registers.truth(event), step, "steps"))
-        return name
-
-    def _register(self, draft: RegisterDraft) -> None:
-        self.context.register(draft, self.source, self.span)
-
-    def kept(self, state: Formula) -> str:
-        """Return the name of the register that keeps the robustness of ``state`` for the next sample."""
-        name = f"last {operand_text(state)}"
-        self._register(registers.last(name, self._value(state), -1.0, 1.0, -1.0))
-        return name
-
-    def _value(self, state: Formula) -> Expression:
-        return registers.robustness(state)
-
-    def at_least(self, register: str, steps: int) -> Expression:
-        """Return the robustness of "the register is at least ``steps``", a number of at least 1."""
-        border = steps - 0.5
+    def at_least(self, register: str, length: float) -> Expression:
+        """Return the robustness of "the register is at least ``length``", a number of at least 1."""
+        border = length - 0.5
         margin = Op("-", (registers.saturated(register, 2 * border), Const(border)))
         return Op("/", (margin, Const(border)))
 
-    def at_most(self, register: str, steps: int) -> Expression:
-        """Return the robustness of "the register is at most ``steps``"."""
-        border = steps + 0.5
+    def at_most(self, register: str, length: float) -> Expression:
+        """Return the robustness of "the register is at most ``length``"."""
+        border = length + 0.5
         return Op("/", (Op("-", (Const(border), registers.saturated(register, 2 * border))), Const(border)))
 
-    def time(self, steps: int) -> str:
+    def time(self, length: float) -> str:
         """Return a number of steps as a text for people: in seconds if there is a clock."""
-        period = self.context.clock_s
+        steps, period = int(length), self.context.clock_s
         if period is None:
             return f"{steps} step{'s' * (steps != 1)}"
         seconds = round(steps * period, 6)
         # On a fast clock, a rounded time would not tell the steps apart.
         return f"{number_text(seconds)} s" if abs(seconds / period - steps) < 1e-3 else f"{steps} steps"
-
-    def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
-        return self.context.atom(base, value, "", self.source, self.span, arguments)
 
 
 def _text(formula: Formula) -> str:

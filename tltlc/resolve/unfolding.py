@@ -20,13 +20,13 @@ def unfold(formula: Formula, context: Context) -> Formula:
     done: dict[Formula, Formula] = {}
     for node in formula.bottom_up():
         operands = tuple(done[operand] for operand in node.args)
-        done[node] = rebuild(node, operands) if bound_of(node) is None else _unfolded(node, operands[0], context)
+        done[node] = _unfolded(node, operands[0], context) if bound_of(node) else rebuild(node, operands)
     return done[formula]
 
 
 def bounded_parts(formula: Formula) -> Iterator[Formula]:
     """Yield the distinct bounded operators in a formula."""
-    return (node for node in formula.walk() if bound_of(node) is not None)
+    return (node for node in formula.walk() if node.op in ("F[]", "G[]"))
 
 
 def _unfolded(node: Formula, operand: Formula, context: Context) -> Formula:

@@ -35,12 +35,14 @@ class Recall:
     """That a quantity is the count or time in a register which saturates, with no maximum yet or a written one.
 
     ``unit`` is the size of one unit of the register: the seconds of a step, or 1. ``is_count`` marks a
-    count. ``limit`` is the place where the maximum is written; None if the quantity has no maximum yet.
+    count, and ``is_whole`` a register that has whole numbers only. ``limit`` is the place where the
+    maximum is written; None if the quantity has no maximum yet.
     """
 
     register: str
     unit: Fraction
     is_count: bool
+    is_whole: bool = True
     limit: Label | None = None
 
 

@@ -125,6 +125,7 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
         semantics=spec.semantics,
         tags=spec.tags,
         clock_s=spec.clock_s,
+        clock_varies=spec.clock_varies,
         registers=spec.registers,
         signals=spec.signals,
         params=spec.params,

@@ -53,6 +53,7 @@ def _build(spec: Spec, work: int) -> Fspa:
         semantics=spec.semantics,
         tags=spec.tags,
         clock_s=spec.clock_s,
+        clock_varies=spec.clock_varies,
         registers=spec.registers,
         signals=spec.signals,
         params=spec.params,

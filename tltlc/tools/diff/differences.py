@@ -24,6 +24,7 @@ _SETTINGS: Final[tuple[tuple[DifferenceKind, str], ...]] = (
     ("limit", "limit_steps"),
     ("level", "level"),
     ("clock", "clock_s"),
+    ("clock", "clock_varies"),
 )
 """The settings of a whole spec, each with the field of :class:`Fspa` that holds it."""
 

@@ -51,8 +51,9 @@ class DeclarationPrinter:
                 self._put_head("param", node, node.type, node.interval, node.value.span.start)
                 self._put_body(node.value)
             case tree.ClockDecl():
-                self._page.put("clock ")
-                self._expressions.put(node.value, STEP)
+                self._page.put("clock " if node.value else "clock varies")
+                if node.value:
+                    self._expressions.put(node.value, STEP)
             case tree.PredicateDecl():
                 self._put_head("predicate", node, None, node.interval, node.body.span.start)
                 self._put_body(node.body)
@@ -197,8 +198,9 @@ class DeclarationPrinter:
             self._expressions.put_after_keyword(item.value, indent)
 
     def _repetitions(self, item: tree.TestStep) -> str:
-        """Return the repetitions of a step, such as `` 3x``; empty if the source gives none."""
-        return f" {self._source.slice(item.times_span)}x" if item.times_span else ""
+        """Return the repetitions and the length of a step, such as `` 3x`` and `` for 2 s``, if the source has them."""
+        times = f" {self._source.slice(item.times_span)}x" if item.times_span else ""
+        return times if item.length is None else f"{times} for {self._one_line.number(item.length)}"
 
     def _expectation(self, item: tree.TestExpect) -> str:
         if item.number is not None and item.comparison is not None:

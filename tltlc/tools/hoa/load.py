@@ -107,6 +107,7 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
         semantics="finite" if finite else "infinite",
         tags=(),
         clock_s=vocabulary.clock_s,
+        clock_varies=vocabulary.clock_varies,
         registers=vocabulary.registers,
         signals=vocabulary.signals,
         params=vocabulary.params,

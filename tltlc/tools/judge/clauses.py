@@ -171,6 +171,7 @@ def _as_spec(fspa: Fspa) -> Spec:
         semantics=fspa.semantics,
         tags=fspa.tags,
         clock_s=fspa.clock_s,
+        clock_varies=fspa.clock_varies,
         registers=fspa.registers,
         source=SourceFile(f"<{fspa.name}>", "", "text"),
         name_span=Span(0, 0),

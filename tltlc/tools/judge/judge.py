@@ -60,7 +60,9 @@ class Judge:
             plain = self._plain_samples(text)
             if plain is None:
                 # This keeps the samples before an error.
-                samples.extend(read_trace(io.BytesIO(text), name, self._fspa.signals, self._fspa.clock_s))
+                fspa = self._fspa
+                read = read_trace(io.BytesIO(text), name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
+                samples.extend(read)
             samples = plain or samples
             run, warnings = self._runner.run(samples)
         except TltlError as error:
@@ -133,9 +135,11 @@ class Judge:
     def _plain_samples(self, data: bytes) -> list[TraceSample] | None:
         """Return the samples of a trace in plain CSV, which :func:`plain_columns` reads fast.
 
-        Return None for any other trace, and for times of samples that
-        :class:`~tltlc.monitor.sample_times.SampleTimes` rejects.
+        Return None for any other trace, for times of samples that
+        :class:`~tltlc.monitor.sample_times.SampleTimes` rejects, and if the clock varies.
         """
+        if self._fspa.clock_varies:
+            return None
         plain = plain_columns(data, self._fspa.signals)
         if plain is None:
             return None

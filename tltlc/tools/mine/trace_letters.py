@@ -64,8 +64,10 @@ def check_trace(file: TraceFile) -> None:
         pass
 
 
-def _rows(file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None) -> Iterator[TraceSample]:
-    return read_trace(io.BytesIO(file.data), file.name, signals, clock_s, file.kind)
+def _rows(
+    file: TraceFile, signals: Sequence[Signal], clock_s: float | None = None, clock_varies: bool = False
+) -> Iterator[TraceSample]:
+    return read_trace(io.BytesIO(file.data), file.name, signals, clock_s, file.kind, clock_varies=clock_varies)
 
 
 def _letters(
@@ -77,7 +79,7 @@ def _letters(
     """
     reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]
-    for number, row in enumerate(_rows(file, reader.signals, reader.clock_s), start=1):
+    for number, row in enumerate(_rows(file, reader.signals, reader.clock_s, reader.clock_varies), start=1):
         sample = tuple([row.get(name, nan) for name in names])
         letter = cache.get(sample)
         if letter is None:

@@ -177,6 +177,7 @@ def _reader(vocabulary: Vocabulary) -> Fspa:
         params=vocabulary.params,
         exclusive=vocabulary.exclusive,
         clock_s=vocabulary.clock_s,
+        clock_varies=vocabulary.clock_varies,
         registers=vocabulary.registers,
     )
     return build(spec)

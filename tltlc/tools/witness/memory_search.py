@@ -18,6 +18,7 @@ from tltlc.core.record import record
 from tltlc.monitor import MonitorError
 from tltlc.monitor.guards import holds
 from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.tools.witness.deadlines import shortest_deadline_s
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -77,7 +78,8 @@ class MemorySearch:
     The inputs are samples with a value for every signal of the automata, or letters. A letter names
     the atoms that hold; those that follow from others are computed. ``names`` has the names of the
     atoms of each automaton in letters, by default their own. No two atoms of a group in ``exclusive``
-    may hold together. ``tried_all`` is true once all traces over the inputs have been tried.
+    may hold together. If the clock varies, each letter comes the time of the shortest deadline after the
+    one before. ``tried_all`` is true once all traces over the inputs have been tried.
     """
 
     def __init__(
@@ -94,6 +96,7 @@ class MemorySearch:
         self._exclusive = exclusive
         self._values = tuple(Samples(fspa, None, []) for fspa in automata)
         self._leaving = tuple(_leaving(fspa) for fspa in automata)
+        self._letter_s = shortest_deadline_s(automata)
 
     def positions(self) -> Iterator[Position]:
         """Yield the ends of traces: at first in the order of their lengths, until the work is done.
@@ -216,7 +219,9 @@ class MemorySearch:
         if isinstance(given, Mapping):
             return samples.values(given, registers, 1)
         names = self._names[index]
-        return samples.from_atoms([1.0 if names[atom] in given else -1.0 for atom in samples.given], registers, 1)
+        values = [1.0 if names[atom] in given else -1.0 for atom in samples.given]
+        length = samples.step_length(self._letter_s if self._automata[index].clock_varies else None, 1)
+        return samples.from_atoms(values, registers, length, 1)
 
     def _key(self, configuration: _Configuration) -> object:
         """Return what two positions share if only one of them needs a continuation."""

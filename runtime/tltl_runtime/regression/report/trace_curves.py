@@ -82,6 +82,7 @@ def _curves(judged: JudgedTraces, index: int) -> Iterator[TraceCurves]:
 def _atom_values(fspa: Fspa, name: str, data: bytes, steps: int) -> Iterator[tuple[float, ...]]:
     """Yield the values of all atoms at each of the first ``steps`` samples of a trace."""
     samples = monitors.Samples(fspa, None, [])
-    read = traces.read_trace(io.BytesIO(traces.as_text(data, name, fspa.signals)), name, fspa.signals, fspa.clock_s)
+    text = io.BytesIO(traces.as_text(data, name, fspa.signals))
+    read = traces.read_trace(text, name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
     for values in samples.of_trace(list(islice(read, steps))):
         yield values.atoms

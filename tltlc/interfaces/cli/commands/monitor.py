@@ -109,6 +109,7 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
                     fspa.signals,
                     fspa.clock_s,
                     input_kind(trace),
+                    clock_varies=fspa.clock_varies,
                 ),
             )
             show = _show_json if as_json else _show_csv

@@ -1,0 +1,146 @@
+"""Replace bounded operators by timers in seconds, where each sample brings its own length (``clock varies``).
+
+Each rule replaces a formula by an equivalent one over atoms that read a register. The proofs are in
+``docs/semantics.md``, "Deadlines on a clock that varies". In the rules, T is a time above 0, ``p`` and
+``q`` are formulas without temporal operators, and ``f`` is any formula. ``F`` within T includes the
+sample at T, and ``G`` for T ends before it. ``F`` later within T leaves out the first sample.
+
+==============================  ==============================================================
+where it stands                 rule
+==============================  ==============================================================
+at the first sample             ``F[T] f`` is ``!over U (!over & f)``
+at the first sample             ``G[T] f`` is ``lasted R (lasted | f)``, or ``G !breach`` if there are more
+at the first sample             ``F G[T] p`` is ``F(p has held for T | p & !X true)``
+at the first sample             ``G(p -> F[T] q)`` is ``G !late & G(due -> X true)``
+at the first sample             ``G(p -> G[T] q)`` is ``G !breach``
+at the first sample             ``G(p -> X f)``, f as above, is the same of ``previously p``, & ``G(p -> X true)``
+anywhere                        ``F(p & F[later, T] f)`` is ``F(p & X(recent U (recent & f)))``
+anywhere                        ``F(p & F[T] f)`` is ``F(p & (lately U (lately & f)))``
+==============================  ==============================================================
+
+There are no other rules, and a time is no number of states: any other bound is an error.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tltlc.logic.formula import (
+    TRUE,
+    Formula,
+    always,
+    and_,
+    eventually,
+    implies,
+    next_,
+    not_,
+    or_,
+    release,
+    time_bound_of,
+    until,
+)
+from tltlc.resolve.deadlines import Reached, Rewriting, is_present, negated, stay_for
+from tltlc.resolve.elapsed import ElapsedTimers
+
+
+def with_elapsed_timers(formula: Formula, timers: ElapsedTimers, *, many_rules: bool = False) -> Formula:
+    """Return an equivalent formula in which timers replace the bounded operators that have a rule.
+
+    ``formula`` and ``many_rules`` are those of :func:`tltlc.resolve.deadlines.with_timers`.
+    """
+    try:
+        return _TimedRewriting(timers, many_rules).at_start(formula)
+    except RecursionError:
+        return formula  # Operators nest too deep.
+
+
+class _Window(NamedTuple):
+    """``F[T] body`` or ``G[T] body``, behind an ``X`` or ``N`` if ``following``.
+
+    ``exists`` says whether the next sample must exist, as ``X`` asks.
+    """
+
+    op: str
+    seconds: float
+    later: bool
+    body: Formula
+    following: bool = False
+    exists: bool = False
+
+
+class _TimedRewriting(Rewriting):
+    """The rules for bounds in seconds."""
+
+    def __init__(self, timers: ElapsedTimers, many_rules: bool) -> None:
+        super().__init__(timers)
+        self._timers, self._many_rules = timers, many_rules
+
+    def stay(self, node: Formula) -> Formula | None:
+        window = _window(node)
+        if window is not None and window.op == "F" and not (window.following or window.later):
+            return eventually(self.inside(window.body))  # The bound has no effect.
+        if window is None or window.op != "G" or window.following or not self.fits(window.body):
+            return None
+        return stay_for(window.body, self._timers.held(window.seconds, window.body))
+
+    def from_start(self, node: Formula) -> Formula | None:
+        timers, window = self._timers, _window(node)
+        if window is None or window.following or window.later:
+            return None
+        if window.op == "F":
+            in_time = not_(timers.over(window.seconds))
+            goal = self.anchored(window.body, Reached(in_time, f"within {timers.time(window.seconds)}"))
+            return until(in_time, and_(in_time, goal))
+        if self._many_rules and self.fits(window.body):
+            return always(not_(timers.breach_from_start(window.seconds, window.body)))
+        lasted = timers.lasted(window.seconds)
+        return release(lasted, or_(lasted, self.inside(window.body)))
+
+    def response(self, clause: tuple[Formula, ...]) -> Formula | None:
+        temporal = [part for part in clause if not is_present(part)]
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        if window is None or window.later:
+            return None
+        event = and_(*(negated(part) for part in clause if part is not temporal[0]))
+        if not self.fits(event, window.body):
+            return None
+        request = self._timers.previous(event) if window.following else event
+        if window.op == "F":
+            due, late = self._timers.response(request, window.body, window.seconds)
+            rule = and_(always(not_(late)), always(implies(due, next_(TRUE))))
+        else:
+            rule = always(not_(self._timers.breach(window.seconds, request, window.body)))
+        return and_(rule, always(implies(self._timers.now(event), next_(TRUE)))) if window.exists else rule
+
+    def anchored(self, body: Formula, reached: Reached | None) -> Formula:
+        parts = body.args if body.op == "and" else (body,)
+        temporal = [part for part in parts if not is_present(part)]
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        present = [part for part in parts if part not in temporal]
+        if window is None or window.op != "F" or window.following or not present:
+            return self.inside(body)
+        anchor, event_words = and_(*present), self._timers.text(and_(*present))
+        if reached is not None:
+            anchor, event_words = and_(anchor, reached.formula), f"{event_words} {reached.words}"
+        if not self.fits(anchor):
+            return self.inside(body)
+        recent = self._timers.recent(window.seconds, anchor, event_words, before=window.later)
+        in_time = f"within {self._timers.time(window.seconds)} after {event_words}"
+        waiting = until(recent, and_(recent, self.anchored(window.body, Reached(recent, in_time))))
+        return and_(*present, next_(waiting) if window.later else waiting)
+
+    def dual(self, inner: Formula, operand: Formula) -> Formula | None:
+        # `F` includes the end of its time and `G` does not, so neither is the negation of the other.
+        return None
+
+
+def _window(node: Formula) -> _Window | None:
+    """Return ``node`` as a bounded operator, also behind one ``X`` or ``N``; None if it is none."""
+    inner = node.args[0] if node.op in ("X", "N") else node
+    bound = time_bound_of(inner)
+    if bound is None:
+        return None
+    op = inner.op[0]
+    if node is inner:
+        return _Window(op, bound.seconds, bound.later, inner.args[0])
+    return _Window(op, bound.seconds, bound.later, inner.args[0], following=True, exists=node.op == "X")
