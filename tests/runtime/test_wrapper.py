@@ -365,6 +365,22 @@ def test_the_clock_must_match_the_environment() -> None:
         TltlEnv(Clocked([FAR]), replace(cover_and_hide(), clock_s=clock), current)
 
 
+def test_a_clock_that_varies_takes_the_steps_of_the_environment() -> None:
+    class Clocked(Playback):
+        tltl_clock_s = 0.5
+
+    spec = "clock varies\nsignal health: ratio\nspec hurry { require always for 1 s health > 0.5 }"
+    with pytest.raises(TltlError) as error:
+        TltlEnv(Playback([FAR]), spec, current)
+    (diagnostic,) = error.value.diagnostics
+    assert diagnostic.code == "TLT0617"
+    assert diagnostic.help == "give the environment an attribute `tltl_clock_s`, the seconds of a step"
+    hurt = {**FAR, "health": 0.0}
+    env = TltlEnv(Clocked([FAR, FAR, FAR, hurt]), spec, current)
+    verdicts = [info["verdict"] for _, _, _, info in episode(env)]
+    assert verdicts == ["holding", "holding", "satisfied"]
+
+
 def test_the_clock_in_the_help_matches_the_environment() -> None:
     class Clocked(Playback):
         tltl_clock_s = 1 / 30

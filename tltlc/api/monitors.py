@@ -1,6 +1,7 @@
 """What are the values of the atoms, the progress and the reward of a step?
 
-``Samples`` checks samples of signals and computes the values of the atoms. ``robustness`` computes
+``Samples`` checks samples of signals and computes the values of the atoms. ``STEP_LENGTH`` is the key
+of a sample's length, if the clock varies. ``robustness`` computes
 the robustness of a guard. ``nearest_edge`` finds, among some steps, the step that came nearest to
 taking an edge towards acceptance. ``tables`` returns the lookup tables for progress. ``MODES`` has the
 names of the reward modes; ``mode_function`` returns the function that computes the reward of a
@@ -18,6 +19,7 @@ from tltlc.monitor.progress_and_reward import MODES, Mode, TerminalPenalty, Term
 from tltlc.monitor.reward_modes import Transition, mode_function
 from tltlc.monitor.samples import (
     ROUNDING,
+    STEP_LENGTH,
     SUGGESTIONS,
     Samples,
     finite_signal_value,
@@ -31,6 +33,7 @@ from tltlc.monitor.tables import tables
 __all__ = [
     "MODES",
     "ROUNDING",
+    "STEP_LENGTH",
     "SUGGESTIONS",
     "Mode",
     "Samples",

@@ -59,6 +59,7 @@ def _differences(episode: RecordedEpisode) -> Iterator[tuple[int, _Difference]]:
     names = [signal.name for signal in episode.fspa.signals]
     monitor = Monitor(episode.fspa, episode.params, episode.reward)
     count = len(episode.actions)
+    dt = float(episode.times[1] - episode.times[0]) if episode.fspa.clock_varies and count else None
     verdict = episode.fspa.states[0].verdict
     if episode.states[0] or episode.progress[0]:
         yield 0, ("the start", "another one", "state 0 without progress")
@@ -66,7 +67,7 @@ def _differences(episode: RecordedEpisode) -> Iterator[tuple[int, _Difference]]:
         if monitor.done:
             yield row, ("its end", "not yet reached", f"step {row - 1}")
         last = row == count and episode.end != "stopped"
-        step = monitor.step(dict(zip(names, episode.signals[row].tolist(), strict=True)), last=last)
+        step = monitor.step(dict(zip(names, episode.signals[row].tolist(), strict=True)), dt, last=last)
         verdict = step.verdict
         pairs: list[_Difference] = [
             (f"`{atom.name}`", recorded, value)

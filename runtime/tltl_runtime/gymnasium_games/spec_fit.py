@@ -42,11 +42,15 @@ def check_fit(supply: Supply, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic
     - TLT0812, warning: a signal has a value outside the range that the spec declares.
     - TLT0782: the game has no such param. It is a note, but a warning if a param has a similar name.
     - TLT0307, error: the game's value of a param is outside the range that the spec declares.
-    - TLT0617, error: the spec's clock differs from the game's.
+    - TLT0617, error: the spec's clock differs from the game's, or it varies and the game has none.
     - TLT0813, warning: the spec names another level.
     """
     diagnostics = [diagnostic for signal in fspa.signals for diagnostic in _check_signal(supply, signal, places)]
     diagnostics += _check_params(supply, fspa, places)
+    if fspa.clock_varies and not supply.clock_s:
+        title = f"the clock of `{fspa.name}` varies, and the game does not say how long its steps are"
+        help_ = 'write how long a step takes in the game file, e.g. `clock = "10 Hz"`'
+        diagnostics.append(Diagnostic("TLT0617", title, places.clock(), help_))
     if fspa.clock_s is not None and supply.clock_s and not isclose(fspa.clock_s, supply.clock_s, rel_tol=1e-9):
         own, step = monitors.number_text(fspa.clock_s), monitors.number_text(supply.clock_s)
         title = f"`{fspa.name}` is sampled every {own} s, but a step of the game takes {step} s"

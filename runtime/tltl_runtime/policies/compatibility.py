@@ -109,7 +109,7 @@ def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
         yield f"it is judged at the {fspa.judge}, and was judged at the {own.judge}"
     if own.limit_steps != fspa.limit_steps:
         yield f"its limit is {_limit(fspa)}, and was {_limit(own)}"
-    if own.clock_s != fspa.clock_s:
+    if (own.clock_s, own.clock_varies) != (fspa.clock_s, fspa.clock_varies):
         yield "its clock is different"
     yield from _differing("signal", _field_by_name(own.signals, "name"), _field_by_name(fspa.signals, "name"))
     yield from _differing("param", _field_by_name(own.params, "value"), _field_by_name(fspa.params, "value"))

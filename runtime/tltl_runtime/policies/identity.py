@@ -27,6 +27,8 @@ def spec_hash(fspa: Fspa) -> str:
         "states": [(state.accepting, state.verdict, state.distance) for state in fspa.states],
         "edges": [(edge.source, edge.target, edge.guard.primes) for edge in fspa.edges],
     }
+    if fspa.clock_varies:
+        content["clock_varies"] = True
     if fspa.registers:
         content["registers"] = [
             (register.name, register.low, register.high, register.initial, expressions.to_json(register.update))

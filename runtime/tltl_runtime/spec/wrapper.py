@@ -79,7 +79,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     Raises:
         TltlError: the errors of :func:`load_task`; TLT0617, the environment has a ``tltl_clock_s``
-            (seconds per step) that differs from the spec's clock.
+            (seconds per step) that differs from the spec's clock, or none although this clock varies.
         TypeError: an argument is of another type, or there are no ``signals``.
         ValueError: the observation space already has a key ``automaton`` or ``progress``.
     """
@@ -110,6 +110,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         offered = env.get_wrapper_attr("tltl_params")() if env.has_wrapper_attr("tltl_params") else {}
         self.task = load_task(spec, {} if params is None else params, reward, offered=offered)
         _check_clock(self.task.fspa, env)
+        # The steps of an environment take equal times.
+        self._dt = float(env.get_wrapper_attr("tltl_clock_s")) if self.task.fspa.clock_varies else None
         self._automaton = AutomatonObservation(self.task.fspa)
         self.observation_space = _with_automaton(env.observation_space, self._automaton.size)
         self._flat = not isinstance(env.observation_space, spaces.Dict)
@@ -160,7 +162,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         observation, env_reward, terminated, truncated, info = self.env.step(action)
         sample = self._sample(f"step {self._monitor.steps + 1}")
         before = self._monitor.state
-        self.taken = step = self._monitor.step(sample, last=terminated or truncated)
+        self.taken = step = self._monitor.step(sample, self._dt, last=terminated or truncated)
         for notice in self._monitor.notices:
             warnings.warn(f"{notice.code}: {notice.title}", stacklevel=2)
         self._monitor.notices.clear()
@@ -256,9 +258,15 @@ def _with_automaton(space: spaces.Space[Any], size: int) -> spaces.Dict:
 def _check_clock(fspa: Fspa, env: gymnasium.Env[Any, Any]) -> None:
     """Check that the spec's clock, if it has one, equals the environment's ``tltl_clock_s``, if it has one.
 
+    A clock that varies needs ``tltl_clock_s``, and fits any.
+
     Raises:
-        TltlError: TLT0617, the two differ.
+        TltlError: TLT0617, the two differ, or the second is missing.
     """
+    if fspa.clock_varies and not env.has_wrapper_attr("tltl_clock_s"):
+        title = f"the clock of `{fspa.name}` varies, and the environment does not say how long its steps are"
+        advice = "give the environment an attribute `tltl_clock_s`, the seconds of a step"
+        raise TltlError([Diagnostic("TLT0617", title, help=advice)])
     if fspa.clock_s is None or not env.has_wrapper_attr("tltl_clock_s"):
         return
     clock_s = env.get_wrapper_attr("tltl_clock_s")

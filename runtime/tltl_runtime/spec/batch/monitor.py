@@ -168,29 +168,35 @@ class BatchMonitor:
             fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
         self.state, self.steps, self.progress, self._done, self._success, self._memory, self.registers = fresh
 
-    def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
+    def step(
+        self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor, dt: ArrayLike | Tensor | None = None
+    ) -> BatchStep:
         """Take one sample of each environment.
 
         ``signals`` maps names to arrays [N], or is one array [N, signals] in the order of
         ``signal_names``. Tensors, NumPy arrays and lists are accepted. Numbers are in SI units;
-        bools count as 0 and 1. Names that no atom uses are ignored.
+        bools count as 0 and 1. Names that no atom uses are ignored. With ``clock varies``, ``dt`` is the
+        time since the sample before in seconds, at least 0: an array [N], or one number for all.
 
         Raises:
             MonitorError: TLT0611, signals are missing; TLT0612, a signal has no usable value;
-                TLT0613, an atom or a register has no value; TLT0614, exclusive atoms hold at once. No automaton
-                takes a step then. If not ``checked``, only TLT0611 is raised.
+                TLT0613, an atom or a register has no value; TLT0614, exclusive atoms hold at once;
+                TLT0619, ``dt`` is missing, wrong, or there although the clock is fixed. No automaton
+                takes a step then. If not ``checked``, only TLT0611 is raised, and TLT0619 for a ``dt``
+                that is missing or too much.
             ValueError: an array has another shape.
         """
-        return self._take(self._samples.values(signals, self.registers))
+        return self._take(self._samples.values(signals, self.registers, dt))
 
-    def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
+    def step_atoms(self, values: ArrayLike | Tensor, dt: ArrayLike | Tensor | None = None) -> BatchStep:
         """Take one sample of each environment: the ``values`` of the atoms, [N, atoms], in [-1, 1].
 
-        Atoms that follow from others have no value, as in :meth:`tltlc.monitor.Monitor.step_atoms`.
+        Atoms that follow from others have no value, as in :meth:`tltlc.monitor.Monitor.step_atoms`. ``dt``
+        is that of :meth:`step`.
 
         Raises:
-            MonitorError: TLT0614, exclusive atoms hold at once; only if ``checked``. No automaton
-                takes a step then.
+            MonitorError: TLT0614, exclusive atoms hold at once, only if ``checked``; TLT0619, as in
+                :meth:`step`. No automaton takes a step then.
             ValueError: the shape is another or, if ``checked``, a value is not in [-1, 1].
         """
         rows = torch.as_tensor(values)
@@ -199,7 +205,7 @@ class BatchMonitor:
         if not fits or (self._checked and not bool((rows.abs() <= 1.0).all())):
             raise ValueError(f"values in [-1, 1] of shape {shape} are needed")
         given = rows.to(self.device, self.dtype).t().contiguous()
-        return self._take(self._samples.from_atoms(given, self.registers))
+        return self._take(self._samples.from_atoms(given, self.registers, dt))
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
         """Return the current states of the automata as one-hot rows, shape [N, states]."""

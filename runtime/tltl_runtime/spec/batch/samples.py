@@ -56,13 +56,18 @@ class BatchSamples:
         values = monitors.param_values(fspa.params, params or {})
         self._result_dtype = dtype
         counters = [each.high for each in fspa.registers if each.unit == "steps" or each.kind == "times"]
-        is_exact = fits(_constants(fspa, values), dtype) and all(
-            high is not None and counts_up_to(high, dtype) for high in counters
+        # Times that are sums of many short steps need double precision, too.
+        is_exact = (
+            not fspa.clock_varies
+            and fits(_constants(fspa, values), dtype)
+            and all(high is not None and counts_up_to(high, dtype) for high in counters)
         )
         self._dtype = dtype = dtype if is_exact else torch.float64
         self._values = values
         self._computations = _computations(fspa)
-        self._before = tuple(expressions.Before(register.name) for register in fspa.registers)
+        before = [expressions.Before(register.name) for register in fspa.registers]
+        length = [expressions.StepLength()] if before and fspa.clock_varies else []
+        self._before: tuple[expressions.VariableKey, ...] = (*before, *length)
         self._program = TensorExpressions(
             [each.expression for each in self._computations],
             self._keys(self.names),
@@ -87,25 +92,32 @@ class BatchSamples:
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
     def values(
-        self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor, registers: Tensor
+        self,
+        signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor,
+        registers: Tensor,
+        dt: ArrayLike | Tensor | None = None,
     ) -> BatchSampleValues:
         """Return the values of the atoms at a sample, and of the registers after it.
 
         ``signals`` maps names to arrays [N], or is one array [N, signals] in the order of ``names``.
         Names that no atom uses are ignored. ``registers``, [registers, N], are the values of the
-        registers before the sample. A value of an atom that is converted from float64 to a smaller
-        ``dtype`` keeps its sign: it does not become 0.
+        registers before the sample. If the clock varies, ``dt`` is the time since the sample before, in
+        seconds, [N] or one number for all. A value of an atom that is converted from float64 to a
+        smaller ``dtype`` keeps its sign: it does not become 0.
 
         Raises:
             MonitorError: TLT0611, signals are missing; TLT0612, a signal has no finite value, or a
-                Boolean signal is neither 0 nor 1; TLT0613, an atom or a register has no value. The
-                message names the environments. If not ``checked``, only TLT0611 is raised.
+                Boolean signal is neither 0 nor 1; TLT0613, an atom or a register has no value; TLT0619,
+                ``dt`` is missing, wrong, or there although the clock is fixed. The message names the
+                environments. If not ``checked``, only TLT0611 is raised, and TLT0619 for a ``dt`` that is
+                missing or too much.
             ValueError: an array has another shape.
         """
+        lengths = self._lengths(dt)
         columns = self._columns(signals)
         if not self._checked:
             columns = torch.clamp(columns, self._low, self._high)
-            values, _ = self._program.run(self._with_registers(columns, registers))
+            values, _ = self._program.run(self._with_registers(columns, registers, lengths))
             atoms, after = self._split(values)
             return BatchSampleValues(narrow(torch.clamp(atoms, -1.0, 1.0), self._result_dtype), after)
         if self.names and not self._in_range(columns):
@@ -113,26 +125,27 @@ class BatchSamples:
             self._check_signals(given, columns)
         for row in self._bools:
             self._check_truth(row, columns[row])
-        values, failures = self._program.run(self._with_registers(columns, registers))
+        values, failures = self._program.run(self._with_registers(columns, registers, lengths))
         atoms, after = self._split(values)
         if not self._fspa.atoms:
             return BatchSampleValues(atoms.to(self._result_dtype), after)
         failed = any(bool(mask.any()) for mask in failures if mask is not None)
         if failed or not (float(atoms.amin()) >= -1.0 and float(atoms.amax()) <= 1.0 and _are_finite(after)):
-            self._check_values(columns, registers, values, failures)
+            self._check_values(columns, registers, lengths, values, failures)
             atoms = torch.clamp(atoms, -1.0, 1.0)
         return BatchSampleValues(narrow(atoms, self._result_dtype), after)
 
-    def from_atoms(self, given: Tensor, registers: Tensor) -> BatchSampleValues:
+    def from_atoms(self, given: Tensor, registers: Tensor, dt: ArrayLike | Tensor | None = None) -> BatchSampleValues:
         """Return the values of all atoms and registers, from the atoms that do not follow from others, [given, N].
 
-        ``registers`` are the values of the registers before the sample. Registers that read signals keep
-        their value.
+        ``registers`` are the values of the registers before the sample, and ``dt`` is that of
+        :meth:`values`. Registers that read signals keep their value.
         """
+        lengths = self._lengths(dt)
         if not self._fspa.registers:
             return BatchSampleValues(given, registers)
         program, computations = self._atom_program
-        values, _ = program.run(torch.cat([given.to(self._dtype), registers]))
+        values, _ = program.run(self._with_registers(given.to(self._dtype), registers, lengths))
         atoms, after = registers.new_empty((len(self._fspa.atoms), self._count)), registers.clone()
         atoms[list(monitors.given_atoms(self._fspa))] = given.to(self._dtype)
         for each, value in zip(computations, values, strict=True):
@@ -163,8 +176,33 @@ class BatchSamples:
         """Return the keys of what a program reads: these ``signals``, and the registers before the sample."""
         return (*signals, *self._before)
 
-    def _with_registers(self, columns: Tensor, registers: Tensor) -> Tensor:
-        return torch.cat([columns, registers]) if self._before else columns
+    def _with_registers(self, columns: Tensor, registers: Tensor, lengths: Tensor | None) -> Tensor:
+        if not self._before:
+            return columns
+        return torch.cat([columns, registers] if lengths is None else [columns, registers, lengths])
+
+    def _lengths(self, dt: ArrayLike | Tensor | None) -> Tensor | None:
+        """Return the lengths of the steps of all environments, [1, N]; None if the clock does not vary.
+
+        ``dt`` and the errors are those of :meth:`values`.
+        """
+        if dt is None and not self._fspa.clock_varies:
+            return None
+        if dt is None or not self._fspa.clock_varies:
+            # The error is that of the monitor for one automaton.
+            monitors.Samples(self._fspa, self._params, []).step_length(None if dt is None else 0.0, "this step")
+        assert dt is not None, "the line above raised an error"
+        lengths = torch.as_tensor(dt, dtype=self._dtype, device=self._device)
+        if lengths.shape not in ((), (self._count,)):
+            raise ValueError(f"`dt` must be one number or have the shape {(self._count,)}, not {tuple(lengths.shape)}")
+        lengths = lengths.expand(self._count)
+        wrong = ~((lengths >= 0.0) & torch.isfinite(lengths)) if self._checked else None
+        if wrong is not None and bool(wrong.any()):
+            indices = _indices(wrong)
+            text = monitors.number_text(float(lengths[indices[0]]))
+            title = f"its time since the sample before is {text}, not a number of seconds"
+            raise _error("TLT0619", f"{_environments(indices)}: {title}")
+        return lengths[None]
 
     def _split(self, values: Tensor) -> tuple[Tensor, Tensor]:
         """Split the values that the program computes: those of atoms and those of registers, each in order."""
@@ -234,18 +272,23 @@ class BatchSamples:
             )
 
     def _check_values(
-        self, columns: Tensor, registers: Tensor, values: Tensor, failures: Sequence[Tensor | None]
+        self,
+        columns: Tensor,
+        registers: Tensor,
+        lengths: Tensor | None,
+        values: Tensor,
+        failures: Sequence[Tensor | None],
     ) -> None:
         """Raise an error for the first atom or register without a value, and count the atoms that are clamped.
 
-        ``values`` and ``failures`` are the results of the program for the signals ``columns`` and the
-        ``registers`` before the sample.
+        ``values`` and ``failures`` are the results of the program for the signals ``columns``, the
+        ``registers`` before the sample and the ``lengths`` of the steps.
         """
         unusable = ~torch.isfinite(values)
         for row, failed in enumerate(failures):
             wrong = unusable[row] if failed is None else unusable[row] | failed
             if bool(wrong.any()):
-                raise self._value_error(self._computations[row], _indices(wrong), columns, registers)
+                raise self._value_error(self._computations[row], _indices(wrong), columns, registers, lengths)
         outside = ((values - torch.clamp(values, -1.0, 1.0)).abs() > monitors.ROUNDING).sum(1).tolist()
         for each, count in zip(self._computations, outside, strict=True):
             if count and each.is_atom:
@@ -253,16 +296,23 @@ class BatchSamples:
                 self.clamped[name] = self.clamped.get(name, 0) + int(count)
 
     def _value_error(
-        self, computation: _Computation, indices: Sequence[int], columns: Tensor, registers: Tensor
+        self,
+        computation: _Computation,
+        indices: Sequence[int],
+        columns: Tensor,
+        registers: Tensor,
+        lengths: Tensor | None,
     ) -> MonitorError:
         """Return the error that says why an atom or a register has no value in the environments ``indices``.
 
-        ``columns`` are the values of the signals, [signals, N], and ``registers`` those of the registers
-        before the sample. The error is that of the monitor for one automaton, in the first of these
-        environments.
+        ``columns`` are the values of the signals, [signals, N], ``registers`` those of the registers before
+        the sample, and ``lengths`` the lengths of the steps. The error is that of the monitor for one
+        automaton, in the first of these environments.
         """
         first = indices[0]
         sample = dict(zip(self.names, columns[:, first].tolist(), strict=True))
+        if lengths is not None:
+            sample[monitors.STEP_LENGTH] = float(lengths[0, first])
         try:
             samples = monitors.Samples(self._fspa, self._params, [])
             samples.values(sample, registers[:, first].tolist(), _environments(indices))
