@@ -142,6 +142,11 @@ class Fspa:
     registers: tuple[Register, ...] = ()
     clock_varies: bool = False
 
+    @property
+    def clock(self) -> float | Literal["varies"] | None:
+        """The clock: its period in seconds, or ``varies``; None without one."""
+        return "varies" if self.clock_varies else self.clock_s
+
     def edges_from(self, state: int) -> tuple[Edge, ...]:
         """Return the edges that leave a state, in order of target."""
         return tuple(edge for edge in self.edges if edge.source == state)

@@ -7,7 +7,7 @@ atom without words of its own, such as ``once seen``, keeps its name.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, cast
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.names import ComparisonName
@@ -23,7 +23,7 @@ from tltlc.expression.tree import (
     When,
     nodes,
 )
-from tltlc.logic.formula import Formula, and_, atom, eventually, not_, rebuild
+from tltlc.logic.formula import Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.logic.text.phrases import is_state, object_phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
@@ -38,12 +38,17 @@ _TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
         "lasted": ("{0} are over", "less than {0} have passed"),
         "over": ("more than {0} have passed", "at most {0} have passed"),
     },
+    "elapsed": {
+        "lasted": ("{0} are over", "less than {0} have passed"),
+        "over": ("more than {0} have passed", "at most {0} have passed"),
+    },
     "time_since": {
         "lately": ("{1} in the last {0}", "no {1} in the last {0}"),
         "passed": ("{0} have passed since {1}", "less than {0} have passed since {1}"),
     },
     "age": {"recent": ("{1} in the {0} before", "no {1} in the {0} before")},
     "time_holding": {"held": ("{1} for {0}", "{1} for less than {0}")},
+    "run": {"held": ("{1} for {0}", "{1} for less than {0}")},
 }
 """What is said of the timers that :mod:`tltlc.resolve.timers` makes: where they hold, and where they do not.
 
@@ -55,6 +60,10 @@ _ALWAYS: Final[Mapping[str, tuple[str, str]]] = {
     "due": ("{0} is due", "{0} is not due"),
 }
 """The same for an answer that is due at all times, which has no event before it."""
+_FOLLOWED: Final = ("passed", "lasted", "over", "recent", "lately")
+"""The base names of the timers that say until when something must happen or last, without words of their own then."""
+_FOLLOWING: Final = ("samples", "elapsed", "time_since", "age")
+"""The kinds of the registers that these timers read."""
 
 
 class Phrase(NamedTuple):
@@ -115,24 +124,26 @@ def _turning(node: Formula, before: Mapping[str, str], done: Mapping[Formula, Fo
 def _in_time(node: Formula, passed: Mapping[str, str], done: Mapping[Formula, Formula]) -> Formula | None:
     """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
 
-    Return None for any other formula. ``passed`` has the times of the atoms of these two kinds.
+    So are ``recent(5 s, a) U (recent(5 s, a) & b)`` and ``lasted(5 s) R (lasted(5 s) | b)``. Return None
+    for any other formula. ``passed`` has the times of the atoms of these kinds.
     """
     if node.op not in ("U", "R"):
         return None
     timer, goal = node.args
     if node.op == "U":
-        if timer.op != "not" or timer.args[0].name not in passed:
+        if (timer.args[0] if timer.op == "not" else timer).name not in passed:
             return None
-        parts = goal.args if goal.op == "and" else (goal,)
+        parts = tuple(part for part in (goal.args if goal.op == "and" else (goal,)) if part is not timer)
         present = [part for part in parts if is_state(part)]
         if not present:
             return None
         text = object_phrase(and_(*(done[part] for part in present)))
-        said = atom(f"{text} within {passed[timer.args[0].name]}")
+        said = atom(f"{text} within {passed[(timer.args[0] if timer.op == 'not' else timer).name]}")
         return eventually(and_(said, *(done[part] for part in parts if part not in present)))
-    if timer.name not in passed or not is_state(goal):
+    kept = [part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer]
+    if timer.name not in passed or not all(map(is_state, kept)):
         return None
-    return atom(f"{object_phrase(done[goal])} for {passed[timer.name]}")
+    return atom(f"{object_phrase(or_(*(done[part] for part in kept)))} for {passed[timer.name]}")
 
 
 def _passed(fspa: Fspa) -> dict[str, str]:
@@ -141,8 +152,8 @@ def _passed(fspa: Fspa) -> dict[str, str]:
     return {
         each.name: " after ".join(each.arguments)
         for each in fspa.atoms
-        if each.base in ("passed", "lasted") and each.arguments
-        if any(kinds.get(name) in ("samples", "time_since") for name in _read(each.expression))
+        if each.base in _FOLLOWED and each.arguments
+        if any(kinds.get(name) in _FOLLOWING for name in _read(each.expression))
     }
 
 
@@ -192,6 +203,8 @@ def _phrase(each: Atom, register: Register, clock_s: float | None) -> Phrase | N
     # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
     steps = border - 0.5 if holds else border + 0.5
     time = f"{steps:g} steps" if clock_s is None else f"{round(steps * clock_s, 6):g} s"
+    if register.unit == "s":
+        time = f"{border:g} s"
     return Phrase(f"{name} in the last {time}" if holds else f"{name} for the last {time}")
 
 
@@ -227,7 +240,11 @@ def _operand(register: Register) -> tuple[str, bool] | None:
 
 
 def _border(expression: Expression) -> float | None:
-    """Return the number of steps by which the margin of a window is divided; None for other expressions."""
+    """Return the number of steps or seconds by which the margin of a window is divided; None for other expressions."""
+    if isinstance(expression, When):
+        # The margin of a window in seconds is negated, so that its border belongs to it.
+        (margin, _) = expression.cases[0][0].args
+        expression = cast("Expression", margin)
     is_scaled = isinstance(expression, Op) and expression.op == "/" and isinstance(expression.args[1], Const)
     return expression.args[1].value if is_scaled else None  # type: ignore[union-attr]
 

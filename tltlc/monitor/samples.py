@@ -86,7 +86,7 @@ class Samples:
         ``when`` and the errors are those of :meth:`values`.
         """
         assert not self._updates, "with registers, the values depend on the samples before"
-        return self.values(signals, (), when).atoms
+        return self._values(signals, (), (), when).atoms
 
     def of_trace(
         self, trace: Sequence[Mapping[str, SupportsFloat]], steps: range | None = None
@@ -117,7 +117,15 @@ class Samples:
             MonitorError: TLT0611 signals are missing, TLT0612 a signal has no finite value, TLT0613
                 an atom has no value, TLT0619 the length of the step is wrong.
         """
-        dt_s = self.step_length(signals.get(STEP_LENGTH), when)
+        return self._values(signals, registers, self.step_length(signals.get(STEP_LENGTH), when), when)
+
+    def _values(
+        self,
+        signals: Mapping[str, SupportsFloat | str],
+        registers: Sequence[float],
+        dt_s: tuple[float, ...],
+        when: int | str,
+    ) -> SampleValues:
         missing = [name for name in self._names if name not in signals]
         if missing:
             raise _error("TLT0611", when, f"no value for {name_list(missing)}")

@@ -23,8 +23,7 @@ _SETTINGS: Final[tuple[tuple[DifferenceKind, str], ...]] = (
     ("judge", "judge"),
     ("limit", "limit_steps"),
     ("level", "level"),
-    ("clock", "clock_s"),
-    ("clock", "clock_varies"),
+    ("clock", "clock"),
 )
 """The settings of a whole spec, each with the field of :class:`Fspa` that holds it."""
 

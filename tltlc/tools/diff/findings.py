@@ -211,10 +211,10 @@ def clock_changed(difference: Difference, specs: Sequence[str], place: Label) ->
     return Diagnostic("TLT0758", title, (place,), _clock_help(difference.b), BREAKING)
 
 
-def library_clock_changed(old: float | None, new: float | None, place: Label) -> Diagnostic:
+def library_clock_changed(old: float | str | None, new: float | str | None, place: Label) -> Diagnostic:
     """Return TLT0758: the clock that a library declares has changed.
 
-    ``old`` and ``new`` are its period in seconds; None without a clock.
+    ``old`` and ``new`` are its period in seconds or ``varies``; None without a clock.
     """
     title = f"specs are now sampled {_clock(new)} (they were sampled {_clock(old)})"
     return Diagnostic("TLT0758", title, (place,), _clock_help(new), BREAKING)
@@ -336,8 +336,12 @@ def _level(level: object) -> str:
 def _clock_help(period: object) -> str:
     if period is None:
         return "declare the old clock if the game takes its steps at that interval"
+    if period == "varies":
+        return "have the game pass the time since the step before, as `dt`, at each step"
     return "have the game take its steps at this interval"
 
 
 def _clock(period: object) -> str:
+    if period == "varies":
+        return "at times that vary"
     return f"every {number_text(period)} s" if isinstance(period, float) else "without a clock"

@@ -22,13 +22,13 @@ class Rules:
     """The ``exclusive`` groups and the clock that a file declares, with their places in its text.
 
     Groups and clocks of imported files do not count. ``exclusive`` maps each group, as sorted names of
-    atoms, to its place. ``clock_s`` is the period of the clock in seconds, and ``clock`` its place;
-    both are None if the file declares no clock.
+    atoms, to its place. ``clock`` is the period of the clock in seconds or ``varies``, and ``clock_place``
+    its place; both are None if the file declares no clock.
     """
 
     exclusive: Mapping[tuple[str, ...], Label] = EMPTY
-    clock_s: float | None = None
-    clock: Label | None = None
+    clock: float | str | None = None
+    clock_place: Label | None = None
 
 
 def rules(module: Module, program: ResolvedFile) -> Rules:
@@ -45,7 +45,8 @@ def rules(module: Module, program: ResolvedFile) -> Rules:
     clock = next((declaration for declaration in module.declarations if isinstance(declaration, ClockDecl)), None)
     if clock is None:
         return Rules(places)
-    return Rules(places, vocabulary.clock_s, Label(module.source, clock.span))
+    declared = "varies" if vocabulary.clock_varies else vocabulary.clock_s
+    return Rules(places, declared, Label(module.source, clock.span))
 
 
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
@@ -56,6 +57,6 @@ def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
     for names, place in new.exclusive.items():
         if not are_exclusive(names, old.exclusive):
             yield findings.exclusive_added(names, place)
-    clock = new.clock or (old.clock and findings.at_old_place(old.clock))
-    if clock is not None and old.clock_s != new.clock_s:
-        yield findings.library_clock_changed(old.clock_s, new.clock_s, clock)
+    clock_place = new.clock_place or (old.clock_place and findings.at_old_place(old.clock_place))
+    if clock_place is not None and old.clock != new.clock:
+        yield findings.library_clock_changed(old.clock, new.clock, clock_place)

@@ -211,4 +211,4 @@ def _steps(limit: object) -> str:
 
 
 def _clock(period: object) -> str:
-    return f"{number_text(period)} s" if isinstance(period, float) else "none"
+    return f"{number_text(period)} s" if isinstance(period, float) else str(period or "none")

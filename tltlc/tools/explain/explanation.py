@@ -22,6 +22,7 @@ from tltlc.resolve.sources import sources
 from tltlc.resolve.spec import Register
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
+from tltlc.tools.witness.step_lengths import length_of
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
@@ -85,12 +86,13 @@ class TraceStep:
     """One or more consecutive steps of a trace with the same condition.
 
     ``times`` is the number of steps, ``what`` the condition in words, and ``state`` the state after
-    the last step.
+    the last step. ``seconds`` is the time that they take, from the step before on, if the clock varies.
     """
 
     times: int
     what: str
     state: int
+    seconds: float | None = None
 
 
 @record
@@ -288,12 +290,16 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     cycle: int | None = None
     for index, move in enumerate(witness.moves):
         condition, state = _condition_text(_literals(fspa, _shown(fspa, move))), fspa.edges[move.edge].target
+        # At the first step, the length counts for nothing.
+        seconds = length_of(move.letter, fspa) if index or not fspa.clock_varies else 0.0
         if index == witness.cycle:
             cycle = len(steps)
         elif steps and steps[-1].what == condition:
-            steps[-1] = TraceStep(steps[-1].times + 1, condition, state)
+            before = steps[-1].seconds
+            total = None if seconds is None or before is None else before + seconds
+            steps[-1] = TraceStep(steps[-1].times + 1, condition, state, total)
             continue
-        steps.append(TraceStep(1, condition, state))
+        steps.append(TraceStep(1, condition, state, seconds))
     return ExampleTrace(tuple(steps), cycle)
 
 

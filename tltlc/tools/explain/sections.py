@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from tltlc.backends.drawing.folding import distance_range
 from tltlc.core.record import record
 from tltlc.tools.explain.ending import limit_text
-from tltlc.tools.explain.explanation import ANYTHING, CountingRun, ExampleTrace, Explanation, TrapCondition
+from tltlc.tools.explain.explanation import ANYTHING, CountingRun, ExampleTrace, Explanation, TraceStep, TrapCondition
 
 _MOST_RANGES = 3
 _MOST_ROWS = 40
@@ -163,16 +163,20 @@ def _numbers(states: Sequence[int]) -> str:
     return ", ".join(texts if len(texts) <= _MOST_RANGES else [*texts[: _MOST_RANGES - 1], "…", texts[-1]])
 
 
+def _step_text(step: TraceStep) -> str:
+    times = f", for {step.times} steps" if step.times > 1 else ""
+    if step.seconds:
+        times += f" in {step.seconds:g} s" if times else f", {step.seconds:g} s later"
+    return f"{step.what}{times} (to state {step.state})"
+
+
 def _trace_blocks(trace: ExampleTrace | None, otherwise: str) -> tuple[str | SectionList, ...]:
     if trace is None:
         return (otherwise,)
     cycle = () if trace.cycle is None else trace.steps[trace.cycle :]
     is_decided = bool(trace.cycle) and all(step.what == ANYTHING for step in cycle)
     steps = trace.steps[: trace.cycle] if is_decided else trace.steps
-    items = [
-        f"{step.what}{f', for {step.times} steps' if step.times > 1 else ''} (to state {step.state})"
-        for step in steps[:_MOST_STEPS]
-    ]
+    items = [_step_text(step) for step in steps[:_MOST_STEPS]]
     blocks: list[str | SectionList] = [SectionList("", tuple(items), numbered=True)]
     if len(items) < len(steps):
         blocks.append(f"And {len(steps) - len(items)} more; `--format json` shows all of them.")

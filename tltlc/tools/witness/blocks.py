@@ -16,6 +16,8 @@ from tltlc.logic.formula import atom
 from tltlc.logic.text.printer import operand_text
 from tltlc.monitor import Monitor, Step
 from tltlc.monitor.guards import prime_robustness
+from tltlc.monitor.samples import number_text
+from tltlc.tools.witness.step_lengths import length_of
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -64,11 +66,12 @@ class BlockWriter:
         # A step with an expectation after it ends its run of equal steps.
         ends = sorted(number for number in expects if expects[number])
         literals = self._literals([letter for _, letter in steps])
-        for (_, letter_literals), run in groupby(
-            steps, lambda step: (bisect_left(ends, step[0]), literals[step[0] - 1])
+        lengths = [length_of(letter, self._spec) for _, letter in steps]
+        for (_, letter_literals, length), run in groupby(
+            steps, lambda step: (bisect_left(ends, step[0]), literals[step[0] - 1], lengths[step[0] - 1])
         ):
             numbers = [number for number, _ in run]
-            lines += _step(letter_literals, len(numbers))
+            lines += _step(letter_literals, len(numbers), length)
             lines += [f"{_INDENT}expect {expected}" for expected in expects.get(numbers[-1], ())]
         return "\n".join([*lines, "}", ""])
 
@@ -96,7 +99,7 @@ class BlockWriter:
         monitor = copy(self._last_trace[-1].monitor if self._last_trace else self._fresh)
         for letter in letters[common:]:
             self.monitor_steps += 1
-            result = monitor.step_atoms(given_values(self._spec, letter))
+            result = monitor.step_atoms(given_values(self._spec, letter), length_of(letter, self._spec))
             self._last_trace.append(_MonitoredStep(letter, result, copy(monitor)))
         return [step.result for step in self._last_trace]
 
@@ -194,9 +197,11 @@ def atom_operand(name: str) -> str:
     return operand_text(atom(name))
 
 
-def _step(literals: Sequence[str], times: int) -> list[str]:
-    """Return the lines of a step such as ``step 3x alive, seen``; long lines are broken after commas."""
-    lines = [f"{_INDENT}step {f'{times}x ' if times > 1 else ''}{literals[0]}"]
+def _step(literals: Sequence[str], times: int, length: float | None) -> list[str]:
+    """Return the lines of a step such as ``step 3x for 2 s alive, seen``; long lines are broken after commas."""
+    repeated = f"{times}x " if times > 1 else ""
+    takes = f"for {number_text(length)} s " if length else ""
+    lines = [f"{_INDENT}step {repeated}{takes}{literals[0]}"]
     for literal in literals[1:]:
         if len(lines[-1]) + len(literal) + 3 > _WIDTH:
             lines[-1] += ","

@@ -8,7 +8,7 @@ trace although there is one.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import islice
 from typing import TYPE_CHECKING, Final, NamedTuple, Union
@@ -18,7 +18,13 @@ from tltlc.core.record import record
 from tltlc.monitor import MonitorError
 from tltlc.monitor.guards import holds
 from tltlc.monitor.samples import Samples, check_exclusive
-from tltlc.tools.witness.deadlines import shortest_deadline_s
+from tltlc.tools.witness.step_lengths import (
+    length_names,
+    length_of,
+    lengths_to_try,
+    letter_with_length,
+    sample_with_length,
+)
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -78,8 +84,8 @@ class MemorySearch:
     The inputs are samples with a value for every signal of the automata, or letters. A letter names
     the atoms that hold; those that follow from others are computed. ``names`` has the names of the
     atoms of each automaton in letters, by default their own. No two atoms of a group in ``exclusive``
-    may hold together. If the clock varies, each letter comes the time of the shortest deadline after the
-    one before. ``tried_all`` is true once all traces over the inputs have been tried.
+    may hold together. If the clock varies, each input is tried with some lengths of a step, which are
+    never all. ``tried_all`` is true once all traces over the inputs have been tried.
     """
 
     def __init__(
@@ -89,14 +95,14 @@ class MemorySearch:
         names: Sequence[Sequence[str]] | None = None,
         exclusive: Sequence[Collection[str]] = (),
     ) -> None:
-        self.inputs = tuple(inputs)
+        self._varies = any(fspa.clock_varies for fspa in automata)
+        self.inputs = tuple(_with_lengths(inputs, automata) if self._varies else inputs)
         self.tried_all = False
         self._automata = tuple(automata)
         self._names = names or [[atom.name for atom in fspa.atoms] for fspa in automata]
         self._exclusive = exclusive
         self._values = tuple(Samples(fspa, None, []) for fspa in automata)
         self._leaving = tuple(_leaving(fspa) for fspa in automata)
-        self._letter_s = shortest_deadline_s(automata)
 
     def positions(self) -> Iterator[Position]:
         """Yield the ends of traces: at first in the order of their lengths, until the work is done.
@@ -110,7 +116,7 @@ class MemorySearch:
             if count == _SINGLE_STEPS:
                 yield from islice(self._held_steps(), _HELD_STEPS)
                 return
-        self.tried_all = True
+        self.tried_all = not self._varies
 
     def first_positions(self) -> Iterator[Position]:
         """Yield the ends of all traces with one step."""
@@ -211,6 +217,8 @@ class MemorySearch:
             registers.append(values.registers)
         if any(len(letter.intersection(group)) > 1 for group in self._exclusive):
             return None
+        if self._varies:
+            letter.update(length_names(self.inputs[number]))
         states = tuple(fspa.edges[edge].target for fspa, edge in zip(self._automata, edges, strict=True))
         return _Step(tuple(edges), frozenset(letter), _Configuration(states, tuple(registers)))
 
@@ -220,7 +228,7 @@ class MemorySearch:
             return samples.values(given, registers, 1)
         names = self._names[index]
         values = [1.0 if names[atom] in given else -1.0 for atom in samples.given]
-        length = samples.step_length(self._letter_s if self._automata[index].clock_varies else None, 1)
+        length = samples.step_length(length_of(given, self._automata[index]), 1)
         return samples.from_atoms(values, registers, length, 1)
 
     def _key(self, configuration: _Configuration) -> object:
@@ -230,6 +238,16 @@ class MemorySearch:
     def _is_final(self, configuration: _Configuration) -> bool:
         pairs = zip(self._automata, configuration.states, strict=True)
         return all(fspa.states[state].verdict in _FINAL for fspa, state in pairs)
+
+
+def _with_lengths(inputs: Iterable[TraceInput], automata: Sequence[Fspa]) -> Iterator[TraceInput]:
+    lengths = lengths_to_try(automata)
+    for given in inputs:
+        for seconds in lengths:
+            if isinstance(given, Mapping):
+                yield sample_with_length(given, seconds)
+            else:
+                yield letter_with_length(given, seconds)
 
 
 def _leaving(fspa: Fspa) -> list[list[int]]:

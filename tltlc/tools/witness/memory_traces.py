@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, cast
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor.guards import holds
 from tltlc.monitor.samples import Samples
 from tltlc.tools.witness.candidate_samples import candidate_samples
 from tltlc.tools.witness.memory_search import MemorySearch, Position
+from tltlc.tools.witness.step_lengths import length_names
 from tltlc.tools.witness.transitions import SampledEdge
+
+if TYPE_CHECKING:
+    from tltlc.monitor.traces import TraceSample
 
 
 class MemoryTraces:
@@ -17,8 +22,7 @@ class MemoryTraces:
 
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
-        self._samples = candidate_samples(fspa).samples
-        self._search = MemorySearch((fspa,), self._samples)
+        self._search = MemorySearch((fspa,), candidate_samples(fspa).samples)
         self._positions = self._search.positions()
         self._first: dict[int, Position] = {}
 
@@ -53,7 +57,8 @@ class MemoryTraces:
 
     def moves(self, position: Position) -> tuple[SampledEdge, ...]:
         """Return the moves of the trace that leads to a position."""
-        return moves_of(self._fspa, [self._samples[number] for number in position.trace()])
+        samples = (self._search.inputs[number] for number in position.trace())
+        return moves_of(self._fspa, [cast("TraceSample", sample) for sample in samples])
 
 
 def moves_of(fspa: Fspa, trace: Sequence[dict[str, float]]) -> tuple[SampledEdge, ...]:
@@ -69,6 +74,6 @@ def moves_of(fspa: Fspa, trace: Sequence[dict[str, float]]) -> tuple[SampledEdge
         prime = next(
             prime for prime in edge.guard.primes if all((values.atoms[atom] > 0.0) == holds_ for atom, holds_ in prime)
         )
-        moves.append(SampledEdge(index, prime, letter, sample))
+        moves.append(SampledEdge(index, prime, letter | length_names(sample), sample))
         state = edge.target
     return tuple(moves)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
 from tltlc.monitor import MonitorError
-from tltlc.monitor.samples import Samples, check_exclusive, number_text
+from tltlc.monitor.samples import STEP_LENGTH, Samples, check_exclusive, number_text
 from tltlc.resolve.spec import Signal
 from tltlc.tools.witness.search import AtomGroup, SignalPoint, atom_groups
 
@@ -119,6 +119,7 @@ def samples(fspa: Fspa, letters: Iterable[Letter]) -> tuple[TraceSample, ...] | 
 def csv_text(fspa: Fspa, samples: Iterable[TraceSample]) -> str:
     """Return samples as CSV: a header with the names of the signals, and a row for each sample.
 
+    If the clock varies, the last column has the lengths of the steps.
     ``tltlc monitor`` and generated monitors read this format.
     """
     import csv
@@ -126,9 +127,13 @@ def csv_text(fspa: Fspa, samples: Iterable[TraceSample]) -> str:
 
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([signal.name for signal in fspa.signals])
+    names = [signal.name for signal in fspa.signals]
+    # Readers find this column in upper case, too.
+    length = [] if not fspa.clock_varies else ["DT" if "dt" in names else "dt"]
+    writer.writerow([*names, *length])
     for sample in samples:
-        writer.writerow([_cell(signal, sample[signal.name]) for signal in fspa.signals])
+        cells = [_cell(signal, sample[signal.name]) for signal in fspa.signals]
+        writer.writerow([*cells, *(number_text(sample[STEP_LENGTH]) for _ in length)])
     return text.getvalue()
 
 

@@ -41,7 +41,7 @@ def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
     text = csv_text(fspa, witness.samples)
     monitor = Monitor(fspa) if monitor is None else monitor
     monitor.reset()
-    trace = read_trace(io.BytesIO(text.encode()), "the witness", fspa.signals)
+    trace = read_trace(io.BytesIO(text.encode()), "the witness", fspa.signals, clock_varies=fspa.clock_varies)
     _check(fspa, witness, [monitor.step(sample).state for sample in trace])
     return text
 

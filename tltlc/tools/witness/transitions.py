@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.core.record import record
 from tltlc.tools.witness.samples import SampleFinder, UnsatisfiedLiterals
+from tltlc.tools.witness.step_lengths import length_names, lengths_to_try, sample_with_length
 
 if TYPE_CHECKING:
     from tltlc.automaton.compare import Letter
@@ -77,7 +78,10 @@ class Moves:
         for prime in self.fspa.edges[edge].guard.primes[:_MOST_PRIMES]:
             sample = self._finder.sample_for_literals(prime)
             if not isinstance(sample, UnsatisfiedLiterals):
-                return SampledEdge(edge, prime, self._finder.letter_of(sample), sample)
+                letter = self._finder.letter_of(sample)
+                if self.fspa.clock_varies:
+                    sample = sample_with_length(sample, *lengths_to_try((self.fspa,)))
+                return SampledEdge(edge, prime, letter | length_names(sample), sample)
             obstacles.append(sample)
         self.obstacles[edge] = tuple(dict.fromkeys(obstacles))
         return None
