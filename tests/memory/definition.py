@@ -23,7 +23,7 @@ TINY: Final = 1e-30
 """The least robustness of a negation that is true."""
 
 _UNITS: Final = {"s": "1", "ms": "0.001", "min": "60", "h": "3600", "m": "1", "cm": "0.01", "km": "1000", "%": "0.01"}
-_COMPARISONS: Final = ("<", "<=", ">", ">=")
+_COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
 _CONNECTIVES: Final = ("not", "and", "or", "implies", "iff")
 
 Range = tuple[float, float]
@@ -146,7 +146,7 @@ class Definition(Names):
             if expr.op == "begins":
                 return least(value(expr.operand, True), _signed(before, not positive))
             return least(value(expr.operand, False), _signed(before, positive))
-        if isinstance(expr, BinaryExpr) and expr.op in ("<=", ">="):
+        if isinstance(expr, BinaryExpr) and expr.op in ("<=", ">=", "!="):
             return _signed(self._comparison(expr, i, scope), not positive)
         return _signed(self._atom(expr, i, scope), positive)
 
@@ -193,9 +193,11 @@ class Definition(Names):
         return (border - age) / border if is_once else (age - border) / border
 
     def _comparison(self, expr: BinaryExpr, i: int, scope: Scope) -> float:
-        """Return the robustness of ``x > y`` or ``x < y``: its margin, as a share of the greatest one in its direction.
+        """Return the robustness of ``x > y``, ``x < y`` or ``x == y``: its margin, as a share of the greatest one.
 
-        For ``x <= y`` and ``x >= y``, return that of the opposite comparison.
+        The greatest margin is that in the direction of the margin. The margin of ``x == y`` is a half less
+        the distance between x and y. For ``x <= y``, ``x >= y`` and ``x != y``, return the robustness of the
+        opposite comparison.
         """
         sides = [(expr.left, self._range(expr.left, scope)), (expr.right, self._range(expr.right, scope))]
         # A count or time without a maximum gets twice the greatest value of the other side, and counts one more.
@@ -206,6 +208,9 @@ class Definition(Names):
                 sides[this] = side, (low, self._maximum(Fraction(repr(2 * most)) + (kind == "times"), kind))
         (left, (left_low, left_high)), (right, (right_low, right_high)) = sides
         a, b = min(self.number(left, i, scope), left_high), min(self.number(right, i, scope), right_high)
+        if expr.op in ("==", "!="):
+            margin, least = 0.5 - abs(a - b), 0.5 - max(left_high - right_low, right_high - left_low)
+            return margin / 0.5 if margin > 0 else margin / -least
         if expr.op in ("<", ">="):
             a, b = b, a
             (left_low, left_high), (right_low, right_high) = (right_low, right_high), (left_low, left_high)
@@ -276,7 +281,8 @@ class Definition(Names):
             return (a and b) if expr.op == "and" else (a or b)
         if isinstance(expr, BinaryExpr):
             a_, b_ = self.number(expr.left, i, scope), self.number(expr.right, i, scope)
-            return {"<": a_ < b_, "<=": a_ <= b_, ">": a_ > b_, ">=": a_ >= b_}[expr.op]
+            order = {"<": a_ < b_, "<=": a_ <= b_, ">": a_ > b_, ">=": a_ >= b_}
+            return order[expr.op] if expr.op in order else (abs(a_ - b_) < 0.5) == (expr.op == "==")
         return self.number(expr, i, scope) > 0.5
 
     # --- ranges -------------------------------------------------------------------------------------

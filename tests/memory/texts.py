@@ -20,7 +20,7 @@ param k in [1, 6] = 3
 predicate low in [-1, 1] = (5 - hp) / 5
 predicate far(t: entity, lim: length = 10 m) = clamp((d(t) - lim) / 10 m, -1, 1)
 predicate often(t: entity) = clamp((times(near(t), 5) - 2) / 3, -1, 1)
-predicate jump = when hp < previous(hp): 0.5 when times(once p and q) > 2: -0.25 otherwise: previous(x) / 4
+predicate jump = when hp < previous(hp): 0.5 when times(once p and q) == 2: -0.25 otherwise: previous(x) / 4
 let danger = p or hp < 3
 let rising(f, g) = f and previously g
 let close(t: entity) = near(t) or d(t) < 3 m
@@ -82,6 +82,9 @@ class Texts:
         inner = self.past(depth - 1)
         if kind == 0:
             maximum = f", {random.randint(1, 5)}" if random.random() < 0.3 else ""
+            if random.random() < 0.3:
+                other = random.choice(("0", "1", "2", "3", f"times({self.past(depth - 1)}, 3)"))
+                return f"times({inner}{maximum}) {random.choice(('==', '!='))} {other}"
             return f"times({inner}{maximum}) {op} {random.choice(('1', '2', '3', '1.5', 'k', 'hp', '0'))}"
         if kind < 3:
             function = ("time_since", "time_holding")[kind - 1]

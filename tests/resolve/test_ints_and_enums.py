@@ -83,6 +83,14 @@ def test_values_of_one_signal_exclude_each_other() -> None:
     assert "mode is chase" not in names
 
 
+def test_values_of_one_count_exclude_each_other() -> None:
+    (fspa,) = compile_text(
+        "signal p: bool spec a = F times(p) == 1 & F times(p, 9) == 2 & F previous(times(p, 9)) == 3 & F p"
+    )
+    names = [atom.name for atom in fspa.atoms]
+    assert [[names[index] for index in group] for group in fspa.exclusive] == [["times(p) == 1", "times(p, 9) == 2"]]
+
+
 def test_an_equality_with_a_param_excludes_nothing() -> None:
     (fspa,) = compile_text(PHASE + "param n: int in [0, 5] = 2\nspec a = F phase == n & F phase == 2")
     assert fspa.exclusive == ()

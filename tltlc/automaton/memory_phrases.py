@@ -27,7 +27,14 @@ from tltlc.logic.formula import Formula, and_, atom, eventually, not_, or_, rebu
 from tltlc.logic.text.phrases import is_state, object_phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
-_COMPARED: Final = {">": "more than", "<": "less than", ">=": "at least", "<=": "at most"}
+_COMPARED: Final = {
+    ">": "more than",
+    "<": "less than",
+    ">=": "at least",
+    "<=": "at most",
+    "==": "exactly",
+    "!=": "not exactly",
+}
 _TIMES: Final = {"1": "once", "2": "twice"}
 _TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
     "waiting": {"late": ("{2} later than {0} after {1}", "{2} within {0} after {1}")},
@@ -195,7 +202,7 @@ def _phrase(each: Atom, register: Register, clock_s: float | None) -> Phrase | N
         sentence = _count if register.kind == "times" else _time
         return Phrase(
             sentence(register, name, each.base.operator, each.base.right),
-            sentence(register, name, ">=" if each.base.operator == "<" else "<=", each.base.right),
+            sentence(register, name, each.base.opposite_operator, each.base.right),
         )
     border = _border(each.expression)
     if register.kind != "time_since" or border is None:

@@ -33,7 +33,12 @@ class ComparisonName(str):
     @property
     def opposite(self) -> str:
         """The comparison that holds exactly where this one does not: ``fuel <= 5`` for ``fuel > 5``."""
-        return f"{self.left} {_OPPOSITES[self.operator]} {self.right}"
+        return f"{self.left} {self.opposite_operator} {self.right}"
+
+    @property
+    def opposite_operator(self) -> str:
+        """The operator of :attr:`opposite`."""
+        return _OPPOSITES[self.operator]
 
     def __getnewargs__(self) -> tuple[str, str, str]:  # type: ignore[override]
         return self.left, self.operator, self.right

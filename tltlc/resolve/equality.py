@@ -1,4 +1,4 @@
-"""Turn ``==`` and ``!=`` of integers into atoms whose robustness is scaled to [-1, 1].
+"""Turn ``==`` and ``!=`` of integers and counts into atoms whose robustness is scaled to [-1, 1].
 
 ``a == b`` is true where ``abs(a - b)`` is below a half, so that a value that a game computes as
 1.9999999 equals 2. For whole numbers, this is equality.
@@ -11,7 +11,7 @@ from math import inf
 
 from tltlc.core.names import ComparisonName
 from tltlc.diagnostics.diagnostic import replacement_fix
-from tltlc.expression.tree import SignalValue
+from tltlc.expression.tree import Op, SignalValue
 from tltlc.grammar.mistakes.misused_operators import misused_operator
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NameExpr
 from tltlc.logic.formula import Formula, atom, not_
@@ -22,6 +22,7 @@ from tltlc.resolve.kinds import kind_of
 from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
+from tltlc.resolve.recall import check_closed, saturate, too_small_error
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, constant, number_text, range_text
 
 EQUALITIES = ("==", "!=")
@@ -46,15 +47,19 @@ def equality(expr: BinaryExpr, env: Env) -> Formula:
         return atom(name)
     _check_truth(left, right, distance, expr, env)
     formula = env.context.atom(name, robustness(HALF, distance), "", env.scope.source, expr.span)
-    if isinstance(left.expression, SignalValue) and right.is_constant:
-        env.context.values_of_signals[name] = left.expression.name
+    compared = _signal_or_count(left, env)
+    if compared is not None and right.is_constant:
+        env.context.values_of_signals[name] = compared
     return formula if expr.op == "==" else not_(formula)
 
 
 def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Quantity]:
     """Return both sides of an equality of integers, a constant last, and the distance between them.
 
-    Raises ResolutionError if a side is no integer (TLT0110).
+    A count that is compared with a number n stops at 2 n + 1, or at its written maximum.
+
+    Raises ResolutionError if a side is no integer (TLT0110), or if a count stops too early (TLT0322), has
+    no maximum (TLT0321) or would need too large a one (TLT0303).
     """
     for side, other in ((expr.left, expr.right), (expr.right, expr.left)):
         info = enum_of(side, env)
@@ -64,6 +69,11 @@ def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Q
             raise ResolutionError(misused_operator(env.scope.source, expr.op_span))
     left, right = quantity(expr.left, env), quantity(expr.right, env)
     same_dimension(left, right, expr.right, env)
+    for time, other in ((left, expr.right), (right, expr.left)):
+        if time.recall is not None and not time.recall.is_count:
+            raise _time_error(time, other, expr, env)
+    left, right = saturate(left, right, expr.right, env), saturate(right, left, expr.left, env)
+    left, right = check_closed(left, expr.left, env), check_closed(right, expr.right, env)
     at = expr.right
     if left.is_constant and not right.is_constant:
         left, right, at = right, left, expr.left
@@ -75,6 +85,9 @@ def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Q
             at.span,
             advice="write a whole number",
         )
+    if left.recall is not None and left.recall.limit is not None and right.is_constant and right.low >= left.high:
+        # Where the count has stopped, it may be greater.
+        raise too_small_error(left, left.recall.limit, right.low)
     if not (left.is_whole and right.is_whole) or left.dimension not in (None, units.PLAIN):
         raise ResolutionError(misused_operator(env.scope.source, expr.op_span))
     if left.is_constant:
@@ -84,6 +97,27 @@ def distance_of_sides(expr: BinaryExpr, env: Env) -> tuple[Quantity, Quantity, Q
     distance = apply("abs", (difference,), units.PLAIN)
     assert distance is not None, "not constant"
     return left, right, distance
+
+
+def _signal_or_count(side: Quantity, env: Env) -> str | None:
+    """Return the name of the signal or count that a side of an equality is; None for other sides."""
+    value = side.expression
+    if isinstance(value, SignalValue):
+        return value.name
+    is_limited = isinstance(value, Op) and value.op == "min" and isinstance(value.args[0], SignalValue)
+    register = env.context.registers.get(value.args[0].name) if is_limited else None  # type: ignore[union-attr]
+    return register.name if register is not None and register.kind == "times" else None
+
+
+def _time_error(time: Quantity, other: Expr, expr: BinaryExpr, env: Env) -> ResolutionError:
+    """Return the error for a time of the trace so far, such as ``time_since(p)``, that is compared by ``==``."""
+    source = env.scope.source
+    title = f"`{expr.op}` compares whole numbers, and `{time.text}` is a time"
+    border = " ".join(source.slice(other.span).split())
+    advice = f"a time may pass {border} between two samples: write `{time.text} >= {border}`, true from then on"
+    if expr.op == "!=":
+        advice = f"write `{time.text} < {border}`, true before then, or `{time.text} > {border}`, true after then"
+    return problem("TLT0110", title, source, expr.span, advice=advice)
 
 
 def _may_be_number(expr: Expr, env: Env) -> bool:

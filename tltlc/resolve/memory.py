@@ -237,7 +237,7 @@ def _of_formula(expr: CallExpr, env: Env) -> Quantity:
             _register(draft, expr, env)
     dimension = units.TYPES["time"] if is_time else units.PLAIN
     read = Recall(name, unit, is_count=not is_time, is_whole=not (is_time and varies))
-    open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, recall=read)
+    open_value = Quantity(SignalValue(name), dimension, 0.0, inf, name, is_whole=not is_time, recall=read)
     if env.symbolic:
         env.context.signals.setdefault(name, Signal(name, "number", 0.0, None))
     if len(expr.arguments) == 1:
