@@ -121,6 +121,12 @@ def test_declared_names_keep_their_meaning() -> None:
     assert re.search(r"write `Y\(e\)`", error.help or "")
 
 
+def test_a_name_in_a_comment_is_not_declared() -> None:
+    text = f"{NAMES}// signal Y: the second axis, and import nothing\nspec s {{ keep Y seen }}"
+    error = parse(SourceFile("a.tltl", text))[1][0]
+    assert error.help == "write `previously seen`"
+
+
 @pytest.mark.parametrize("clause", ["keep Y e", "keep has key", "keep a S b"])
 def test_what_may_be_an_imported_name_is_no_past_operator(clause: str) -> None:
     text = f"import stealth\nspec s {{ {clause} }}"

@@ -8,7 +8,7 @@ from tltlc.core.names import ComparisonName
 from tltlc.diagnostics.diagnostic import Label, replacement_fix
 from tltlc.expression.tree import Const, Expression, Op
 from tltlc.grammar.mistakes.misused_operators import misused_operator
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, SignalDecl
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, IsExpr, NameExpr, NumberExpr, SignalDecl
 from tltlc.grammar.typos import likely_name
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve.context import SignalInfo
@@ -120,12 +120,16 @@ def enum_as_formula_error(expr: Expr, info: SignalInfo, env: Env) -> ResolutionE
 def equality_error(expr: BinaryExpr, side: Expr, info: SignalInfo, other: Expr, env: Env) -> ResolutionError:
     """Return the error for an enum that is compared with ``==`` or ``!=``; ``side`` is the enum."""
     source, word = env.scope.source, "is" if expr.op == "==" else "is not"
-    known = isinstance(other, NameExpr) and other.name in info.values
-    value = other.name if known and isinstance(other, NameExpr) else info.values[0]
-    text = f"{source.slice(side.span)} {word} {value}"
-    fixes = (replacement_fix(source, expr.span, text, "safe"),) if known else ()
+    names, value, reason = info.values, None, ""
+    if isinstance(other, NameExpr) and other.name in names:
+        value = other.name
+    elif isinstance(other, NumberExpr) and other.unit is None and other.value in range(len(names)):
+        value = names[int(other.value)]
+        reason = f": `{value}` is the value with the number {int(other.value)}"
+    text = f"{source.slice(side.span)} {word} {value or names[0]}"
+    fixes = (replacement_fix(source, expr.span, text, "safe"),) if value else ()
     title = f"`{expr.op}` compares numbers, and `{source.slice(side.span)}` is an enum"
-    advice = f"write `{text}`" if known else f"write e.g. `{text}`"
+    advice = f"write `{text}`{reason}" if value else f"write e.g. `{text}`: its values are {_listed(names)}"
     return problem("TLT0110", title, source, expr.span, advice=advice, fixes=fixes)
 
 
@@ -187,8 +191,12 @@ def _info(binding: Binding, env: Env) -> SignalInfo:
 def _unknown_value(expr: IsExpr, enum: str, names: tuple[str, ...], env: Env) -> ResolutionError:
     suggestion = likely_name(expr.value, names)
     hint = f"did you mean `{suggestion}`?" if suggestion else ""
-    listed = ", ".join(f"`{name}`" for name in names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else "")
     fixes = (replacement_fix(env.scope.source, expr.value_span, suggestion),) if suggestion else ()
     title = f"`{enum}` has no value `{expr.value}`"
-    advice = None if suggestion else f"its values are {listed}"
+    advice = None if suggestion else f"its values are {_listed(names)}"
     return problem("TLT0201", title, env.scope.source, expr.value_span, hint, advice=advice, fixes=fixes)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return the values of an enum as a message lists them."""
+    return ", ".join(f"`{name}`" for name in names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else "")

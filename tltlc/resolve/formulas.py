@@ -13,6 +13,7 @@ from collections.abc import Callable
 from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression.tree import Const, Expression, Op
+from tltlc.grammar.mistakes.misused_operators import misused_operator
 from tltlc.grammar.tree import (
     BinaryExpr,
     CallExpr,
@@ -22,6 +23,7 @@ from tltlc.grammar.tree import (
     IsExpr,
     LetDecl,
     NameExpr,
+    NumberExpr,
     Quantified,
     SignalDecl,
     Unary,
@@ -122,6 +124,8 @@ def _formula(expr: Expr, env: Env) -> FormulaGenerator:
                 joined.append(operand)
             return _NARY[expr.op](*joined)
         if expr.op in _BINARY or expr.op == "within":
+            if expr.op in ("U", "W") and isinstance(expr.right, NumberExpr) and expr.right.unit is not None:
+                raise ResolutionError(misused_operator(env.scope.source, expr.right.span))
             left = yield _formula(expr.left, env)
             right = yield _formula(expr.right, env)
             if expr.bound is not None:

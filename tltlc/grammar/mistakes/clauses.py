@@ -21,6 +21,7 @@ from tltlc.grammar.keywords import (
     closest_word,
 )
 from tltlc.grammar.lexer import BAD, END, Token
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english import condition_line
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL, UNCLEAR, has_token, is_of_one_step
 from tltlc.grammar.mistakes.parse_failure import (
@@ -31,7 +32,6 @@ from tltlc.grammar.mistakes.parse_failure import (
     OPENING,
     UNTILS,
     ParseFailure,
-    declares_clock,
     quote_token,
 )
 from tltlc.grammar.mistakes.rephrasing import (
@@ -356,7 +356,7 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
         return None
     phrase = tuple("N" if token in numbers else token.text.lower() for token in tokens if token not in units)
     text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if failure.stop.index else "TLT0107"
-    is_clear = bool(units) or not (any("time" in word for word in phrase) or declares_clock(failure.source))
+    is_clear = bool(units) or not (any("time" in word for word in phrase) or declared_names(failure.source).has_clock)
     if is_clear and phrase in _LIMITS and (failure.tokens[0].type == "LIMIT" or _is_own_line(failure)):
         diagnostic = suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title, code=code)
         if diagnostic:

@@ -5,15 +5,19 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.mistakes.counts_in_words import COMPARISONS
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
-from tltlc.grammar.mistakes.rephrasing import span_of
+from tltlc.grammar.mistakes.rephrasing import formula_start, operand_end, span_of, suggest_rewrite, text_of
 
 _COMPARISONS: Final = {
-    ("at", "least"): ">=",
-    ("at", "most"): "<=",
-    **dict.fromkeys((("more", "than"), ("greater", "than"), ("above",), ("over",), ("exceeds",)), ">"),
-    **dict.fromkeys((("less", "than"), ("below",), ("under",)), "<"),
+    **COMPARISONS,
+    **dict.fromkeys((("greater", "than"), ("above",), ("over",), ("exceeds",)), ">"),
+    **dict.fromkeys((("below",), ("under",)), "<"),
 }
+
+_NUMBERS: Final = ("number", "int", "ratio")
+"""The types of what is counted with a number without a unit."""
 
 
 def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
@@ -22,16 +26,39 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
     Examples are ``coins is more than 3`` and ``health above 50%``.
     """
     at = failure.stop.index
-    if not failure.wants_operator or failure.token.type != "NAME":
+    if not failure.wants_operator or failure.token.type not in ("NAME", "NOT"):
         return None
-    words = [token.text for token in failure.tokens[at : at + 3]]
+    number_first = _number_first(failure)
+    if number_first is not None:
+        return number_first
+    words = [token.text for token in failure.tokens[at : at + 4]]
     has_verb = words[0] in ("is", "are")
     for phrase, sign in _COMPARISONS.items():
         length = has_verb + len(phrase)
         if tuple(words[has_verb:length]) != phrase:
             continue
         value = failure.tokens[at + length].type
-        if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
+        if value == "NUMBER" or (value == "NAME" and phrase[0] not in ("at", "up")):
             title, span = f"{quote_token(failure.token)} is not an operator", span_of(failure.tokens[at : at + length])
             return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
+    return None
+
+
+def _number_first(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a comparison with its number before the name, as in ``at most 3 coins``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    for start in range(max(formula_start(failure), at - 2), at):
+        words = tuple(token.text for token in tokens[start : start + 3])
+        phrase = next((phrase for phrase in COMPARISONS if words[: len(phrase)] == phrase), ())
+        number = start + len(phrase)
+        if not phrase or tokens[number].type != "NUMBER":
+            continue
+        sign, title = COMPARISONS[phrase], f"{quote_token(tokens[start])} is not an operator"
+        stop = operand_end(tokens, number + 1)
+        is_compared = stop is not None and declared_names(failure.source).type_of(tokens[number + 1].text) in _NUMBERS
+        if stop is not None and is_compared:
+            text = f"{text_of(failure, number + 1, stop)} {sign} {tokens[number].text}"
+            return suggest_rewrite(failure, start, stop, text, title)
+        help_ = f"write `{sign}` between a value and its limit, as in `coins {sign} {tokens[number].text}`"
+        return failure.error("TLT0101", title, help_, span=span_of(tokens[start:number]))
     return None

@@ -18,6 +18,8 @@ _REASONS: Final = {
     ("for", "reach"): "; `always for` requires nothing after the end of play, so `next after` requires the last step",
 }
 _WHERE: Final = ": where `{b}` holds, `{a}` must hold, too"
+REAL_TIME: Final = ("s", "ms", "min", "h")
+"""The units of times in the language, apart from steps."""
 _ONCE: Final = "; to require it at every step, write a clause `keep {b} implies {a}`"
 
 
@@ -61,6 +63,11 @@ class Time:
     def text(self) -> str:
         """The time as it is written in a spec."""
         return f"{self.number} {self.unit}"
+
+    @property
+    def is_real(self) -> bool:
+        """Whether the time is in seconds, or another unit that needs a clock."""
+        return self.unit in REAL_TIME
 
     @property
     def steps(self) -> int | None:

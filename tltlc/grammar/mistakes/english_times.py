@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
+from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, PAST_TIME, Forms
-from tltlc.grammar.mistakes.english_rewrite import Parts, Time, clause_keyword, goal_starts, rewrite_error
+from tltlc.grammar.mistakes.english_rewrite import REAL_TIME, Parts, Time, clause_keyword, goal_starts, rewrite_error
 from tltlc.grammar.mistakes.one_reading import (
     QUANTIFIERS,
     TEMPORAL,
@@ -17,11 +20,10 @@ from tltlc.grammar.mistakes.one_reading import (
     is_clear_time_here,
     is_of_one_step,
 )
-from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, declares_clock
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text
+from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text, suggest_rewrite
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
-_IN_SECONDS: Final = ("s", "ms", "min", "h")
 
 
 def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
@@ -47,7 +49,7 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         before, form, is_clear = "", forms[""], _is_clear_time(failure, begin, forms)
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
         is_clear = is_clear and not has_token(failure, formula_start(failure), at, TEMPORAL | QUANTIFIERS)
-    if form == FOR_TIME["reach"] and time.steps is None and time.unit in _IN_SECONDS:
+    if form == FOR_TIME["reach"] and time.is_real:
         form = HOLDING
     last = last_index_of(failure, INFIX, begin)
     operator = begin if last is None else last + 1
@@ -56,6 +58,8 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator + 1, at)
         parts = Parts(operand_text(failure, operator + 1, at), time.text, "", time)
         return rewrite_error(failure, at, (operator, stop), past, parts if is_clear else None)
+    if kind == "keep" and forms is FOR_TIME and last is not None and failure.tokens[last].type == "IMPLIES":
+        return _holding_error(failure, operand_text(failure, operator, at), time)
     if kind != "keep":
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
@@ -75,7 +79,7 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if at == first:
         form = forms.get(kind, forms[""])
-        if form == FOR_TIME["reach"] and time.steps is None and time.unit in _IN_SECONDS:
+        if form == FOR_TIME["reach"] and time.is_real:
             form = HOLDING
         has_own_form = form != forms[""]
         is_clear = is_clear and (
@@ -91,6 +95,16 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
         is_clear = is_clear and not has_token(failure, first, stop, {*TEMPORAL, "AND", "OR"})
     parts = Parts(operand_text(failure, second, stop), time.text, before, time)
     return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
+
+
+def _holding_error(failure: ParseFailure, operand: str, time: Time) -> Diagnostic:
+    """Return the error for a time for which something holds where a rule asks for it: `keep a implies b for 3 s`."""
+    in_steps = f"historically for {time.text} {operand}"
+    so_far = f"time_holding({operand}) >= {time.text}" if time.is_real else in_steps
+    help_ = (
+        f"write `always for {time.text} {operand}` if it must hold from then on, `{so_far}` if it must have held so far"
+    )
+    return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", help_)
 
 
 def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
@@ -115,6 +129,47 @@ def _is_clear_operand(failure: ParseFailure, start: int, stop: int) -> bool:
     return is_one and failure.tokens[start].text not in OPERATORS
 
 
+def time_at(tokens: Sequence[Token], at: int) -> tuple[Time, int] | None:
+    """Return the time such as `5 s` or `20 frames` at an index, and the index after it, else None.
+
+    The unit is one of a time, and that of the language: `5 seconds` gives `5 s`.
+    """
+    if at + 1 >= len(tokens) or tokens[at].type != "NUMBER":
+        return None
+    unit = UNITS_ELSEWHERE.get(tokens[at + 1].text.lower(), tokens[at + 1].text)
+    return (Time(tokens[at].text, unit), at + 2) if unit in (*REAL_TIME, "step", "steps") else None
+
+
+def until_time(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a time after `until`, as in ``hidden until 5 s``, else None."""
+    tokens = failure.tokens
+    at = next((index for index in (failure.stop.index, failure.stop.index - 1) if tokens[index].type == "NUMBER"), -1)
+    found = time_at(tokens, at)
+    if at < 2 or found is None or tokens[at - 1].type not in ("UNTIL", "WEAK_UNTIL"):
+        return None
+    time, end = found[0].text, found[1]
+    word, start, keyword = tokens[at - 1], formula_start(failure), clause_keyword(failure)
+    title = f"{quote_token(word)} stands between two formulas, and `{time}` is a time"
+    last = last_index_of(failure, INFIX - {word.type}, start)
+    begin = start if last is None else last + 1
+    operand = operand_text(failure, begin, at - 1)
+    is_clear = begin == start or tokens[begin - 1].type == "IMPLIES"
+    is_clear = is_clear and is_of_one_step(failure, begin, at - 1) and tokens[begin].type != "NOT"
+    if not is_clear:
+        return failure.error("TLT0101", title, f"write `always for {time} a` for `a until {time}`", span=word.span)
+    if begin > start or not keyword:
+        text, reason = f"always for {time} {operand}", ", which counts from that step on"
+        return suggest_rewrite(failure, begin, end, text, title, reason)
+    if keyword == "reach":
+        help_ = (
+            f"write `require always for {time} {operand}` if it must hold all that time, "
+            f"`require eventually within {time} {operand}` if at some step of it"
+        )
+        return failure.error("TLT0101", title, help_, span=word.span)
+    text = f"require always for {time} {'not ' * (keyword == 'avoid')}{operand}"
+    return suggest_rewrite(failure, 0, end, text, title)
+
+
 def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:
     """Return the time that begins at index ``at``, the index after the time, and whether its unit is certain.
 
@@ -122,5 +177,5 @@ def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:
     """
     unit = failure.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
-    is_clear = bool(known) or not declares_clock(failure.source)
+    is_clear = bool(known) or not declared_names(failure.source).has_clock
     return Time(failure.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear

@@ -6,22 +6,18 @@ another reason.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Final
 
-from tltlc.core.record import replace
-from tltlc.diagnostics.diagnostic import Diagnostic, replacement_fix
+from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
-from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.equalities import equality, value_end
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import effective_clause
 from tltlc.grammar.mistakes.parse_failure import (
-    ARITHMETIC,
     BEFORE_ONE,
-    CLOSING,
     COMPARISONS,
     INFIX,
-    OPENING,
     ParseFailure,
     are_adjacent,
     outer_indices,
@@ -29,64 +25,6 @@ from tltlc.grammar.mistakes.parse_failure import (
 )
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, span_of, suggest_rewrite, text_of
 from tltlc.grammar.tables import load
-
-_VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
-_EQUAL_FORM, _UNEQUAL_FORM = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
-_EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>": _UNEQUAL_FORM}
-
-
-def equality(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error if parsing failed at a test for equality in the syntax of other languages, else None.
-
-    Examples are ``a == b``, ``a != true``, ``a <> 3`` and ``a = b``.
-    """
-    sign, at = failure.token.text, failure.stop.index
-    is_expectation = failure.tokens[0].text == "expect"
-    if sign not in _EQUAL or not (failure.token.type != "EQUAL" or failure.wants_operator or is_expectation):
-        return None
-    title = f"`{sign}` is not a comparison here" if failure.token.type != "EQUAL" else "`=` is not a comparison"
-    if is_expectation:
-        return failure.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
-    start, stop = value_end(failure.tokens, at, -1), value_end(failure.tokens, at, 1)
-    a, b = text_of(failure, start, at), text_of(failure, at + 1, stop)
-    is_unequal, boolean_text = _EQUAL[sign] == _UNEQUAL_FORM, ""
-    if b.lower() in ("true", "false"):
-        text, reason = (
-            a if (b.lower() == "true") != is_unequal else f"not {a}",
-            ": a `bool` signal is an atom by itself",
-        )
-    else:
-        text, reason = _EQUAL[sign].format(a=a, b=b), ""
-        is_part = (start, stop) != (formula_start(failure), formula_stop(failure))
-        text = f"({text})" if is_part else text
-        if b in ("0", "1"):
-            boolean_text = a if (b == "1") != is_unequal else f"not {a}"
-            reason = f", or `{boolean_text}` if its value is true or false"
-        elif _is_atom(failure, start, at) and _is_atom(failure, at + 1, stop):
-            boolean_text = f"({a} iff {b})" if is_part or is_unequal else f"{a} iff {b}"
-            boolean_text = f"{'not ' * is_unequal}{boolean_text}"
-            reason = f", or `{boolean_text}` if both values are true or false"
-            choice = f"{a} is {'not ' * is_unequal}{b}"
-            reason += f", or `{choice}` if `{b}` is a value of an enum" if b.isidentifier() else ""
-    general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
-    diagnostic = suggest_rewrite(failure, start, stop, text, title, reason, "TLT0110") if a and b else None
-    if diagnostic and diagnostic.fixes and boolean_text:
-        # A predicate can be compared as a number or as a truth value.
-        diagnostic = replace(
-            diagnostic,
-            fixes=(
-                *diagnostic.fixes,
-                replacement_fix(failure.source, span_of(failure.tokens[start:stop]), boolean_text),
-            ),
-        )
-    return diagnostic or failure.error("TLT0110", title, general)
-
-
-def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
-    """Whether the tokens from index ``start`` up to ``stop`` are a name, perhaps with arguments."""
-    kinds = [token.type for token in failure.tokens[start:stop]]
-    rest = outer_indices(failure.tokens, start + 1, stop)
-    return kinds[:1] == ["NAME"] and all(failure.tokens[index].type in ("LPAR", "RPAR") for index in rest)
 
 
 def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
@@ -214,22 +152,6 @@ def prefix_between_formulas(failure: ParseFailure) -> Diagnostic | None:
     indices = outer_indices(failure.tokens, formula_start(failure), formula_stop(failure))
     is_clear = token.type == "NOT" and all(failure.tokens[index].type not in INFIX - {"AND"} for index in indices)
     return failure.error("TLT0101", title, f"write `{replacement}`", write=replacement if is_clear else None)
-
-
-def value_end(tokens: Sequence[Token], at: int, step: int) -> int:
-    """Return where the value before or after the operator at index ``at`` begins or ends.
-
-    If ``step`` is -1, return the index of the first token of the value before the operator. If ``step``
-    is 1, return the index after the last token of the value after the operator.
-    """
-    index, depth = at + step, 0
-    while 0 <= index < len(tokens):
-        kind = tokens[index].type
-        depth += step * ((kind in OPENING) - (kind in CLOSING))
-        if depth < 0 or (depth == 0 and kind not in _VALUE and kind not in OPENING and kind not in CLOSING):
-            break
-        index += step
-    return index + 1 if step < 0 else index
 
 
 HABITS: Final[tuple[Callable[[ParseFailure], Diagnostic | None], ...]] = (

@@ -17,12 +17,16 @@ from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
 from tltlc.grammar.mistakes.comparison_words import comparison_in_words
+from tltlc.grammar.mistakes.counts_in_words import never_counted
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english import plain_english
+from tltlc.grammar.mistakes.english_times import until_time
+from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
-from tltlc.grammar.mistakes.habits import HABITS, dash_comment, value_end
+from tltlc.grammar.mistakes.habits import HABITS, dash_comment
 from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
-from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, has_token
+from tltlc.grammar.mistakes.one_reading import has_token
 from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
     INFIX,
@@ -30,13 +34,13 @@ from tltlc.grammar.mistakes.parse_failure import (
     OPERAND,
     UNTILS,
     ParseFailure,
-    declares_clock,
     quote_token,
 )
-from tltlc.grammar.mistakes.past import never_counted, past_in_english
+from tltlc.grammar.mistakes.past import past_in_english
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.renaming import word_of_the_past
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, span_of, suggest_rewrite, text_of
+from tltlc.grammar.mistakes.rephrasing import formula_stop, span_of, text_of
+from tltlc.grammar.mistakes.responses import response_in_english
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
 
@@ -123,7 +127,7 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     if failure.allowed_terminals == {"UNIT"} and before:
         help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
         title = f"expected a unit after {quote_token(before)}"
-        write = None if declares_clock(failure.source) else f"{before.text} steps"
+        write = None if declared_names(failure.source).has_clock else f"{before.text} steps"
         return failure.error("TLT0111", title, help_, span=before.span, write=write)
     if failure.token.type == "RSQB" and before and "COMMA" in failure.allowed_terminals and _is_bound(failure):
         return _bound_with_one_end(failure)
@@ -262,36 +266,6 @@ def _is_before_operand(failure: ParseFailure) -> bool:
     return after.type in OPERAND | BEFORE_ONE
 
 
-def _verb_is(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error for the verb `is`, as in ``seen is true`` or ``seen is not true``, else None."""
-    at, after = failure.stop.index, [token.text for token in failure.tokens[failure.stop.index + 1 :]]
-    if (
-        failure.token.text not in ("is", "are")
-        or not failure.wants_operator
-        or failure.previous_token is None
-        or not after
-    ):
-        return None
-    title = f"{quote_token(failure.token)} is not an operator"
-    start = value_end(failure.tokens, at, -1)
-    value = text_of(failure, start, at)
-    words = {"true": "{}", "false": "not {}", "not": "not {}"}
-    diagnostic: Diagnostic | None = None
-    if after[0] in words:
-        stop = at + 2 + (after[0] == "not" and after[1:2] in (["true"], ["false"]))
-        text = words[after[0]].format(value)
-        # `a or b is false` and `always a is false` may mean all that stands before.
-        is_clear = text == value or not has_token(
-            failure, formula_start(failure), start, INFIX | BEFORE_ONE | QUANTIFIERS
-        )
-        if is_clear:
-            diagnostic = suggest_rewrite(failure, start, stop, text, title, ": a `bool` signal is an atom by itself")
-    help_ = (
-        f"write `{value}` to say that it is true, `not {value}` to say that it is not; compare numbers with `<` or `>`"
-    )
-    return diagnostic or failure.error("TLT0101", title, help_)
-
-
 def _foreign_otherwise(failure: ParseFailure) -> Diagnostic | None:
     """Return an error if `else` stands in place of `otherwise`, as in ``when a: 1 else: 0``, else None."""
     if failure.token.text not in ("else", "default") or "OTHERWISE" not in failure.allowed_terminals:
@@ -348,6 +322,8 @@ def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
 _RULES: Final = (
     dash_comment,
     unknown_sign,
+    until_time,
+    response_in_english,
     never_counted,
     past_in_english,
     plain_english,
@@ -363,7 +339,7 @@ _RULES: Final = (
     _reserved_word,
     _missing_type,
     _quantifier_head,
-    _verb_is,
+    verb_is,
     _misspelt_operator,
     missing_comma,
     _names_side_by_side,

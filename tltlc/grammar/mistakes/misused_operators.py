@@ -1,8 +1,9 @@
 """Explain an operator that the grammar accepts, but not between these operands.
 
-``==`` compares integers, and ``is`` compares an enum with the name of a value. Between other operands
-they get the errors that the rules of :mod:`tltlc.grammar.mistakes.messages` give for signs and words of
-other languages, as if the grammar did not have them.
+``==`` compares integers, ``is`` compares an enum with the name of a value, and ``until`` stands before a
+formula, not a time. Other operands get the errors that the rules of
+:mod:`tltlc.grammar.mistakes.messages` give for signs and words of other languages, as if the grammar
+did not have the operator.
 """
 
 from __future__ import annotations
@@ -22,7 +23,10 @@ EQUALITIES: Final = ("EQUALS", "UNEQUAL")
 
 
 def misused_operator(source: SourceFile, operator: Span) -> Diagnostic:
-    """Return the error for an ``==``, ``!=`` or ``is`` at the span ``operator``, whose operands have other types."""
+    """Return the error for an operator whose operands have other types.
+
+    ``operator`` is the span of an ``==``, ``!=`` or ``is``, or of the time after an ``until``.
+    """
     from tltlc.grammar.mistakes.messages import unexpected_token
 
     start, piece = _piece(source, operator.start)

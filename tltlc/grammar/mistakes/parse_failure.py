@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -180,8 +179,3 @@ def quote_token(token: Token | None) -> str:
 def _spellings(terminals: dict[str, str]) -> dict[str, str]:
     """Map each terminal to one of its spellings, in ASCII if there is one."""
     return {terminal: text for text, terminal in sorted(terminals.items(), key=lambda item: item[0].isascii())}
-
-
-def declares_clock(source: SourceFile) -> bool:
-    """Whether the file seems to declare a clock. If so, a time without a unit may be in steps or in seconds."""
-    return re.search(r"^[ \t]*clock[ \t]+[0-9.]", source.text, re.MULTILINE) is not None

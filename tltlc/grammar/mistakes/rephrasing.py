@@ -103,6 +103,33 @@ def last_index_of(failure: ParseFailure, kinds: Collection[str], start: int) -> 
     return indices[-1] if indices else None
 
 
+def operand_end(tokens: Sequence[Token], start: int) -> int | None:
+    """Return the index after the name or call that begins at an index, perhaps after `not`; None if there is none."""
+    if start < len(tokens) and tokens[start].type == "NOT":
+        start += 1
+    if start >= len(tokens) or tokens[start].type != "NAME":
+        return None
+    if start + 1 >= len(tokens) or tokens[start + 1].type != "LPAR":
+        return start + 1
+    depth = 0
+    for index in range(start + 1, len(tokens)):
+        depth += (tokens[index].type in OPENING) - (tokens[index].type in CLOSING)
+        if depth == 0:
+            return index + 1
+    return None
+
+
+def operand_start(tokens: Sequence[Token], stop: int) -> int | None:
+    """Return the index of the first token of the name or call that ends before an index; None if there is none."""
+    index, depth = stop - 1, 0
+    while (index >= 0 and tokens[index].type in CLOSING | set(OPENING)) or depth:
+        depth += (tokens[index].type in CLOSING) - (tokens[index].type in OPENING)
+        index -= 1
+        if depth == 0:
+            break
+    return index if index >= 0 and tokens[index].type == "NAME" else None
+
+
 def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
     """Whether the piece has no error if ``text`` replaces the tokens from ``start`` up to ``stop``."""
     tokens = failure.tokens

@@ -8,7 +8,7 @@ from tltlc.core.source import Span
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES
 from tltlc.grammar.lexer import BAD
-from tltlc.grammar.mistakes.habits import equality
+from tltlc.grammar.mistakes.equalities import equality
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
 from tltlc.grammar.mistakes.punctuation import leave_out_help, text_without_quotes
 from tltlc.grammar.mistakes.rephrasing import suggest_rewrite

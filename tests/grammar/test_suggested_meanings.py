@@ -1,0 +1,248 @@
+"""A help for English about times, counts and values compiles, and accepts the traces that the sentence means.
+
+The meanings are written by hand, over all short traces and without the compiler. A second has one step.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from itertools import product
+
+import pytest
+
+from tltlc import compile_text
+from tltlc.core.source import SourceFile
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor import Monitor
+from tltlc.tools.lint.scopes import apply_edits
+
+Trace = tuple[tuple[bool, ...], ...]
+Meaning = Callable[[Trace], bool]
+NAMES = """
+clock 1 Hz
+signal a: bool
+signal b: bool
+signal phase: int in [0, 3]
+signal last: int in [0, 3]
+signal mode: (idle, alert, chase)
+signal coins in [0, 3]
+entity door
+signal has(x: entity): bool
+"""
+LONGEST = {1: 7, 2: 4}
+"""The greatest length of the traces, by how many of a and b the clauses name."""
+
+
+def a(trace: Trace) -> list[bool]:
+    return [sample[0] for sample in trace]
+
+
+def b(trace: Trace) -> list[bool]:
+    return [sample[1] for sample in trace]
+
+
+def starts(trace: Trace) -> list[int]:
+    """Return the steps at which a begins to hold."""
+    holds = a(trace)
+    return [i for i in range(len(holds)) if holds[i] and not (i and holds[i - 1])]
+
+
+def error_of(clause: str) -> tuple[str, Diagnostic]:
+    text = f"{NAMES}spec s {{ {clause} }}"
+    with pytest.raises(TltlError) as failure:
+        compile_text(text)
+    return text, failure.value.diagnostics[0]
+
+
+def suggestions(clause: str) -> Iterator[str]:
+    """Yield the clauses with which a help replaces a clause: that of its fix, else each one that it quotes."""
+    text, error = error_of(clause)
+    if error.fixes:
+        fixed = apply_edits(SourceFile("a.tltl", text), error.fixes[0].edits).text
+        yield fixed.removeprefix(f"{NAMES}spec s {{").removesuffix("}")
+        return
+    for quoted in re.findall("`([^`]*)`", error.help or ""):
+        yield quoted if quoted.split()[0] in ("keep", "reach", "avoid", "require") else f"require {quoted}"
+
+
+def check(clauses: str, meaning: Meaning) -> None:
+    """Assert that a spec with the clauses accepts exactly the traces of a meaning."""
+    (fspa,) = compile_text(f"{NAMES}spec s {{ {clauses} }}")
+    varied = [name in {signal.name for signal in fspa.signals} for name in ("a", "b")]
+    letters = [letter for letter in product((False, True), repeat=2) if all(map(bool.__le__, letter, varied))]
+    for trace in product(letters, repeat=LONGEST[sum(varied)]):
+        monitor = Monitor(fspa)
+        for stop, (now_a, now_b) in enumerate(trace, start=1):
+            step = monitor.step({"a": now_a, "b": now_b})
+            assert step.accepting == meaning(trace[:stop]), (clauses, trace[:stop])
+
+
+def is_answered(trace: Trace) -> bool:
+    """Whether a holds at each b, or at one of the two steps after it."""
+    return all(any(a(trace)[i : i + 3]) for i, event in enumerate(b(trace)) if event)
+
+
+def begins_twice_in_time(trace: Trace) -> bool:
+    """Whether a begins to hold at two steps, the second one of the two steps after the first."""
+    begun = starts(trace)
+    return any(0 < second - first <= 2 for first in begun for second in begun)
+
+
+def counted(compare: Callable[[int], bool]) -> Meaning:
+    """Return the meaning that the number of times at which a has begun is right at the end."""
+    return lambda trace: compare(len(starts(trace)))
+
+
+MEANINGS: Mapping[str, Meaning] = {
+    "keep after b, a within 2 s": is_answered,
+    "require after b, a within 2 seconds": is_answered,
+    "after b, a within 2 s": is_answered,
+    "keep a within 2 s after b": is_answered,
+    "keep a within 2 steps of b": is_answered,
+    "keep within 2 s after b, a": is_answered,
+    "keep within 2 seconds of b, a": is_answered,
+    "keep when b, a within 2 s": is_answered,
+    "keep if b then a within 2 s": is_answered,
+    "keep b implies a within 2 seconds": is_answered,
+    "reach a within 2 s after b": lambda t: any(
+        i < j <= i + 2 for i, event in enumerate(b(t)) if event for j, goal in enumerate(a(t)) if goal
+    ),
+    "avoid a within 2 s after b": lambda t: not any(any(a(t)[i : i + 3]) for i, event in enumerate(b(t)) if event),
+    "keep after b, a for 2 s": lambda t: all(all(a(t)[i : i + 2]) for i, event in enumerate(b(t)) if event),
+    "reach a within 2 seconds": lambda t: any(a(t)[:3]),
+    "keep a for 2 seconds": lambda t: all(a(t)[:2]),
+    "reach a for 2 seconds": lambda t: any(all(a(t)[i : i + 3]) for i in range(len(t) - 2)),
+    "keep a until 2 s": lambda t: all(a(t)[:2]),
+    "require a until 2 seconds": lambda t: all(a(t)[:2]),
+    "avoid a until 2 s": lambda t: not any(a(t)[:2]),
+    "keep b implies a until 2 s": lambda t: all(all(a(t)[i : i + 2]) for i, event in enumerate(b(t)) if event),
+    "keep a at most 2 times": counted(lambda n: n <= 2),
+    "keep a no more than twice": counted(lambda n: n <= 2),
+    "require a not more than 2 times": counted(lambda n: n <= 2),
+    "keep at most 2 times a": counted(lambda n: n <= 2),
+    "keep no more than 2 times a": counted(lambda n: n <= 2),
+    "keep up to 2 times a": counted(lambda n: n <= 2),
+    "never a more than twice": counted(lambda n: n <= 2),
+    "never more than twice a": counted(lambda n: n <= 2),
+    "keep a less than 2 times": counted(lambda n: n < 2),
+    "reach a at least twice": counted(lambda n: n >= 2),
+    "require at least twice a": counted(lambda n: n >= 2),
+    "keep a no less than 2 times": counted(lambda n: n >= 2),
+    "reach a at least once": counted(lambda n: n >= 1),
+    "keep a more than once": counted(lambda n: n > 1),
+    "never a twice": counted(lambda n: n < 2),
+    "avoid a twice": counted(lambda n: n < 2),
+    "keep a exactly 2 times": counted(lambda n: n == 2),
+    "reach exactly twice a": counted(lambda n: n == 2),
+    "never a twice within 2 s": lambda t: not begins_twice_in_time(t),
+    "never twice within 2 s a": lambda t: not begins_twice_in_time(t),
+    "keep never a more than once within 2 seconds": lambda t: not begins_twice_in_time(t),
+    "avoid a twice in 2 steps": lambda t: not begins_twice_in_time(t),
+    "keep a at most once within 2 s": lambda t: not begins_twice_in_time(t),
+    "reach a twice within 2 s": begins_twice_in_time,
+    "keep a == b": lambda t: a(t) == b(t),
+    "keep a is 0": lambda t: not any(a(t)),
+}
+
+
+@pytest.mark.parametrize(("clause", "meaning"), MEANINGS.items(), ids=MEANINGS)
+def test_a_suggestion_has_the_meaning_of_the_sentence(clause: str, meaning: Meaning) -> None:
+    (suggestion,) = suggestions(clause)
+    check(suggestion, meaning)
+
+
+@pytest.mark.parametrize(
+    ("clause", "first", "second"),
+    [
+        (
+            "reach b before",
+            lambda t: any(b(t)),
+            lambda t: any(b(t)[:-1]),
+        ),
+        (
+            "reach b until 2 s",
+            lambda t: all(b(t)[:2]),
+            lambda t: any(b(t)[:3]),
+        ),
+    ],
+)
+def test_both_readings_of_an_unclear_sentence_are_given(clause: str, first: Meaning, second: Meaning) -> None:
+    readings = [reading.replace("require once", "reach once") for reading in suggestions(clause)]
+    assert len(readings) == 2
+    check(readings[0], first)
+    check(readings[1].replace("require previously", "reach previously"), second)
+
+
+@pytest.mark.parametrize(
+    ("clause", "readings"),
+    [
+        ("keep a implies b before", ["once b", "previously b"]),
+        ("keep a implies has door before", ["once has(door)", "previously has(door)"]),
+        ("keep a implies has(door) before", ["once has(door)", "previously has(door)"]),
+        ("keep a implies had b before", ["once b", "previously b"]),
+        ("keep a implies b for 3 seconds", ["always for 3 s b", "time_holding(b) >= 3 s"]),
+        ("keep a implies b for 3 steps", ["always for 3 steps b", "historically for 3 steps b"]),
+    ],
+)
+def test_the_readings_of_an_unclear_formula_compile(clause: str, readings: list[str]) -> None:
+    _, error = error_of(clause)
+    assert error.fixes == ()
+    assert re.findall("`([^`]*)`", error.help or "") == readings
+    for reading in readings:
+        compile_text(f"{NAMES}spec s {{ keep a implies {reading} }}")
+
+
+@pytest.mark.parametrize(
+    ("clause", "right"),
+    [
+        ("phase = 2", [2]),
+        ("phase is 2", [2]),
+        ("phase is not 2", [0, 1, 3]),
+        ("phase is last", [0]),
+        ("2 = phase", [2]),
+        ("phase no more than 2", [0, 1, 2]),
+        ("phase not more than 2", [0, 1, 2]),
+        ("phase is not less than 2", [2, 3]),
+        ("no more than 2 phase", [0, 1, 2]),
+    ],
+)
+def test_a_suggestion_for_an_int_holds_at_the_values_that_are_meant(clause: str, right: list[int]) -> None:
+    (suggestion,) = suggestions(f"require {clause}")
+    (fspa,) = compile_text(f"{NAMES}spec s {{ {suggestion} }}")
+    samples = [{"phase": value, "last": 0} for value in range(4)]
+    assert [sample["phase"] for sample in samples if Monitor(fspa).step(sample).accepting] == right
+
+
+@pytest.mark.parametrize(
+    ("clause", "right"),
+    [
+        ("mode == 2", ["chase"]),
+        ("mode != 2", ["idle", "alert"]),
+        ("1 == mode", ["alert"]),
+        ("mode = 1", ["alert"]),
+        ("mode is 0", ["idle"]),
+        ("mode is not 0", ["alert", "chase"]),
+        ("mode = alert", ["alert"]),
+        ("mode == alert", ["alert"]),
+    ],
+)
+def test_a_suggestion_for_an_enum_holds_at_the_values_that_are_meant(clause: str, right: list[str]) -> None:
+    (suggestion,) = suggestions(f"require {clause}")
+    (fspa,) = compile_text(f"{NAMES}spec s {{ {suggestion} }}")
+    assert [name for name in ("idle", "alert", "chase") if Monitor(fspa).step({"mode": name}).accepting] == right
+
+
+@pytest.mark.parametrize("clause", ["require mode == 7", "require mode = 7", "require mode is 7", "require mode = up"])
+def test_a_value_that_an_enum_does_not_have_gets_the_list(clause: str) -> None:
+    _, error = error_of(clause)
+    assert error.fixes == ()
+    assert "`idle`, `alert`, `chase`" in (error.help or "")
+
+
+def test_a_count_within_a_time_that_the_language_cannot_say_says_so() -> None:
+    _, error = error_of("avoid a 3 times within 10 s")
+    assert error.fixes == ()
+    assert error.help == (
+        "`times(a)` counts from the first step on: let the game count within a time, and supply the number"
+    )

@@ -1,0 +1,169 @@
+"""Explain counts in English: `seen at most 3 times`, `no more than twice seen`, `never seen twice within 10 s`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.english_rewrite import clause_keyword
+from tltlc.grammar.mistakes.english_times import time_at
+from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    operand_end,
+    operand_start,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
+
+COMPARISONS: Final[Mapping[tuple[str, ...], str]] = {
+    **dict.fromkeys((("no", "more", "than"), ("not", "more", "than"), ("at", "most"), ("up", "to")), "<="),
+    **dict.fromkeys((("no", "less", "than"), ("not", "less", "than"), ("no", "fewer", "than"), ("at", "least")), ">="),
+    ("more", "than"): ">",
+    **dict.fromkeys((("less", "than"), ("fewer", "than")), "<"),
+}
+"""Maps English words before a number to the sign of the comparison."""
+_COUNTED: Final[Mapping[tuple[str, ...], str]] = {**COMPARISONS, ("exactly",): "=="}
+_NUMBERS: Final = {"once": "1", "twice": "2", "thrice": "3"}
+_CLAUSES: Final = {
+    **{(keyword, "<="): "keep times({p}) <= {n}" for keyword in ("keep", "reach", "require")},
+    **{(keyword, "<"): "keep times({p}) < {n}" for keyword in ("keep", "reach", "require")},
+    **{(keyword, ">="): "reach times({p}) >= {n}" for keyword in ("keep", "reach", "require")},
+    **{(keyword, ">"): "reach times({p}) > {n}" for keyword in ("keep", "reach", "require")},
+    **{(keyword, ">="): "avoid times({p}) >= {n}" for keyword in ("avoid", "never")},
+    **{(keyword, ">"): "avoid times({p}) > {n}" for keyword in ("avoid", "never")},
+}
+"""Clauses for counts in English, by the keyword of the clause and the comparison.
+
+`keep … at least` would have to hold at the first step, too, and `reach … at most` always holds there:
+for these, the other clause is meant.
+"""
+_TWICE: Final = ((">=", "2"), (">", "1"))
+_AT_MOST_ONCE: Final = (("<=", "1"), ("<", "2"))
+
+
+@record
+class _Count:
+    """A count such as `at most 3 times within 10 s`.
+
+    ``sign`` is that of the comparison, empty if there is none. ``time`` is empty without a time.
+    ``start`` and ``stop`` are the indices of its tokens.
+    """
+
+    sign: str
+    number: str
+    time: str
+    start: int
+    stop: int
+
+
+def count_in_words(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a formula such as ``seen at most 3 times`` or ``at most 3 times seen``, else None."""
+    first, at, tokens = formula_start(failure), failure.stop.index, failure.tokens
+    keyword = clause_keyword(failure)
+    if tokens[first].text == "never" and keyword in ("keep", "require") and at <= first + 3:
+        diagnostic = _counted_from(failure, "never", first + 1)
+        if diagnostic is not None:
+            return diagnostic
+    for start in range(max(first, at - 2), at + 1):
+        # `at most` is no formula, even where a name `at` is declared.
+        is_name = tokens[start].text in declared_names(failure.source).names and tokens[start + 1].type != "NAME"
+        if (start == first or tokens[start - 1].type in INFIX) and not is_name:
+            diagnostic = _count_before(failure, keyword if start == first else "", start)
+            if diagnostic is not None:
+                return diagnostic
+    operand = operand_start(tokens, at)
+    return None if operand is None else _count_after(failure, keyword if operand == first else "", operand, at)
+
+
+def never_counted(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a clause such as ``never seen more than 3 times``, else None."""
+    is_never = failure.start == "clause" and failure.tokens[0].text.lower() == "never"
+    return _counted_from(failure, "never", 1) if is_never else None
+
+
+def _counted_from(failure: ParseFailure, keyword: str, start: int) -> Diagnostic | None:
+    """Return an error for a formula and its count, in either order, which begin at an index."""
+    end = operand_end(failure.tokens, start)
+    after = None if end is None else _count_after(failure, keyword, start, end)
+    return after or _count_before(failure, keyword, start)
+
+
+def _count_after(failure: ParseFailure, keyword: str, start: int, end: int) -> Diagnostic | None:
+    """Return an error for the operand from ``start`` to ``end`` if a count follows, else None."""
+    count = _count_at(failure.tokens, end)
+    return None if count is None else _error(failure, keyword, text_of(failure, start, end), start, count)
+
+
+def _count_before(failure: ParseFailure, keyword: str, start: int) -> Diagnostic | None:
+    """Return an error for a count at an index if its operand follows, else None."""
+    count = _count_at(failure.tokens, start)
+    end = None if count is None else operand_end(failure.tokens, count.stop)
+    if count is None or end is None:
+        return None
+    return _error(failure, keyword, text_of(failure, count.stop, end), start, count, end)
+
+
+def _error(
+    failure: ParseFailure, keyword: str, operand: str, start: int, count: _Count, end: int | None = None
+) -> Diagnostic | None:
+    """Return the error for a count and its operand, which begin at ``start``, and end at ``end`` or after the count.
+
+    ``keyword`` is that of the clause if the two begin it, else empty.
+    """
+    tokens, end = failure.tokens, end or count.stop
+    span, is_whole = span_of(tokens[count.start : count.stop]), tokens[end].type == END
+    title = f"{quote_token(tokens[count.start])} is not an operator" if count.sign else "a count is a comparison"
+    has_default = keyword in ("reach", "avoid", "never") and not count.sign
+    sign = ">=" if has_default else count.sign
+    if count.time:
+        help_ = _within_time(keyword if is_whole else "", operand, sign or ">=", count)
+    elif count.number == "1" and (sign or ">=") == ">=" and keyword in ("keep", "reach", "require") and is_whole:
+        help_ = f"write `reach {operand}`"
+    elif (form := _CLAUSES.get((keyword, sign))) and is_whole:
+        help_ = f"write `{form.format(p=operand, n=count.number)}`"
+    elif sign == "==" and keyword in ("keep", "reach", "require") and is_whole:
+        help_ = f"write two clauses: `reach times({operand}) >= {count.number} keep times({operand}) <= {count.number}`"
+    elif sign and not keyword:
+        return suggest_rewrite(failure, start, end, f"times({operand}) {sign} {count.number}", title)
+    else:
+        example = f"`times({operand}) {count.sign or '>='} {count.number}`"
+        help_ = f"`times({operand})` is how often it has begun: compare it, as in {example}"
+    return failure.error("TLT0101", title, help_, span=span)
+
+
+def _within_time(keyword: str, operand: str, sign: str, count: _Count) -> str:
+    """Return the help for a count within a time, such as `never seen twice within 10 s`."""
+    key, time = (sign, count.number), count.time
+    if (keyword in ("avoid", "never") and key in _TWICE) or (keyword in ("keep", "require") and key in _AT_MOST_ONCE):
+        return f"write `keep begins {operand} implies weak_next always for {time} not begins {operand}`"
+    if keyword == "reach" and key in _TWICE:
+        return f"write `reach begins {operand} then within {time} begins {operand}`"
+    return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
+
+
+def _count_at(tokens: Sequence[Token], start: int) -> _Count | None:
+    """Return the count that begins at an index, else None; `once` alone is an operator, and no count."""
+    words = tuple(token.text for token in tokens[start : start + 3])
+    phrase = next((phrase for phrase in _COUNTED if words[: len(phrase)] == phrase), ())
+    sign, at = _COUNTED.get(phrase, ""), start + len(phrase)
+    number = _number(tokens, at)
+    if number is None or (not sign and tokens[at].text == "once"):
+        return None
+    text, stop = number
+    time = time_at(tokens, stop + 1) if tokens[stop].text in ("within", "in") else None
+    return _Count(sign, text, time[0].text if time else "", start, time[1] if time else stop)
+
+
+def _number(tokens: Sequence[Token], at: int) -> tuple[str, int] | None:
+    """Return the number of `3 times` or `twice` at an index, as digits, and the index after it, else None."""
+    if at < len(tokens) and tokens[at].text in _NUMBERS:
+        return _NUMBERS[tokens[at].text], at + 1
+    if at + 1 < len(tokens) and tokens[at].type == "NUMBER" and tokens[at + 1].text in ("times", "time", "x"):
+        return tokens[at].text, at + 2
+    return None

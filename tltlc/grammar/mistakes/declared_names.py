@@ -1,0 +1,97 @@
+"""What a text declares, as far as its tokens say: the names, their types, a clock and imports.
+
+A text with a syntax error has no syntax tree, so the types are those that its tokens spell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from itertools import pairwise
+from typing import Final
+
+from tltlc.core.record import record
+from tltlc.core.source import SourceFile
+from tltlc.grammar.lexer import Token, tokenize
+from tltlc.grammar.mistakes.fragments import declarations
+
+_TYPED: Final = ("SIGNAL", "PARAM")
+_WITH_PARAMETERS: Final = (*_TYPED, "PREDICATE", "LET")
+
+
+@record
+class DeclaredName:
+    """A name that a text declares.
+
+    ``keyword`` is the word that begins the declaration, or ``parameter`` for a parameter of one. ``type``
+    is that of a signal or param: ``enum`` for a list of values, ``number`` where none is written. It is
+    empty for other names. ``values`` are the values of an enum.
+    """
+
+    keyword: str
+    type: str = ""
+    values: tuple[str, ...] = ()
+
+
+@record
+class DeclaredNames:
+    """The names that a text declares, and whether it declares a clock and imports names of other files."""
+
+    names: Mapping[str, DeclaredName]
+    has_clock: bool
+    has_imports: bool
+
+    def type_of(self, name: str) -> str:
+        """Return the type of a signal or param; ``int`` for ``times``, ``""`` for other names."""
+        known = self.names.get(name)
+        if known is None and name == "times":
+            return "int"
+        return "" if known is None else known.type
+
+
+def declared_names(source: SourceFile) -> DeclaredNames:
+    """Return what a text declares."""
+    return _declared_names(source.text)
+
+
+@lru_cache(maxsize=1)
+def _declared_names(text: str) -> DeclaredNames:
+    names: dict[str, DeclaredName] = {}
+    has_clock = has_imports = False
+    for piece in declarations(SourceFile("", text, "text"), tokenize(text).tokens[:-1]):
+        kind = piece[0].type
+        has_imports |= kind == "IMPORT"
+        has_clock |= kind == "CLOCK" and len(piece) > 1 and piece[1].type == "NUMBER"
+        for name, declared in _declared_by(piece):
+            names.setdefault(name, declared)
+    return DeclaredNames(names, has_clock, has_imports)
+
+
+def _declared_by(piece: Sequence[Token]) -> Iterator[tuple[str, DeclaredName]]:
+    """Yield the names that a declaration declares."""
+    head = piece[0]
+    if head.type == "ENTITY":
+        for token in piece[1:]:
+            if token.type == "NAME":
+                yield token.text, DeclaredName(head.text)
+    if head.type not in _WITH_PARAMETERS or len(piece) < 2 or piece[1].type != "NAME":
+        return
+    at = 2
+    if at < len(piece) and piece[at].type == "LPAR":
+        at = _closing(piece, at) + 1
+        for before, token in pairwise(piece[2:at]):
+            if before.type in ("LPAR", "COMMA") and token.type == "NAME":
+                yield token.text, DeclaredName("parameter")
+    if head.type not in _TYPED:
+        yield piece[1].text, DeclaredName(head.text)
+    elif at + 1 < len(piece) and piece[at].type == "COLON" and piece[at + 1].type == "LPAR":
+        values = tuple(token.text for token in piece[at + 2 : _closing(piece, at + 1)] if token.type == "NAME")
+        yield piece[1].text, DeclaredName(head.text, "enum", values)
+    else:
+        has_type = at + 1 < len(piece) and piece[at].type == "COLON"
+        yield piece[1].text, DeclaredName(head.text, piece[at + 1].text if has_type else "number")
+
+
+def _closing(piece: Sequence[Token], opening: int) -> int:
+    """Return the index of the next closing bracket; the last index if there is none."""
+    return next((at for at in range(opening, len(piece)) if piece[at].type == "RPAR"), len(piece) - 1)
