@@ -34,15 +34,15 @@ def _fspa(clause: str) -> Fspa:
         ("keep once within 5 s alarm implies seen", "Whenever alarm in the last 5 s, have seen at that step."),
         (
             "keep seen implies historically for 20 steps alarm",
-            "Whenever seen, have alarm for the last 2 s at that step.",
+            "Whenever seen, have alarm for the last 2 s.",
         ),
         ("keep begins seen implies alarm", "Whenever seen begins, have alarm at that step."),
         ("reach ends near(e) and alarm", "Reach near(e) ends and alarm."),
-        # These keep their names: they are about larger formulas, or read more than one register.
-        ("reach once seen", "Reach once seen."),
-        ("keep times(seen and alarm) <= 3", "Avoid times(seen & alarm) > 3 throughout."),
-        ("keep times(not seen) <= 3", "Avoid times(!seen) > 3 throughout."),
-        ("keep hp >= previous(hp)", "Avoid previous(hp) > hp throughout."),
+        ("reach once seen", "Reach seen now or before."),
+        ("keep times(seen and alarm) <= 3", "Keep (seen and alarm) at most 3 times throughout."),
+        ("keep times(not seen) <= 3", "Keep not seen at most 3 times throughout."),
+        ("keep hp >= previous(hp)", "Keep hp >= the previous hp throughout."),
+        # These keep their names: they are sums.
         ("keep times(seen, 9) + times(alarm, 9) <= 3", "Avoid times(seen, 9) + times(alarm, 9) > 3 throughout."),
     ],
 )
@@ -57,3 +57,137 @@ def test_labels_use_the_same_words_and_other_notations_the_names() -> None:
     fspa = _fspa("reach seen then time_holding(near(e)) >= 3 s")
     assert label_text(fspa, 1) == "Reach near(e) for at least 3 s."
     assert label_text(fspa, 1, "ascii") == "F !(time_holding(near(e)) < 3)"
+
+
+GAME = """
+clock 10 Hz
+signal seen: bool
+signal hidden: bool
+signal alarm: bool
+signal damage: bool
+signal boss_door: bool
+signal double_jump: bool
+entity door, key, vault
+entity g1, g2
+entity guards = g1, g2
+signal near(x: entity): bool
+signal has(x: entity): bool
+signal answers(x: entity): bool
+signal health: int in [0, 10]
+signal phase: int in [0, 5]
+signal mode(g: entity): (idle, alert, chase)
+signal coins in [0, 100]
+signal distance(x: entity): length in [0 m, 50 m]
+"""
+SENTENCES = [
+    ("keep within 5 s of alarm, hidden", "Whenever alarm, reach hidden within 5 s."),
+    ("keep within 60 s of alarm, hidden", "Whenever alarm, reach hidden within 60 s."),
+    ("keep near(vault) implies once has(key)", "Whenever near(vault), have has(key) now or before."),
+    ("keep times(seen and not hidden) <= 3", "Keep (seen and not hidden) at most 3 times throughout."),
+    ("reach times(seen or alarm) >= 2", "Reach (seen or alarm) at least twice."),
+    ("reach times(seen) == 3", "Reach seen exactly 3 times."),
+    ("keep times(seen) != 2", "Keep seen not exactly twice throughout."),
+    ("keep times(seen) == 0", "Keep seen 0 times so far throughout."),
+    ("keep once within 5 s alarm implies hidden", "Whenever alarm in the last 5 s, have hidden at that step."),
+    (
+        "keep once within 5 s (alarm and seen) implies hidden",
+        "Whenever (alarm and seen) in the last 5 s, have hidden at that step.",
+    ),
+    ("keep coins >= previous(coins)", "Keep coins >= the previous coins throughout."),
+    ("reach time_holding(near(vault) and not seen) >= 3 s", "Reach (near(vault) and not seen) for at least 3 s."),
+    (
+        "keep begins damage implies weak_next always for 10 s not damage",
+        "Whenever damage begins, avoid damage for the next 10 s.",
+    ),
+    (
+        "keep begins damage implies next always for 10 s not begins damage",
+        "Whenever damage begins, avoid the start of damage for the next 10 s; "
+        "and whenever damage begins, go on for 1 more step.",
+    ),
+    (
+        "keep alarm implies all g in guards: eventually within 50 s answers(g)",
+        "Whenever alarm, reach answers(g1) within 50 s; and whenever alarm, reach answers(g2) within 50 s.",
+    ),
+    ("keep alarm implies always for 20 s not seen", "Whenever alarm, avoid seen for 20 s."),
+    (
+        "keep all g in guards: mode(g) is not chase",
+        "Avoid mode(g1) is chase throughout, and avoid mode(g2) is chase throughout.",
+    ),
+    (
+        "keep mode(g1) is chase implies eventually within 20 s mode(g1) is idle",
+        "Whenever mode(g1) is chase, reach mode(g1) is idle within 20 s.",
+    ),
+    (
+        "reach phase == 1 then phase == 2 then within 30 s phase == 3",
+        "Reach phase == 1, then phase == 2, then phase == 3 within 30 s after phase == 2.",
+    ),
+    (
+        "keep previous(phase) == 3 implies phase != 0",
+        "Whenever the previous phase == 3, avoid phase == 0 at that step.",
+    ),
+    ("keep historically for 3 s hidden implies not seen", "Whenever hidden for the last 3 s, avoid seen at that step."),
+    ("reach near(key) then within 20 s near(door)", "Reach near(key), then near(door) within 20 s after near(key)."),
+    ("require always for 20 s hidden", "Keep hidden for 20 s."),
+    ("require eventually within 30 s near(door)", "Reach near(door) within 30 s."),
+    ("keep time_since(alarm) >= 5 s or hidden", "Keep at least 5 s after alarm or hidden throughout."),
+    ("keep time_since(alarm) < 5 s implies hidden", "Whenever less than 5 s after alarm, have hidden at that step."),
+    ("keep time_since(not hidden) > 2 s", "Keep more than 2 s after not hidden throughout."),
+    ("keep ends alarm implies hidden", "Whenever alarm ends, have hidden at that step."),
+    ("keep hidden since alarm", "Keep hidden since alarm throughout."),
+    ("keep alarm implies hidden since seen", "Whenever alarm, have hidden since seen."),
+    ("keep previously alarm implies hidden", "Whenever alarm at the step before, have hidden at that step."),
+    (
+        "keep previously (alarm and seen) implies hidden",
+        "Whenever (alarm and seen) at the step before, have hidden at that step.",
+    ),
+    ("keep begins (alarm and seen) implies hidden", "Whenever (alarm and seen) begins, have hidden at that step."),
+    ("keep historically (alarm implies hidden)", "Keep (alarm implies hidden) all along throughout."),
+    ("keep near(door) implies times(has(key)) >= 1", "Whenever near(door), have has(key) at least once."),
+    ("keep alarm implies next eventually within 20 s hidden", "Whenever alarm, reach hidden within the next 20.1 s."),
+    ("keep initial(coins) <= coins", "Keep coins >= the initial coins throughout."),
+    ("keep seen implies time_holding(alarm) < 3 s", "Whenever seen, have alarm for less than 3 s."),
+    ("keep seen implies not once within 20 steps alarm", "Whenever seen, avoid alarm in the last 2 s."),
+    ("keep seen implies once within 1 s alarm", "Whenever seen, have alarm in the last 1 s."),
+    (
+        "keep begins seen implies weak_next always for 10 s not begins seen",
+        "Whenever seen begins, avoid the start of seen for the next 10 s.",
+    ),
+    (
+        "reach begins seen then within 10 s begins seen",
+        "Reach seen begins, then the start of seen within 10 s after seen begins.",
+    ),
+    ("require once alarm until seen", "Reach seen, keeping alarm now or before until then."),
+    (
+        "keep alarm and times(seen) < 3 implies hidden or mode(g2) is alert",
+        "Whenever alarm and seen less than 3 times, have hidden or mode(g2) is alert at that step.",
+    ),
+]
+"""Specs with memory, deadlines, counts, windows and enums, each with its sentence."""
+
+
+@pytest.mark.parametrize(("clause", "english"), SENTENCES)
+def test_a_designer_can_read_the_sentence(clause: str, english: str) -> None:
+    (fspa,) = compile_text(f"{GAME}spec s {{ {clause} }}")
+    assert formula_text(fspa) == english
+    (text,) = emit("json", fspa).values()
+    assert formula_text(read_artefact(SourceFile("s.fspa.json", str(text)))) == english
+
+
+def test_times_are_in_seconds_where_these_are_whole_or_half_ones() -> None:
+    text = "signal seen: bool\nspec s = F[0,{}] seen"
+    sentences = []
+    for clock in ("", "clock 10 Hz\n", "clock 60 Hz\n"):
+        for steps in (3, 5, 30):
+            (fspa,) = compile_text(clock + text.format(steps))
+            sentences.append(formula_text(fspa).removeprefix("Reach seen within "))
+    assert sentences == [
+        "3 steps.",
+        "5 steps.",
+        "30 steps.",
+        "3 steps.",
+        "0.5 s.",
+        "3 s.",
+        "3 steps.",
+        "5 steps.",
+        "0.5 s.",
+    ]

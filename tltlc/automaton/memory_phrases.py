@@ -1,30 +1,29 @@
 """Say in words what atoms remember: ``times(seen) > 3`` is "seen more than 3 times".
 
 The words are chosen by the kind of the register that an atom reads, not by the name of the atom. An
-atom without words of its own, such as ``once seen``, keeps its name.
+atom without words of its own, such as that of a sum of counts, keeps its name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Final, NamedTuple, cast
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, cast
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.core.names import ComparisonName
-from tltlc.expression.tree import (
-    AtomValue,
-    Before,
-    Condition,
-    Const,
-    Expression,
-    Op,
-    ParamValue,
-    SignalValue,
-    When,
-    nodes,
+from tltlc.automaton.remembered_formulas import (
+    Answer,
+    broken_rule,
+    counted,
+    from_robustness,
+    opposite,
+    remembered,
+    waited_for,
 )
-from tltlc.logic.formula import Formula, and_, atom, eventually, not_, or_, rebuild
-from tltlc.logic.text.phrases import is_state, object_phrase
+from tltlc.automaton.value_phrases import VALUES, Phrase, value_phrase
+from tltlc.core.names import ComparisonName, SpokenName
+from tltlc.expression.tree import Before, Const, Expression, Op, ParamValue, SignalValue, When, nodes
+from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
+from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
 _COMPARED: Final = {
@@ -67,17 +66,14 @@ _ALWAYS: Final[Mapping[str, tuple[str, str]]] = {
     "due": ("{0} is due", "{0} is not due"),
 }
 """The same for an answer that is due at all times, which has no event before it."""
-_FOLLOWED: Final = ("passed", "lasted", "over", "recent", "lately")
-"""The base names of the timers that say until when something must happen or last, without words of their own then."""
-_FOLLOWING: Final = ("samples", "elapsed", "time_since", "age")
+_UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
+"""The bases of the names of timers that say until when something must happen, or how long it must last."""
+_COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
-
-
-class Phrase(NamedTuple):
-    """What is said where an atom holds, and where it does not; None if that is said with `not`."""
-
-    holds: str
-    fails: str | None = None
+_FROM_START: Final = ("not {1} in the first {0}", "{1} for the first {0}")
+"""The same for a rule that applies from the first sample on."""
+_TIMED: Final = ("passed", "lasted", "lately", "recent", "late", "due", "breach", "held", "over")
+"""The bases of the names of timers."""
 
 
 def spoken(formula: Formula, fspa: Fspa) -> Formula:
@@ -85,188 +81,301 @@ def spoken(formula: Formula, fspa: Fspa) -> Formula:
 
     No automaton has atoms with such names, so the result is only good for printing.
     """
-    if not fspa.registers:
-        return formula
-    phrases, before, passed = _phrases(fspa), _previous_atoms(fspa), _passed(fspa)
-    done: dict[Formula, Formula] = {}
-    for node in formula.bottom_up():
-        done[node] = (
-            _turning(node, before, done)
-            or _in_time(node, passed, done)
-            or _literal(node, phrases)
-            or rebuild(node, tuple(done[argument] for argument in node.args))
-        )
-    return done[formula]
+    return _Speaker(fspa).spoken(formula) if fspa.registers else formula
 
 
-def _literal(node: Formula, phrases: Mapping[str, Phrase]) -> Formula | None:
-    if node.op == "atom" and node.name in phrases:
-        return atom(phrases[node.name].holds)
-    if node.op == "not" and node.args[0].op == "atom":
-        fails = phrases[node.args[0].name].fails if node.args[0].name in phrases else None
-        return None if fails is None else atom(fails)
-    return None
+class _Speaker:
+    """Says the formulas of one automaton in words."""
 
+    def __init__(self, fspa: Fspa) -> None:
+        self._clock_s = fspa.clock_s
+        self._registers = {register.name: register for register in fspa.registers}
+        self._atoms = {item.name: item for item in fspa.atoms}
+        self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
+        self._phrases: dict[str, Phrase | None] = {}
+        self._passed = self._passed_times()
 
-def _turning(node: Formula, before: Mapping[str, str], done: Mapping[Formula, Formula]) -> Formula | None:
-    """Return ``seen & !previously seen & x`` as "seen begins" and x, and the reverse as "seen ends"; else None."""
-    if node.op != "and":
-        return None
-    parts = list(node.args)
-    found: list[Formula] = []
-    for name, operand in before.items():
-        for word, pair in (
-            ("begins", (atom(operand), not_(atom(name)))),
-            ("ends", (not_(atom(operand)), atom(name))),
-        ):
-            if all(part in parts for part in pair):
-                parts = [part for part in parts if part not in pair]
-                found.append(atom(f"{operand} {word}"))
-    if not found:
-        return None
-    rest = [done[part] for part in parts]
-    return found[0] if len(found) + len(rest) == 1 else rebuild(node, (*found, *rest))
+    def spoken(self, formula: Formula) -> Formula:
+        """Return a formula with phrases in place of the names of atoms."""
+        done: dict[Formula, Formula] = {}
+        for node in formula.bottom_up():
+            done[node] = (
+                self._answers(node, done)
+                or self._turning(node, done)
+                or self._rule(node)
+                or self._in_time(node, done)
+                or self._literal(node)
+                or rebuild(node, tuple(done[operand] for operand in node.args))
+            )
+        return done[formula]
 
+    # --- formulas ---------------------------------------------------------------------------------
 
-def _in_time(node: Formula, passed: Mapping[str, str], done: Mapping[Formula, Formula]) -> Formula | None:
-    """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
-
-    So are ``recent(5 s, a) U (recent(5 s, a) & b)`` and ``lasted(5 s) R (lasted(5 s) | b)``. Return None
-    for any other formula. ``passed`` has the times of the atoms of these kinds.
-    """
-    if node.op not in ("U", "R"):
-        return None
-    timer, goal = node.args
-    if node.op == "U":
-        if (timer.args[0] if timer.op == "not" else timer).name not in passed:
+    def _literal(self, node: Formula) -> Formula | None:
+        negated = node.op == "not" and node.args[0].op == "atom"
+        words = self._phrase((node.args[0] if negated else node).name) if negated or node.op == "atom" else None
+        if words is None:
             return None
-        parts = tuple(part for part in (goal.args if goal.op == "and" else (goal,)) if part is not timer)
-        present = [part for part in parts if is_state(part)]
-        if not present:
+        if negated:
+            return None if words.fails is None else atom(words.fails)
+        return atom(words.holds)
+
+    def _turning(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
+        """Return ``seen & !previously seen & x`` as "seen begins" and x, and the reverse as "seen ends"; else None."""
+        if node.op != "and":
             return None
-        text = object_phrase(and_(*(done[part] for part in present)))
-        said = atom(f"{text} within {passed[(timer.args[0] if timer.op == 'not' else timer).name]}")
-        return eventually(and_(said, *(done[part] for part in parts if part not in present)))
-    kept = [part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer]
-    if timer.name not in passed or not all(map(is_state, kept)):
-        return None
-    return atom(f"{object_phrase(or_(*(done[part] for part in kept)))} for {passed[timer.name]}")
-
-
-def _passed(fspa: Fspa) -> dict[str, str]:
-    """Return the time of each atom that says that a time has passed, such as "5 s after a"."""
-    kinds = {register.name: register.kind for register in fspa.registers}
-    return {
-        each.name: " after ".join(each.arguments)
-        for each in fspa.atoms
-        if each.base in _FOLLOWED and each.arguments
-        if any(kinds.get(name) in _FOLLOWING for name in _read(each.expression))
-    }
-
-
-# --- phrases ----------------------------------------------------------------------------------------
-
-
-def _phrases(fspa: Fspa) -> dict[str, Phrase]:
-    registers = {register.name: register for register in fspa.registers}
-    phrases: dict[str, Phrase] = {}
-    for each in fspa.atoms:
-        read = [registers[name] for name in _read(each.expression) if name in registers]
-        phrase = _phrase(each, read[0], fspa.clock_s) if len(read) == 1 else None
-        if phrase is not None:
-            phrases[each.name] = phrase
-    return phrases
-
-
-def _read(expression: Expression) -> set[str]:
-    return {node.name for node in nodes(expression) if isinstance(node, (SignalValue, ParamValue))}
-
-
-def _phrase(each: Atom, register: Register, clock_s: float | None) -> Phrase | None:
-    """Return the phrase of an atom that reads one register, and nothing else; None if it has none."""
-    timer = _TIMERS.get(register.kind, {}).get(each.base)
-    if register.kind == "breach" and len(each.arguments) == 2:
-        return Phrase(
-            "not {1} in the first {0}".format(*each.arguments), "{1} for the first {0}".format(*each.arguments)
-        )
-    if timer is not None and each.arguments:
-        missing = register.kind in ("waiting", "due") and len(each.arguments) < 2 + (each.base == "late")
-        return Phrase(*(text.format(*each.arguments) for text in (_ALWAYS[each.base] if missing else timer)))
-    operand = _operand(register)
-    if operand is None or len(_read(each.expression)) > 1:
-        return None
-    name, holds = operand
-    if isinstance(each.base, ComparisonName):
-        if each.base.left != register.name or not holds:
+        parts = list(node.args)
+        edges: list[Formula] = []
+        for operand, word, members in self._edges():
+            if all(part in parts for part in members):
+                parts = [part for part in parts if part not in members]
+                edges.append(atom(f"{self._object(operand)} {word}"))
+        if not edges:
             return None
-        sentence = _count if register.kind == "times" else _time
-        return Phrase(
-            sentence(register, name, each.base.operator, each.base.right),
-            sentence(register, name, each.base.opposite_operator, each.base.right),
-        )
-    border = _border(each.expression)
-    if register.kind != "time_since" or border is None:
-        return None
-    # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
-    steps = border - 0.5 if holds else border + 0.5
-    time = f"{steps:g} steps" if clock_s is None else f"{round(steps * clock_s, 6):g} s"
-    if register.unit == "s":
-        time = f"{border:g} s"
-    return Phrase(f"{name} in the last {time}" if holds else f"{name} for the last {time}")
+        rest = [done[part] for part in parts]
+        return edges[0] if len(edges) + len(rest) == 1 else rebuild(node, (*edges, *rest))
+
+    def _answers(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
+        """Return ``G !late & G(due -> X true)`` as "whenever alarm, reach hidden within 5 s", else None.
+
+        Other parts of the conjunction are kept.
+        """
+        if node.op != "and":
+            return None
+        late = {part: item for part in node.args if (item := self._ruled_out(part, "late")) is not None}
+        due = {part: item for part in node.args if (item := self._going_on(part)) is not None}
+        answers: dict[Formula, Formula] = {}
+        for part, item in late.items():
+            answer = self._answer(item)
+            ends = [other for other, owed in due.items() if answer is not None and self._answer(owed) == answer]
+            if answer is None or answer.request is TRUE or not ends:
+                continue
+            said = SpokenName(f"{self._noun(answer.goal)} within {item.arguments[0]}", "reach")
+            answers[part] = always(implies(self.spoken(answer.request), atom(said)))
+            answers.update(dict.fromkeys(ends, TRUE))
+        if not answers:
+            return None
+        parts = [answers.get(part) or done[part] for part in node.args]
+        return and_(*(part for part in parts if part is not TRUE))
+
+    def _rule(self, node: Formula) -> Formula | None:
+        """Return ``G !breach`` as "whenever alarm, avoid seen for 5 s", else None."""
+        item = self._ruled_out(node, "breach")
+        broken = None if item is None else broken_rule(self._register_of(item), self._registers)
+        if item is None or broken is None or self._is_timed(broken[0]):
+            return None
+        event, rule = broken
+        return always(implies(self.spoken(event), self._lasting(rule, f"for {item.arguments[0]}")))
+
+    def _lasting(self, rule: Formula, time: str) -> Formula:
+        """Return "keep hidden for 5 s", or "avoid seen for 5 s"."""
+        if rule.op == "not":
+            return not_(atom(SpokenName(f"{self._noun(rule.args[0])} {time}")))
+        return atom(SpokenName(f"{self._noun(rule)} {time}", "keep"))
+
+    def _in_time(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
+        """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
+
+        On a clock that varies, these are ``recent(5 s, a) U (recent(5 s, a) & b)`` and
+        ``lasted(5 s) R (lasted(5 s) | b)``. Return None for any other formula.
+        """
+        if node.op not in ("U", "R"):
+            return None
+        timer, goal = node.args
+        if node.op == "U":
+            passed = (timer.args[0] if timer.op == "not" else timer).name
+            if passed not in self._passed:
+                return None
+            parts = tuple(part for part in (goal.args if goal.op == "and" else (goal,)) if part is not timer)
+            present = [part for part in parts if is_state(part)]
+            if not present:
+                return None
+            state = and_(*present)
+            said = self.spoken(state)
+            words = self._noun(state) if said.op == "atom" else object_phrase(said)
+            text = f"{words} within {self._passed[passed]}"
+            return eventually(and_(atom(text), *(done[part] for part in parts if part not in present)))
+        kept = or_(*(part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer))
+        if timer.name not in self._passed or not is_state(kept):
+            return None
+        return self._lasting(kept, f"for {self._passed[timer.name]}")
+
+    def _ruled_out(self, node: Formula, base: str) -> Atom | None:
+        """Return the timer with this base that ``G !timer`` rules out, else None."""
+        is_rule = node.op == "G" and node.args[0].op == "not"
+        item = self._atoms.get(node.args[0].args[0].name) if is_rule else None
+        return item if item is not None and item.base == base else None
+
+    def _going_on(self, node: Formula) -> Atom | None:
+        """Return the answer that is due in ``G(due -> X true)``, else None."""
+        if node.op != "G" or node.args[0].op != "implies":
+            return None
+        item, end = self._atoms.get(node.args[0].args[0].name), node.args[0].args[1]
+        return item if item is not None and item.base == "due" and (end.op, *end.args) == ("X", TRUE) else None
+
+    # --- atoms ------------------------------------------------------------------------------------
+
+    def _phrase(self, name: str) -> Phrase | None:
+        """Return the phrase of an atom; None if it has none."""
+        if name not in self._phrases:
+            item = self._atoms.get(name)
+            read = [] if item is None else [self._registers[part] for part in _read(item) if part in self._registers]
+            self._phrases[name] = self._phrase_of(item, read[0]) if item is not None and len(read) == 1 else None
+        return self._phrases[name]
+
+    def _phrase_of(self, item: Atom, register: Register) -> Phrase | None:
+        """Return the phrase of an atom that reads one register; None if it has none."""
+        timer = _TIMERS.get(register.kind, {}).get(item.base)
+        if timer is not None and item.arguments:
+            return self._timer_phrase(item, register, timer)
+        if register.kind == "last":
+            operand = remembered(register.name, self._registers) if len(_read(item)) == 1 else None
+            return None if operand is None else Phrase(phrase(self.spoken(operand)))
+        if register.kind in VALUES:
+            return value_phrase(item.base, register)
+        if len(_read(item)) > 1:
+            return None
+        if register.kind in ("once", "historically", "since", "previously"):
+            return self._past_phrase(item, register)
+        operand = counted(register, self._registers)
+        if operand is None:
+            return None
+        if isinstance(item.base, ComparisonName):
+            if item.base.left != register.name:
+                return None
+            sentence = self._count if register.kind == "times" else self._time
+            holds, fails = (
+                sentence(register, operand, operator, item.base.right)
+                for operator in (item.base.operator, item.base.opposite_operator)
+            )
+            return Phrase(SpokenName(holds), SpokenName(fails))
+        border = _border(item.expression)
+        if register.kind != "time_since" or border is None:
+            return None
+        # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
+        holds_lately = item.base.startswith("once")
+        steps = border - 0.5 if holds_lately else border + 0.5
+        time = f"{steps:g} steps" if self._clock_s is None else f"{round(steps * self._clock_s, 6):g} s"
+        if register.unit == "s":
+            time = f"{border:g} s"
+        if holds_lately:
+            return Phrase(SpokenName(f"{self._object(operand)} in the last {time}"))
+        return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"))
+
+    def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
+        arguments = self._arguments(item, register)
+        if register.kind == "breach" and len(arguments) == 2:
+            texts = _FROM_START
+        elif register.kind in ("waiting", "due") and len(arguments) < 2 + (item.base == "late"):
+            texts = _ALWAYS[item.base]
+        return Phrase(*(text.format(*arguments) for text in texts))
+
+    def _arguments(self, item: Atom, register: Register) -> Sequence[str]:
+        """Return the arguments of a timer in words."""
+        formulas: tuple[Formula, ...] | None = None
+        if register.kind in ("waiting", "due"):
+            answer = waited_for(register)
+            if answer is not None:
+                formulas = (answer.goal,) if answer.request is TRUE else (answer.request, answer.goal)
+        elif register.kind == "breach":
+            formulas = broken_rule(register, self._registers)
+        elif (operand := counted(register, self._registers)) is not None:
+            formulas = (operand,)
+        first = item.base != "due"
+        written = item.arguments[first:]
+        if formulas is None or len(formulas) != len(written) or any(map(self._is_timed, formulas)):
+            return item.arguments
+        words = [self._object(formula) for formula in formulas]
+        if item.base == "due" and waited_for(register).strict:  # type: ignore[union-attr]
+            words[-1] = f"next {words[-1]}"
+        return (*item.arguments[:first], *words)
+
+    def _past_phrase(self, item: Atom, register: Register) -> Phrase | None:
+        """Return the phrase of ``once p``, ``historically p``, ``p since q`` or ``previously p``."""
+        if item.name in self._before:
+            return Phrase(SpokenName(f"{self._object(self._before[item.name])} at the step before"))
+        if not isinstance(register.update, Op):
+            return None
+        parts = register.update.args
+        operands = parts if register.kind != "since" or not isinstance(parts[1], Op) else (parts[1].args[0], parts[0])
+        formulas = [from_robustness(part) for part in operands if not isinstance(part, Before)]
+        words = [self._object(formula) for formula in formulas if formula is not None]
+        if len(words) != len(formulas):
+            return None
+        form = {"once": "{0} now or before", "historically": "{0} all along", "since": "{0} since {1}"}[register.kind]
+        return Phrase(SpokenName(form.format(*words)))
+
+    def _count(self, _: Register, operand: Formula, operator: str, number: str) -> str:
+        if (operator, number) in ((">", "0"), (">=", "1")):
+            return f"{self._object(operand)} at least once"
+        if (operator, number) in (("<=", "0"), ("<", "1"), ("==", "0")):
+            return f"{self._object(operand)} 0 times so far"
+        return f"{self._object(operand)} {_COMPARED[operator]} {_TIMES.get(number, f'{number} times')}"
+
+    def _time(self, register: Register, operand: Formula, operator: str, number: str) -> str:
+        length = f"{_COMPARED[operator]} {number} s"
+        words = self._object(operand)
+        return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
+
+    def _object(self, state: Formula) -> str:
+        """Return a formula without temporal operators as a phrase, in brackets unless it is short."""
+        said = self.spoken(state)
+        return phrase(said) if is_literal(said) else bracketed_phrase(said)
+
+    def _noun(self, state: Formula) -> str:
+        """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""
+        for operand, word, members in self._edges():
+            if state.op == "and" and set(state.args) == set(members):
+                return f"the {'start' if word == 'begins' else 'end'} of {self._object(operand)}"
+        return self._object(state)
+
+    def _edges(self) -> Iterator[tuple[Formula, str, tuple[Formula, ...]]]:
+        """Yield each formula that is remembered, "begins" or "ends", and the parts of a conjunction that say so."""
+        for name, operand in self._before.items():
+            now = operand.args if operand.op == "and" else (operand,)
+            yield operand, "begins", (*now, not_(atom(name)))
+            yield operand, "ends", (opposite(operand), atom(name))
+
+    # --- registers --------------------------------------------------------------------------------
+
+    def _register_of(self, item: Atom) -> Register:
+        """Return the register that a timer reads."""
+        return next(self._registers[name] for name in _read(item) if name in self._registers)
+
+    def _answer(self, item: Atom) -> Answer | None:
+        return waited_for(self._register_of(item))
+
+    def _is_timed(self, formula: Formula) -> bool:
+        """Whether a formula reads a timer, as the later goals of a chain do."""
+        return any(name in self._atoms and self._atoms[name].base in _TIMED for name in formula.atoms())
+
+    def _previous_operand(self, name: str) -> Formula | None:
+        """Return the formula p of an atom ``previously p``; None for any other atom."""
+        read = self._atoms[name].expression
+        register = self._registers.get(read.name) if isinstance(read, SignalValue) else None
+        if register is None or register.kind != "previously" or not isinstance(register.update, Before):
+            return None
+        return remembered(register.update.name, self._registers)
+
+    def _passed_times(self) -> dict[str, str]:
+        """Return the time of each atom that says that a time has passed, such as "5 s after a"."""
+        times: dict[str, str] = {}
+        for item in self._atoms.values():
+            kinds = {self._registers[name].kind for name in _read(item) if name in self._registers}
+            if item.base in _UNTIL and item.arguments and kinds & _COUNTING:
+                times[item.name] = " after ".join(self._arguments(item, self._register_of(item)))
+        return times
 
 
-def _count(_: Register, name: str, operator: str, number: str) -> str:
-    return f"{name} {_COMPARED[operator]} {_TIMES.get(number, f'{number} times')}"
-
-
-def _time(register: Register, name: str, operator: str, number: str) -> str:
-    length = f"{_COMPARED[operator]} {number} s"
-    return f"{length} after {name}" if register.kind == "time_since" else f"{name} for {length}"
-
-
-def _operand(register: Register) -> tuple[str, bool] | None:
-    """Return the atom that a count or time is about, and whether it is about the atom, not its negation.
-
-    Return None for other registers, and for a count or time of a larger formula.
-    """
-    if register.kind not in ("times", "time_since", "time_holding"):
-        return None
-    update = register.update.args[0] if isinstance(register.update, Op) else register.update
-    if not isinstance(update, When):
-        return None
-    condition = update.cases[0][0]
-    if register.kind != "time_since":
-        # The second part is about the sample before.
-        (first, _) = condition.args
-        condition = first if isinstance(first, Condition) else condition
-    holds = condition.op != "not"
-    inner = condition if holds else condition.args[0]
-    if isinstance(inner, Condition) and inner.op == ">" and isinstance(inner.args[0], AtomValue):
-        return inner.args[0].name, holds
-    return None
+def _read(item: Atom) -> set[str]:
+    return {node.name for node in nodes(item.expression) if isinstance(node, (SignalValue, ParamValue))}
 
 
 def _border(expression: Expression) -> float | None:
-    """Return the number of steps or seconds by which the margin of a window is divided; None for other expressions."""
+    """Return the number of steps by which the margin of a window is divided; None for other expressions."""
     if isinstance(expression, When):
         # The margin of a window in seconds is negated, so that its border belongs to it.
         (margin, _) = expression.cases[0][0].args
         expression = cast("Expression", margin)
     is_scaled = isinstance(expression, Op) and expression.op == "/" and isinstance(expression.args[1], Const)
     return expression.args[1].value if is_scaled else None  # type: ignore[union-attr]
-
-
-def _previous_atoms(fspa: Fspa) -> dict[str, str]:
-    """Map the names of atoms ``previously p`` to p, where p is an atom."""
-    updates = {register.name: register.update for register in fspa.registers}
-    names: dict[str, str] = {}
-    for register in fspa.registers:
-        if register.kind == "previously" and isinstance(register.update, Before):
-            kept = updates[register.update.name]
-            if isinstance(kept, AtomValue):
-                names[register.name] = kept.name
-    return {
-        each.name: names[read.name]
-        for each in fspa.atoms
-        if isinstance(read := each.expression, SignalValue) and read.name in names
-    }

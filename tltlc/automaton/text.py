@@ -8,7 +8,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa, Guard, Notation, Text
 from tltlc.automaton.memory_phrases import spoken
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.text.counts import NUMBERS, CountPrinter, foreign_range_text, range_text
+from tltlc.logic.text.counts import NUMBERS, CountPrinter, TimePrinter, foreign_range_text, range_text
 from tltlc.logic.text.phrases import with_opposites
 from tltlc.logic.text.printer import ascii_text, english_text, unicode_text, words_text
 
@@ -19,9 +19,16 @@ _ENDS: Final = "The trace must end here."
 
 
 def formula_text(fspa: Fspa, notation: Notation = "english") -> str:
-    """Return the formula of an automaton in a notation."""
-    formula = _in_words(fspa.formula, fspa) if notation == "english" else fspa.formula
-    return _text(formula, notation, endless=fspa.semantics == "infinite")
+    """Return the formula of an automaton in a notation. In English, times are in seconds if there is a clock."""
+    formula, endless = fspa.formula, fspa.semantics == "infinite"
+    if notation != "english" or isinstance(formula, Text):
+        return _text(formula, notation, endless=endless)
+    return _write(spoken(formula, fspa), notation, times_of(fspa), endless=endless)
+
+
+def times_of(fspa: Fspa) -> CountPrinter:
+    """Return the printer of the times of bounds: in seconds if the automaton has a clock."""
+    return NUMBERS if fspa.clock_s is None else TimePrinter(fspa.clock_s)
 
 
 def label_text(fspa: Fspa, state: int, notation: Notation = "english") -> str:

@@ -44,6 +44,25 @@ class ComparisonName(str):
         return self.left, self.operator, self.right
 
 
+class SpokenName(str):
+    """The name of an atom for people, such as "hidden within 5 s": a phrase that says when it is about.
+
+    ``verb`` asks for it: "reach hidden within 5 s", "keep hidden for 5 s". It is empty where any verb fits.
+    """
+
+    __slots__ = ("verb",)
+    verb: str
+
+    def __new__(cls, text: str, verb: str = "") -> SpokenName:
+        """Make the name from its text and its verb."""
+        name = super().__new__(cls, text)
+        name.verb = verb
+        return name
+
+    def __getnewargs__(self) -> tuple[str, str]:  # type: ignore[override]
+        return str(self), self.verb
+
+
 def full_name(base: str, arguments: tuple[str, ...]) -> str:
     """Join a base and its arguments to a name: ``near(s1, s2)``, or ``alive`` without arguments."""
     return f"{base}({', '.join(arguments)})" if arguments else base

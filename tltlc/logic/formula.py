@@ -11,7 +11,7 @@ from collections.abc import Container, Iterable, Iterator
 from typing import Final, Literal
 from weakref import WeakValueDictionary
 
-from tltlc.core.names import ComparisonName
+from tltlc.core.names import ComparisonName, SpokenName
 
 FormulaOp = Literal[
     "true", "false", "atom", "not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M", "F[]", "G[]"
@@ -170,10 +170,10 @@ def atom(name: str) -> Formula:
     """Return the atom called ``name``.
 
     If this is a :class:`~tltlc.core.names.ComparisonName`, the negation of the atom is printed as a
-    comparison.
+    comparison; a :class:`~tltlc.core.names.SpokenName` may have its own verb.
     """
     node = _intern("atom", (), name)
-    if isinstance(name, ComparisonName):
+    if isinstance(name, (ComparisonName, SpokenName)):
         node.name = name  # The atom may exist already, under a plain text.
     return node
 

@@ -27,8 +27,26 @@ class CountPrinter:
         """Return the text of a count with its noun: ``1 step``, ``9 steps``."""
         return f"{self.number(count)} step{'s' * (count > 1)}"
 
+    def time(self, count: int) -> str:
+        """Return the text of a count that is the time of a bound, as in "within 9 steps"."""
+        return self.steps(count)
+
 
 NUMBERS: Final = CountPrinter()
+
+
+class TimePrinter(CountPrinter):
+    """Prints the times of bounds in seconds if they are whole or half ones; ``clock_s`` is the length of a step."""
+
+    def __init__(self, clock_s: float) -> None:
+        self._clock_s = clock_s
+
+    def time(self, count: int) -> str:
+        """Return the text of a time: ``5 s``, or ``9 steps``."""
+        halves = round(2 * count * self._clock_s)
+        # On a fast clock, a rounded time would not tell the steps apart.
+        is_exact = abs(halves / 2 / self._clock_s - count) < 1e-3
+        return f"{halves / 2:g} s" if is_exact else self.steps(count)
 
 
 class _CountCollector(CountPrinter):

@@ -12,7 +12,7 @@ from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.notation import ASCII, write
-from tltlc.logic.text.phrases import bracketed_phrase, imperative, is_literal, is_state, object_phrase, phrase
+from tltlc.logic.text.phrases import bracketed_phrase, has_time, imperative, is_literal, is_state, object_phrase, phrase
 
 _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
 """Ranks of English clauses, which decide where a clause needs brackets to be read correctly.
@@ -65,19 +65,21 @@ def english_text(formula: Formula, *, endless: bool = False, counts: CountPrinte
     return f"{text[0].upper()}{text[1:]}."
 
 
-def clause_text(formula: Formula, *, endless: bool = False) -> str:
+def clause_text(formula: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> str:
     """Return a formula as an English clause: ``keep alive throughout`` for ``G alive``.
 
     The formula must not be the constant true or false.
     ``endless`` says that the clause is about traces that never end.
     """
-    return _clause(formula, "now", _SentenceContext(_DEEPEST, endless))[0]
+    return _clause(formula, "now", _SentenceContext(_DEEPEST, endless, counts))[0]
 
 
-def invariant_text(invariant: Formula, *, endless: bool = False) -> str:
+def invariant_text(invariant: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> str:
     """Return the text of a formula ``G p`` for a list of permanent conditions: ``keep alive`` for ``G alive``."""
     (body,) = invariant.args
-    return imperative(body, "keep", "avoid") if _is_condition(body) else clause_text(invariant, endless=endless)
+    if _is_condition(body):
+        return imperative(body, "keep", "avoid")
+    return clause_text(invariant, endless=endless, counts=counts)
 
 
 def recurring_text(recurring: Formula) -> str:
@@ -90,13 +92,13 @@ def recurring_text(recurring: Formula) -> str:
     return f"reach {object_phrase(goal)}" if is_state(goal) else _last_clause(body, _SentenceContext(_DEEPEST, True))
 
 
-def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
+def goal_texts(reach: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> tuple[tuple[str, str], ...]:
     """Return the goals of a formula ``F p`` in order, each as a pair (link, text).
 
     ``F(a & X F b)`` gives ``("", "a")`` and ``("then", "b")``. The link joins a goal to the
     previous one: ``then`` or ``then or at the same time``, and empty for the first goal.
     """
-    return tuple(_linked_goals(reach.args[0], _SentenceContext(_DEEPEST, endless)))
+    return tuple(_linked_goals(reach.args[0], _SentenceContext(_DEEPEST, endless, counts)))
 
 
 def without_constants(formula: Formula) -> Formula:
@@ -113,7 +115,8 @@ def without_constants(formula: Formula) -> Formula:
 def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClause:
     """Return a clause that tells the player to make ``node`` hold ``when``, a moment such as ``now``."""
     if is_state(node):
-        return f"{imperative(node, 'have', 'avoid')} {when}", _rank_of_state(node)
+        text = imperative(node, "have", "avoid")
+        return text if has_time(node) else f"{text} {when}", _rank_of_state(node)
     if context.depth == 0:
         return f"satisfy {write(node, ASCII, counts=context.counts)}", _SCOPED
     if node.op in ("and", "or"):
@@ -321,7 +324,7 @@ def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
         return f"go on for {context.counts.number(count)} more step{'s' * (count > 1)}", _PLAIN
     if node.op == "N" and body is FALSE:
         return "be at the last step" if count == 1 else f"be at one of the last {context.counts.steps(count)}", _PLAIN
-    moment = "at the next step" if count == 1 else f"after {context.counts.steps(count)}"
+    moment = "at the next step" if count == 1 else f"after {context.counts.time(count)}"
     if "X" not in ops:
         moment += ", if there is one" if count == 1 else ", if there are that many"
     if is_state(body):
@@ -333,12 +336,12 @@ def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _RankedClau
     """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``."""
     steps, body = operator.steps, operator.body
     if operator.op == "F":
-        within = f"within {context.counts.steps(steps)}"
+        within = f"within {context.counts.time(steps)}"
         if is_state(body):
             return f"reach {object_phrase(body)} {within}", _rank_of_state(body)
         return f"reach {within} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
-        return f"{imperative(body, 'keep', 'avoid')} for {context.counts.steps(steps + 1)}", _rank_of_state(body)
+        return f"{imperative(body, 'keep', 'avoid')} for {context.counts.time(steps + 1)}", _rank_of_state(body)
     return f"at each of {context.counts.steps(steps + 1)} from here on, {_last_clause(body, context)}", _CLAUSE
 
 

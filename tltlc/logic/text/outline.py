@@ -5,6 +5,7 @@ from __future__ import annotations
 from tltlc.core.record import record
 from tltlc.logic.bounded_operators import bounded_operator, operands_with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula, always
+from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.english import clause_text, goal_texts, invariant_text, recurring_text, without_constants
 from tltlc.logic.text.phrases import is_state
 
@@ -37,11 +38,11 @@ class Outline:
     others: tuple[str, ...] = ()
 
 
-def outline(formula: Formula, *, endless: bool = False) -> Outline:
+def outline(formula: Formula, *, endless: bool = False, counts: CountPrinter = NUMBERS) -> Outline:
     """Return the conjuncts of a formula as English clauses, sorted into kinds of requirements.
 
     ``endless`` says that the formula is about traces that never end. The formula must then be a
-    constant, or contain no constant.
+    constant, or contain no constant. ``counts`` prints the counts of steps.
     """
     formula = formula if endless else without_constants(formula)
     goals: list[tuple[Goal, ...]] = []
@@ -52,14 +53,14 @@ def outline(formula: Formula, *, endless: bool = False) -> Outline:
         if part in (TRUE, FALSE):
             others += ["satisfy a condition that no trace can satisfy"] if part is FALSE else []
         elif part.op == "F" and _core(part.args[0]).op != "G":
-            linked = goal_texts(part, endless=endless)
+            linked = goal_texts(part, endless=endless, counts=counts)
             goals.append(tuple(Goal(text, link not in ("", "then")) for link, text in linked))
         elif part.op == "G" and endless and _core(part.args[0]).op == "F":
             recurring.append(recurring_text(part))
         elif part.op == "G":
-            throughout.append(invariant_text(part, endless=endless))
+            throughout.append(invariant_text(part, endless=endless, counts=counts))
         else:
-            others.append(clause_text(part, endless=endless))
+            others.append(clause_text(part, endless=endless, counts=counts))
     return Outline(tuple(goals), tuple(throughout), tuple(recurring), tuple(others))
 
 

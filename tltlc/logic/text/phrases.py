@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.core.names import ComparisonName
+from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.logic.formula import Formula, atom, rebuild
 from tltlc.logic.text.notation import Spelling, write
 
@@ -62,13 +62,21 @@ def object_phrase(state: Formula) -> str:
 def imperative(state: Formula, keep: str, avoid: str) -> str:
     """Return an instruction with one of two verbs: "keep a" for ``a``, and "avoid a" for ``!a``.
 
-    ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others.
+    ``keep`` is the verb for formulas without a leading ``not``, ``avoid`` the verb for the others. An atom
+    with a :class:`~tltlc.core.names.SpokenName` may have its own verb.
     """
+    if isinstance(state.name, SpokenName) and state.name.verb:
+        return f"{state.name.verb} {state.name}"
     if state.op != "not":
         return f"{keep} {object_phrase(state)}"
     (avoided,) = state.args
     # "Avoid a and b" would mean to avoid each of them.
     return f"{avoid} {bracketed_phrase(avoided) if avoided.op == 'and' else object_phrase(avoided)}"
+
+
+def has_time(state: Formula) -> bool:
+    """Whether the formula is an atom that says itself when it is about, or the negation of one."""
+    return isinstance((state.args[0] if state.op == "not" else state).name, SpokenName)
 
 
 def is_state(formula: Formula) -> bool:

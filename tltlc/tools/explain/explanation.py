@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
 from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.memory_phrases import spoken
-from tltlc.automaton.text import formula_text, label_range_text, label_text
+from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
 from tltlc.core.record import record
@@ -169,9 +169,7 @@ def explain(fspa: Fspa) -> Explanation:
         english=formula_text(fspa),
         semantics=fspa.semantics,
         level=fspa.level,
-        outline=_outline(spoken(formula, fspa), endless=fspa.semantics == "infinite")
-        if isinstance(formula, Formula)
-        else None,
+        outline=_outline(fspa, formula) if isinstance(formula, Formula) else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
         memory=tuple(_remembered(register) for register in fspa.registers if register.kind not in ("last", "first")),
         failures=_failures(fspa, guards),
@@ -191,12 +189,13 @@ def _remembered(register: Register) -> Remembered:
     return Remembered(register.name, register.unit, register.high if register.kind in SATURATING else None)
 
 
-def _outline(formula: Formula, *, endless: bool) -> Outline:
+def _outline(fspa: Fspa, formula: Formula) -> Outline:
+    formula, endless = spoken(formula, fspa), fspa.semantics == "infinite"
     if endless:
         from tltlc.automaton.infinite.readback import without_constants
 
         formula = without_constants(formula)
-    return outline(formula, endless=endless)
+    return outline(formula, endless=endless, counts=times_of(fspa))
 
 
 def _guards(fspa: Fspa) -> tuple[Formula, ...]:

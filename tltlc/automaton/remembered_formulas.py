@@ -1,0 +1,132 @@
+"""The formulas that registers remember, read back from their updates.
+
+The updates are those of :mod:`tltlc.resolve.registers`, which turns a formula into its truth or its
+robustness; this module does the reverse.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tltlc.expression.tree import AtomValue, Before, Condition, Const, Expression, Op, SignalValue, When, nodes
+from tltlc.logic.formula import FALSE, TRUE, Formula, and_, atom, iff, implies, not_, or_
+from tltlc.resolve.spec import Register
+
+
+class Answer(NamedTuple):
+    """What a register of an answer waits for: ``goal``, after ``request``; if ``strict``, at a later sample."""
+
+    request: Formula
+    goal: Formula
+    strict: bool
+
+
+def counted(register: Register, registers: Mapping[str, Register]) -> Formula | None:
+    """Return the formula that a count, or a time since it held or began to hold, is about; None for other registers."""
+    update = register.update.args[0] if isinstance(register.update, Op) else register.update
+    if not isinstance(update, When):
+        return None
+    condition = update.cases[0][0]
+    if register.kind in ("age", "run"):
+        kept = condition.args[0]
+        return remembered(kept.name, registers) if isinstance(kept, Before) else None
+    if register.kind in ("times", "time_holding"):
+        # The second part is about the sample before.
+        first = condition.args[0]
+        return from_truth(first) if isinstance(first, Condition) else None
+    return from_truth(condition) if register.kind == "time_since" else None
+
+
+def remembered(name: str, registers: Mapping[str, Register]) -> Formula | None:
+    """Return the formula whose robustness a register keeps for the next sample; None for other registers."""
+    register = registers.get(name)
+    return from_robustness(register.update) if register is not None and register.kind == "last" else None
+
+
+def waited_for(register: Register) -> Answer | None:
+    """Return what a register of the kind ``waiting`` or ``due`` waits for; None for other registers."""
+    update = register.update
+    if register.kind == "waiting":
+        update = update.args[0] if isinstance(update, Op) else update
+        if not isinstance(update, When):
+            return None
+        strict = len(update.cases) == 2
+        request = from_truth(update.cases[-1][0])
+        # In seconds, the first case is that of a request that waits for ever.
+        met: Expression | Condition = update.cases[len(update.cases) == 4][0]
+        for position in (1, 0) if strict else ():
+            # The oldest request goes on waiting: some request waits, and `not goal`.
+            met = met.args[position] if isinstance(met, Condition) else met
+        goal = from_truth(met) if isinstance(met, Condition) else None
+    elif register.kind == "due" and isinstance(update, Op):
+        strict = update.op == "max"
+        left, right = update.args
+        missed, request_value = (left.args[0], right) if strict else (left, right.args[0])  # type: ignore[union-attr]
+        request, missed_goal = from_robustness(request_value), from_robustness(missed)
+        goal = None if missed_goal is None else opposite(missed_goal)
+    else:
+        return None
+    return None if request is None or goal is None else Answer(request, goal, strict)
+
+
+def broken_rule(register: Register, registers: Mapping[str, Register]) -> tuple[Formula, Formula] | None:
+    """Return the event and the rule of a register that a rule after an event is broken; None for other registers."""
+    if register.kind != "breach" or not isinstance(register.update, Op) or len(register.update.args) != 2:
+        return None
+    window, broken = register.update.args
+    read = [node.name for node in nodes(window) if isinstance(node, SignalValue)]
+    event = counted(registers[read[0]], registers) if len(read) == 1 and read[0] in registers else None
+    formula = from_robustness(broken)
+    return None if event is None or formula is None else (event, opposite(formula))
+
+
+def opposite(formula: Formula) -> Formula:
+    """Return the negation of a formula, without a double one."""
+    return formula.args[0] if formula.op == "not" else not_(formula)
+
+
+# --- from expressions -----------------------------------------------------------------------------
+
+
+def from_truth(condition: Condition) -> Formula | None:
+    """Return the formula of which ``registers.truth`` is a condition; None for other conditions."""
+    if condition.op == ">":
+        value = condition.args[0]
+        if isinstance(value, Const):
+            return TRUE if value.value > 0 else FALSE
+        return atom(value.name) if isinstance(value, AtomValue) else None
+    parts = [from_truth(part) if isinstance(part, Condition) else None for part in condition.args]
+    return _joined(condition.op, parts)
+
+
+def from_robustness(value: Expression) -> Formula | None:
+    """Return the formula of which ``registers.robustness`` is an expression; None for other expressions."""
+    if isinstance(value, Const):
+        return TRUE if value.value > 0 else FALSE
+    if isinstance(value, AtomValue):
+        return atom(value.name)
+    if isinstance(value, When):
+        # The opposite of a value, which is above 0 where the value is 0.
+        tested = value.cases[0][0].args[0]
+        return _joined("not", [from_robustness(tested) if not isinstance(tested, Condition) else None])
+    if isinstance(value, Op) and value.op in ("min", "max"):
+        return _joined("and" if value.op == "min" else "or", [from_robustness(part) for part in value.args])
+    return None
+
+
+def _joined(op: str, parts: list[Formula | None]) -> Formula | None:
+    """Return ``not``, ``and`` or ``or`` of formulas, with ``implies`` and ``iff`` where these are meant."""
+    known = [part for part in parts if part is not None]
+    if len(known) < len(parts) or op not in ("not", "and", "or"):
+        return None
+    if op == "not":
+        return not_(known[0])
+    if op == "or" and len(known) == 2:
+        left, right = known
+        neither = (and_(*map(opposite, left.args)), not_(or_(*left.args))) if len(left.args) == 2 else ()
+        if left.op == "and" and right in neither:
+            return iff(*left.args)
+        if left.op == "not":
+            return implies(left.args[0], right)
+    return and_(*known) if op == "and" else or_(*known)

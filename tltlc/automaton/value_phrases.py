@@ -1,0 +1,49 @@
+"""Say in words how numbers compare with values of the trace so far: "coins >= the previous coins"."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from tltlc.core.names import ComparisonName, split_name
+from tltlc.resolve.spec import Register
+
+_MIRRORED: Final = {">": "<", "<": ">", ">=": "<=", "<=": ">=", "==": "==", "!=": "!="}
+VALUES: Final = {
+    "previous": "the previous {0}",
+    "initial": "the initial {0}",
+    "highest": "the highest {0} so far",
+    "lowest": "the lowest {0} so far",
+}
+"""What is said of a register, by its kind; the number stands for the value that it remembers."""
+
+
+class Phrase(NamedTuple):
+    """What is said where an atom holds, and where it does not; None if that is said with `not`."""
+
+    holds: str
+    fails: str | None = None
+
+
+def value_phrase(name: str, register: Register) -> Phrase | None:
+    """Return the phrase of a comparison with ``previous(x)``, ``initial(x)``, ``highest(x)`` or ``lowest(x)``."""
+    if not isinstance(name, ComparisonName) or name.operator not in _MIRRORED:
+        return None
+    words = VALUES[register.kind].format(", ".join(split_name(register.name)[1]))
+    if name.left == register.name and not _is_number(name.right):
+        left, operator, right = name.right, _MIRRORED[name.operator], words
+    elif name.left == register.name:
+        left, operator, right = words, name.operator, name.right
+    elif name.right == register.name:
+        left, operator, right = name.left, name.operator, words
+    else:
+        return None
+    said = ComparisonName(left, operator, right)
+    return Phrase(said, said.opposite)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
