@@ -236,6 +236,7 @@ WORK: Final[Mapping[str, int]] = {
     "mined instances": 2_000,
     "mined pairs": 60_000,
     "mined sequences": 800_000,
+    "mined times": 1_000_000_000,
     "mined candidates": 50_000,
 }
 """Maps each computation that could take very long to its limit: how many steps, states or edges it may count."""

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tools.mine.conftest import evidences
-from tltlc.tools.mine.bits import Bits, count
+from tltlc.tools.mine.bits import Bits, count, trace_set
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
 
@@ -57,6 +57,25 @@ def test_operations_match_a_naive_implementation(evidence: Evidence, steps: int)
         ]
         assert places(bits, bits.within(samples, steps), evidence) == [
             {place for place in all_ if any(place <= later <= place + steps for later in places_of_trace)}
+            for all_, places_of_trace in zip(all_places, naive, strict=True)
+        ]
+        assert places(bits, bits.lasting(samples, steps), evidence) == [
+            {place for place in places_of_trace if places_of_trace.issuperset(range(place, place + steps + 1))}
+            for places_of_trace in naive
+        ]
+        assert places(bits, bits.firsts(samples), evidence) == [
+            {place for place in places_of_trace if place - 1 not in places_of_trace} for places_of_trace in naive
+        ]
+        assert places(bits, bits.lasts(samples), evidence) == [
+            {place for place in places_of_trace if place + 1 not in places_of_trace} for places_of_trace in naive
+        ]
+        assert bits.positions(samples) == [
+            (number, place) for number, places_of_trace in enumerate(naive) for place in sorted(places_of_trace)
+        ]
+        assert bits.counts(samples) == [len(places_of_trace) for places_of_trace in naive]
+        some = trace_set(len(places_of_trace) == 1 for places_of_trace in naive)
+        assert places(bits, bits.samples_of(some), evidence) == [
+            all_ if len(places_of_trace) == 1 else set()
             for all_, places_of_trace in zip(all_places, naive, strict=True)
         ]
 

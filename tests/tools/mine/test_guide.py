@@ -9,8 +9,8 @@ import pytest
 
 from tests.docs.blocks import DOCS
 from tests.docs.sessions import Shell, run_page
+from tltlc.tools.mine.chance import LEVEL
 from tltlc.tools.mine.score import PRICE
-from tltlc.tools.mine.templates import LONGEST_BOUND
 
 GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")
 
@@ -22,4 +22,4 @@ def test_the_commands_of_the_guide_print_what_it_shows(tmp_path: Path) -> None:
 
 def test_the_guide_has_the_constants_of_the_code() -> None:
     assert f"- {PRICE} * atoms" in GUIDE
-    assert f"at most {LONGEST_BOUND} |" in GUIDE
+    assert f"a probability of {LEVEL} at most" in GUIDE

@@ -8,7 +8,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.columns import columns, common_columns
-from tltlc.tools.mine.trace_letters import TraceFile, read_traces
+from tltlc.tools.mine.trace_letters import TraceFile, consistent, read_traces
 from tltlc.tools.mine.vocabulary import signal_declarations, vocabulary_of_columns, vocabulary_of_library
 
 LIBRARY = """\
@@ -165,12 +165,39 @@ def test_an_error_in_a_step_names_its_trace() -> None:
         read_traces([TraceFile("one.csv", b"a,b\n0,1\n"), TraceFile("two.csv", b"a,b\n0,1\n1,1\n")], vocabulary)
 
 
-def test_atoms_that_remember_the_trace_so_far_are_left_out() -> None:
-    library = """
-    signal seen: bool
-    signal hp in [0, 9]
-    predicate falling in [-1, 1] = clamp(previous(hp) - hp, -1, 1)
-    spec s { keep times(seen) <= 3  keep seen implies once seen }
-    """
+LIBRARY_WITH_MEMORY = """
+signal seen: bool
+signal hp in [0, 9]
+signal unread in [0, 1]
+predicate falling in [-1, 1] = clamp(previous(hp) - hp, -1, 1)
+predicate fading in [-1, 1] = clamp(previous(unread) - hp, -1, 1)
+spec s { keep times(seen) <= 1  keep seen implies once seen }
+"""
+
+
+def test_atoms_that_remember_the_trace_so_far_are_atoms_if_their_signals_are_columns() -> None:
     # A game may even record a column with the name of a count.
-    assert names(library, {"seen", "hp", "times(seen)", "previous(hp)"}) == ["seen"]
+    columns_of_traces = {"seen", "hp", "times(seen)", "previous(hp)", "previous(unread)"}
+    assert set(names(LIBRARY_WITH_MEMORY, columns_of_traces)) == {"seen", "falling", "times(seen) > 1", "once seen"}
+
+
+def test_letters_have_the_atoms_that_remember_the_trace_so_far() -> None:
+    vocabulary = vocabulary_of_library(SourceFile("game.tltl", LIBRARY_WITH_MEMORY), {"seen", "hp"}, ResolveOptions())
+    data = b"seen,hp\n0,9\n1,9\n0,8\n1,8\n0,8\n"
+    traces, _ = read_traces([TraceFile("run.csv", data), TraceFile("again.csv", data)], vocabulary)
+    assert traces[0].letters == traces[1].letters
+    assert [sorted(letter) for letter in traces[0].letters] == [
+        [],
+        ["once seen", "seen"],
+        ["falling", "once seen"],
+        ["once seen", "seen", "times(seen) > 1"],
+        ["once seen", "times(seen) > 1"],
+    ]
+    changed = (*traces[0].letters[:1], frozenset(), *traces[0].letters[2:])
+    assert [sorted(letter) for letter in consistent(changed, vocabulary.reader)] == [
+        [],
+        [],
+        ["falling"],
+        ["once seen", "seen"],
+        ["once seen"],
+    ]

@@ -8,7 +8,7 @@ highest bit belongs to no sample, so that carries and borrows do not reach the n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 
@@ -25,13 +25,13 @@ class Bits:
 
     ``all`` has all samples, and ``holds`` the samples at which each atom holds, by atom. The sets
     of traces are ``traces`` (to be accepted), ``counterexamples`` (to be rejected), and
-    ``all_traces``.
+    ``all_traces``. ``longest`` is the greatest number of samples of a trace.
     """
 
     def __init__(self, evidence: Evidence, *, backwards: bool = False) -> None:
         traces = evidence.all
-        longest = max(len(trace.letters) for trace in traces)
-        self._bytes = longest // 8 + 1
+        self.longest = max(len(trace.letters) for trace in traces)
+        self._bytes = self.longest // 8 + 1
         width = 8 * self._bytes
         self._low = sum(1 << width * number for number in range(len(traces)))
         self._top = self._low << (width - 1)
@@ -89,11 +89,51 @@ class Bits:
         reached = 0
         while reached < steps:
             shift = min(reached + 1, steps - reached)
-            result |= self._earlier(result, shift)
+            result |= self.earlier(result, shift)
             reached += shift
         return result
 
-    def _earlier(self, samples: SampleMask, steps: int) -> SampleMask:
+    def lasting(self, samples: SampleMask, steps: int) -> SampleMask:
+        """Return the samples that are in the set together with the next ``steps`` samples of their trace."""
+        result = samples
+        reached = 0
+        while reached < steps:
+            shift = min(reached + 1, steps - reached)
+            result &= self.earlier(result, shift)
+            reached += shift
+        return result
+
+    def firsts(self, samples: SampleMask) -> SampleMask:
+        """Return the first sample of each run of consecutive samples in the set."""
+        return samples & ~(samples << 1)
+
+    def lasts(self, samples: SampleMask) -> SampleMask:
+        """Return the last sample of each run of consecutive samples in the set."""
+        return samples & ~self.earlier(samples, 1)
+
+    def positions(self, samples: SampleMask) -> list[tuple[int, int]]:
+        """Return the samples of a set in order, each as the number of its trace and its number in the trace."""
+        text = bin(samples)[:1:-1]
+        result = []
+        place = text.find("1")
+        while place >= 0:
+            result.append(divmod(place, 8 * self._bytes))
+            place = text.find("1", place + 1)
+        return result
+
+    def counts(self, samples: SampleMask) -> list[int]:
+        """Return how many of the samples each trace has, counterexamples last."""
+        data = samples.to_bytes(self._bytes * self._length, "little")
+        size = self._bytes
+        return [int.from_bytes(data[start : start + size], "little").bit_count() for start in range(0, len(data), size)]
+
+    def samples_of(self, traces: TraceMask) -> SampleMask:
+        """Return all samples of these traces."""
+        ends = traces.to_bytes(self._length, "little")
+        whole, none = b"\xff" * self._bytes, b"\0" * self._bytes
+        return self.all & int.from_bytes(b"".join(whole if end else none for end in ends), "little")
+
+    def earlier(self, samples: SampleMask, steps: int) -> SampleMask:
         """Return the samples exactly ``steps`` steps before one of ``samples`` in the same trace."""
         start = self._start(steps)
         return (samples & ~start) >> steps
@@ -115,6 +155,11 @@ class Bits:
 def count(verdicts: TraceMask) -> int:
     """Return the number of traces in a set."""
     return verdicts.bit_count()
+
+
+def trace_set(members: Iterable[bool]) -> TraceMask:
+    """Return the set of the traces for which ``members`` has true; it has an entry for each trace, in order."""
+    return int.from_bytes(bytes(0x80 * member for member in members), "little")
 
 
 def _set(first: int, end: int) -> TraceMask:

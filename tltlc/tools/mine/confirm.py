@@ -10,13 +10,14 @@ from tltlc.automaton.fspa import Edge, Fspa
 from tltlc.automaton.work import OutOfWork
 from tltlc.core.record import record, replace
 from tltlc.monitor.guards import holds
+from tltlc.monitor.samples import Samples
 from tltlc.monitor.tables import tables
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.tools.mine.clause import Conjunction
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.score import Support
 from tltlc.tools.mine.vocabulary import MiningVocabulary
-from tltlc.tools.witness.blocks import letter_values
+from tltlc.tools.witness.blocks import given_values, letter_values
 
 _NAME: Final = "mined_candidate_"
 """The prefix of the names that candidates have while they are compiled."""
@@ -83,7 +84,7 @@ def confirm(
 
 def judge(fspa: Fspa, trace: LabelledTrace) -> ProposalVerdict:
     """Run an automaton on a trace, and return whether it accepts the trace."""
-    run = _Run(fspa)
+    run = _MemoryRun(fspa) if fspa.registers else _Run(fspa)
     violated_at = None
     for number, letter in enumerate(trace.letters, start=1):
         run.step(letter)
@@ -108,10 +109,26 @@ class _Run:
         key = (self.state.id, letter)
         target = self._targets.get(key)
         if target is None:
-            truth = letter_values(self._fspa, letter)
-            enabled: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, truth))
-            target = self._targets[key] = enabled.target
+            target = self._targets[key] = self._target(letter_values(self._fspa, letter))
         self.state = self._fspa.states[target]
+
+    def _target(self, atom_values: Sequence[float]) -> int:
+        enabled: Edge = next(edge for edge in self._edges[self.state.id] if holds(edge.guard, atom_values))
+        return enabled.target
+
+
+class _MemoryRun(_Run):
+    """A run of an automaton with registers: the atoms that follow from others are computed, not read."""
+
+    def __init__(self, fspa: Fspa) -> None:
+        super().__init__(fspa)
+        self._samples = Samples(fspa, None, [])
+        self._registers = self._samples.initial
+
+    def step(self, letter: Letter) -> None:
+        values = self._samples.from_atoms(given_values(self._fspa, letter), self._registers, 1)
+        self._registers = values.registers
+        self.state = self._fspa.states[self._target(values.atoms)]
 
 
 def _compile(batch: Sequence[Conjunction], vocabulary: MiningVocabulary, options: CompileOptions) -> tuple[Fspa, ...]:

@@ -12,7 +12,7 @@ from tltlc.tools.mine.bits import Bits, TraceMask, count
 from tltlc.tools.mine.candidates import ALIKE, sort_key
 from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, count_atoms
 from tltlc.tools.mine.score import figures
-from tltlc.tools.mine.templates import BOUNDED
+from tltlc.tools.mine.templates import TIMED
 
 BEAM: Final = 60
 """The most conjunctions of one length that are extended."""
@@ -39,9 +39,8 @@ def conjunctions(
                 both = accepts & addition.accepts
                 if addition.atoms > room or both == accepts or count(both & bits.traces) < least:
                     continue
-                # Automata count the steps of a bound in states, and two bounds would multiply
-                # these.
-                if addition.kind == BOUNDED and addition.kind in {clause.kind for clause in conjunction}:
+                # One clause of each kind of count or time is enough to read.
+                if addition.kind in TIMED and addition.kind in {clause.kind for clause in conjunction}:
                     continue
                 longer = tuple(sorted((*conjunction, addition), key=lambda clause: (clause.rank, clause.text)))
                 if longer not in accepted_by_longer and _all_needed(longer, both, bits):

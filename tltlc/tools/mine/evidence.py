@@ -19,12 +19,14 @@ class Evidence:
     """The traces that a proposal should accept, and the counterexamples that it should reject.
 
     There is at least one trace. ``made_up`` is true if the counterexamples are not recordings, but
-    generated from the traces (:mod:`tltlc.tools.mine.mutants`).
+    generated from the traces (:mod:`tltlc.tools.mine.mutants`). ``clock_s`` is the time between two
+    samples in seconds, or None if no clock is declared.
     """
 
     traces: tuple[LabelledTrace, ...]
     counterexamples: tuple[LabelledTrace, ...]
     made_up: bool = False
+    clock_s: float | None = None
 
     @property
     def all(self) -> tuple[LabelledTrace, ...]:

@@ -12,7 +12,14 @@ from tltlc.tools.mine.column_diagnostics import TraceColumns, odd_columns
 from tltlc.tools.mine.columns import columns, common_columns
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
-from tltlc.tools.mine.trace_letters import ProgressCallback, TraceFile, check_trace, ignore_progress, read_traces
+from tltlc.tools.mine.trace_letters import (
+    ProgressCallback,
+    TraceFile,
+    check_trace,
+    consistent,
+    ignore_progress,
+    read_traces,
+)
 from tltlc.tools.mine.vocabulary import MiningVocabulary, vocabulary_of_columns, vocabulary_of_library
 
 
@@ -57,11 +64,14 @@ def read_evidence(
         vocabulary, left_out=tuple(name for name in (*vocabulary.left_out, *rare) if name not in reported)
     )
     traces, notices = read_traces(good, vocabulary, report_progress)
+    clock_s = vocabulary.reader.clock_s
     if not bad:
-        return vocabulary, with_mutants(traces), (*warnings, *notices)
+        evidence = with_mutants(traces, lambda letters: consistent(letters, vocabulary.reader))
+        return vocabulary, replace(evidence, clock_s=clock_s), (*warnings, *notices)
     counterexamples, bad_notices = read_traces(bad, vocabulary, report_progress)
     contradictions = _contradictions(traces, counterexamples)
-    return vocabulary, Evidence(traces, counterexamples), (*warnings, *notices, *bad_notices, *contradictions)
+    evidence = Evidence(traces, counterexamples, clock_s=clock_s)
+    return vocabulary, evidence, (*warnings, *notices, *bad_notices, *contradictions)
 
 
 def _contradictions(

@@ -6,6 +6,7 @@ The caller can stop the search at any time and use the best results so far.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from math import ceil
 
 from tltlc.automaton.work import Work
@@ -17,9 +18,12 @@ from tltlc.tools.mine.clause import Conjunction, MinedClause, accepted_traces, c
 from tltlc.tools.mine.conjunctions import best_candidates, conjunctions
 from tltlc.tools.mine.events import MOST_EVENTS, best_events
 from tltlc.tools.mine.evidence import Evidence
+from tltlc.tools.mine.pair_times import pair_times
 from tltlc.tools.mine.score import figures
 from tltlc.tools.mine.sequences import sequences
+from tltlc.tools.mine.single_times import single_times
 from tltlc.tools.mine.templates import clauses
+from tltlc.tools.mine.timed_evidence import TimedEvidence
 
 
 @record
@@ -55,6 +59,7 @@ class SpecSearch:
         self._candidates = Candidates(self.bits)
         self._evidence = evidence
         self._work = Work(WORK["mined sequences"])
+        self._times_work = Work(WORK["mined times"])
         self._unrelated = 0
         self.tried_count = 0
 
@@ -64,7 +69,10 @@ class SpecSearch:
         The caller may stop the iteration at any time.
         """
         events = self._chosen_events()
-        for number, portion in enumerate(clauses(self.bits, self._backwards, events, self._least)):
+        timed = TimedEvidence(self._evidence, self.bits, self._least)
+        times = chain(single_times(timed, events), pair_times(timed, events, self._times_work))
+        untimed = clauses(self.bits, self._backwards, events)
+        for number, portion in enumerate(chain(untimed, times)):
             self._add_all(clause for clause in portion if clause.atoms <= self._most_atoms)
             if number % 20 == 0:
                 yield "templates"
@@ -103,6 +111,8 @@ class SpecSearch:
             sentences.append(f"only {MOST_EVENTS} atoms are related to each other, and {others} not")
         if self._work.left < 0:
             sentences.append(f"only sequences of {WORK['mined sequences']:,} steps in total are tried, others are not")
+        if self._times_work.left < 0:
+            sentences.append("times between atoms are tried only for some pairs of atoms")
         if self._candidates.is_cut:
             sentences.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
         return sentences

@@ -1,6 +1,7 @@
 """Build candidate clauses with one or two atoms from templates: keep, avoid, invariants, until, precedence, response.
 
-:mod:`tltlc.tools.mine.sequences` builds sequences of goals.
+:mod:`tltlc.tools.mine.sequences` builds sequences of goals, :mod:`tltlc.tools.mine.single_times` and
+:mod:`tltlc.tools.mine.pair_times` clauses about counts and times.
 """
 
 from __future__ import annotations
@@ -8,31 +9,36 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import Final
 
-from tltlc.tools.mine.bits import Bits, TraceMask, count
+from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.clause import MinedClause
 from tltlc.tools.witness.blocks import atom_operand
 
+IN_TIME: Final = "reach in time"
+GOAL_TIME: Final = "reach for some time"
 BOUNDED: Final = "bounded response"
-KINDS: Final = ("reach", "keep", "avoid", "invariant", "precedence", "until", "response", BOUNDED)
+PAUSE: Final = "pause"
+COUNT: Final = "count"
+LONGEST: Final = "longest time"
+SHORTEST: Final = "shortest time"
+TIMED: Final = (IN_TIME, GOAL_TIME, BOUNDED, PAUSE, COUNT, LONGEST, SHORTEST)
+"""The templates about counts and times."""
+KINDS: Final = (
+    *("reach", IN_TIME, GOAL_TIME, "keep", "avoid", "invariant", "precedence", "until", "response"),
+    *(BOUNDED, PAUSE, COUNT, LONGEST, SHORTEST),
+)
 """The templates. A spec lists its clauses in this order, which also breaks ties in the search."""
 
-LONGEST_BOUND: Final = 30
-"""The most steps of a bounded response, because its automaton counts them."""
-_LEAST_TRIGGERED: Final = 3
-"""A bounded response must be triggered in at least this many traces."""
 
-
-def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
+def clauses(forwards: Bits, backwards: Bits, events: Collection[str]) -> Iterator[list[MinedClause]]:
     """Yield, in small portions, the clauses of the templates that some trace satisfies.
 
     A clause is left out if all traces that satisfy it do so only because nothing triggers it.
 
     ``backwards`` has the same traces as ``forwards``, each in reverse order. Clauses about two atoms
     use only the atoms in ``events``. The work grows with the square of their number, so the caller
-    must limit it. A response with a bound, such as `eventually within 3 steps b`, has the smallest
-    bound with which at least ``least`` traces satisfy it.
+    must limit it.
     """
-    for portion in _candidates(forwards, backwards, events, least):
+    for portion in _candidates(forwards, backwards, events):
         # A clause that is only vacuously true says nothing about the game.
         yield [instance for instance in portion if instance.not_vacuous & instance.accepts & forwards.traces]
 
@@ -42,7 +48,7 @@ def template_clause(kind: str, text: str, atoms: int, accepts: int, not_vacuous:
     return MinedClause(kind, KINDS.index(kind), text, atoms, accepts, not_vacuous)
 
 
-def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[MinedClause]]:
+def _candidates(forwards: Bits, backwards: Bits, events: Collection[str]) -> Iterator[list[MinedClause]]:
     """Yield all clauses of the templates, in portions: those of one atom, or of one pair of atoms."""
     occurs = {name: forwards.traces_with(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
@@ -52,8 +58,7 @@ def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least:
     for first in events:
         for second in events:
             if first != second:
-                related = _pair(first, second, forwards, backwards, occurs)
-                yield [*related, *_bounded(first, second, forwards, least)]
+                yield list(_pair(first, second, forwards, backwards, occurs))
 
 
 def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[MinedClause]:
@@ -69,7 +74,7 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
         yield template_clause("invariant", f"keep {a} or {b}", 2, either, forwards.all_traces)
 
     precedes = forwards.traces_without(b_samples & forwards.before_first(a_samples))
-    yield template_clause("precedence", f"require (not {b}) weak_until {a}", 2, precedes, occurs[second])
+    yield template_clause("precedence", f"keep {b} implies once {a}", 2, precedes, occurs[second])
     yield template_clause("until", f"require (not {b}) until {a}", 2, precedes & occurs[first], occurs[first])
     keeps = forwards.traces_without(forwards.before_first(b_samples) & ~a_samples) & occurs[second]
     yield template_clause(
@@ -79,31 +84,4 @@ def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict
     # Backwards in time, the answer comes before the trigger.
     last = backwards.before_first(backwards.holds[second])
     answered = backwards.traces_without(backwards.holds[first] & last)
-    yield template_clause("response", f"require always ({a} implies eventually {b})", 2, answered, triggered)
-
-
-def _bounded(first: str, second: str, bits: Bits, least: int) -> Iterator[MinedClause]:
-    """Yield the clause ``require always (FIRST implies eventually within N steps SECOND)``, or nothing.
-
-    N is the smallest bound with which at least ``least`` traces satisfy the clause. Nothing is
-    yielded if N is 0 or above ``LONGEST_BOUND``, or if fewer than ``_LEAST_TRIGGERED`` traces have a
-    sample at which ``first`` holds.
-    """
-    a_samples, b_samples = bits.holds[first], bits.holds[second]
-
-    def answered(steps: int) -> TraceMask:
-        return bits.traces_without(a_samples & ~bits.within(b_samples, steps))
-
-    def is_enough(steps: int) -> bool:
-        return count(answered(steps) & bits.traces) >= least
-
-    low, high = 0, LONGEST_BOUND
-    if count(bits.traces_with(a_samples) & bits.traces) < _LEAST_TRIGGERED or not is_enough(high):
-        return
-    while low < high:
-        middle = (low + high) // 2
-        low, high = (low, middle) if is_enough(middle) else (middle + 1, high)
-    if low:
-        steps = f"{low} step{'s' * (low > 1)}"
-        text = f"require always ({atom_operand(first)} implies eventually within {steps} {atom_operand(second)})"
-        yield template_clause(BOUNDED, text, 3, answered(low), bits.traces_with(a_samples))
+    yield template_clause("response", f"keep {a} implies eventually {b}", 2, answered, triggered)

@@ -7,14 +7,17 @@ from collections.abc import Callable, Iterator, Sequence
 from math import nan
 
 from tltlc.automaton.compare import Letter
+from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, MonitorError, Samples, check_exclusive
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.mine.evidence import LabelledTrace
 from tltlc.tools.mine.vocabulary import MiningVocabulary
+from tltlc.tools.witness.blocks import given_values
+from tltlc.tools.witness.step_lengths import length_names, length_of
 
 ProgressCallback = Callable[[str], None]
 """A callback that gets a progress message in words, at least once for each file."""
@@ -45,7 +48,7 @@ def read_traces(
     notices: list[Diagnostic] = []
     warnings: list[Diagnostic] = []
     samples = Samples(vocabulary.reader, None, notices)
-    cache: dict[tuple[float, ...], Letter] = {}
+    cache: dict[tuple[float, ...], tuple[Letter, tuple[float, ...]]] = {}
     traces = []
     for file in files:
         report_progress(f"reading {file.name}")
@@ -71,20 +74,47 @@ def _rows(
 
 
 def _letters(
-    file: TraceFile, samples: Samples, vocabulary: MiningVocabulary, cache: dict[tuple[float, ...], Letter]
+    file: TraceFile,
+    samples: Samples,
+    vocabulary: MiningVocabulary,
+    cache: dict[tuple[float, ...], tuple[Letter, tuple[float, ...]]],
 ) -> Iterator[Letter]:
     """Yield, for each sample of a trace, its letter: the set of the atoms that hold.
 
-    ``cache`` maps samples to letters, because samples often repeat. New samples are added to it.
+    ``cache`` maps samples, with what is remembered before them, to letters, because samples often
+    repeat. New samples are added to it.
     """
     reader = vocabulary.reader
     names = [signal.name for signal in reader.signals]
+    registers = samples.initial
     for number, row in enumerate(_rows(file, reader.signals, reader.clock_s, reader.clock_varies), start=1):
-        sample = tuple([row.get(name, nan) for name in names])
-        letter = cache.get(sample)
-        if letter is None:
-            values = samples.atom_values(row, number)
-            check_exclusive(reader, values, number)
-            letter = frozenset(atom.name for atom, value in zip(reader.atoms, values, strict=True) if value > 0.0)
-            cache[sample] = letter
+        sample = (*[row.get(name, nan) for name in (*names, STEP_LENGTH)], *registers)
+        known = cache.get(sample)
+        if known is None:
+            values = samples.values(row, registers, number)
+            check_exclusive(reader, values.atoms, number)
+            known = cache[sample] = _letter(reader, values.atoms) | length_names(row), values.registers
+        letter, registers = known
         yield letter
+
+
+def consistent(letters: Sequence[Letter], reader: Fspa) -> tuple[Letter, ...]:
+    """Return a trace in which the atoms that follow from others, such as ``times(seen) > 3``, do follow.
+
+    The other atoms are those of ``letters``. ``reader`` is an automaton with all atoms.
+    """
+    if not reader.registers:
+        return tuple(letters)
+    samples = Samples(reader, None, [])
+    registers = samples.initial
+    result = []
+    for letter in letters:
+        length = samples.step_length(length_of(letter, reader), 1)
+        values = samples.from_atoms(given_values(reader, letter), registers, length, 1)
+        registers = values.registers
+        result.append(_letter(reader, values.atoms) | length_names(letter))
+    return tuple(result)
+
+
+def _letter(reader: Fspa, values: Sequence[float]) -> Letter:
+    return frozenset(atom.name for atom, value in zip(reader.atoms, values, strict=True) if value > 0.0)

@@ -18,6 +18,7 @@ from tltlc.core.names import full_name, split_name
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
+from tltlc.expression.tree import AtomValue, Before, Expression, SignalValue, nodes
 from tltlc.grammar.tree import Module, Parameter, SignalDecl, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
@@ -25,8 +26,7 @@ from tltlc.pipeline import CompileOptions, Session
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.resolution import resolve_atoms
 from tltlc.resolve.scope import Binding
-from tltlc.resolve.sources import names_read
-from tltlc.resolve.spec import Vocabulary
+from tltlc.resolve.spec import Atom, Vocabulary
 from tltlc.tools.mine.column_diagnostics import first_names
 
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
@@ -59,7 +59,7 @@ def vocabulary_of_library(library: SourceFile, columns: Collection[str], options
     """Return the atoms of a library that can be computed from the columns of the traces.
 
     Candidates are the predicates and `bool` signals of the library, with entities as arguments, and
-    the atoms of the library's own specs. Atoms that remember the trace so far are left out.
+    the atoms of the library's own specs, such as `times(seen) > 3`.
 
     Raises:
         TltlError: the library has an error; TLT0760, none of its atoms can be read.
@@ -235,17 +235,37 @@ def _readable_atoms(
 ) -> Vocabulary | None:
     """Return the atoms among ``texts``, such as `near(s1)`, whose signals are all columns of the traces.
 
-    Atoms that remember the trace so far are left out: a candidate is about letters that may stand
-    anywhere. Return None if there is no atom left.
+    The signals of an atom are also those that it remembers. Return None if there is no atom left.
     """
     resolved = _resolve(module, texts, options)
     if resolved is None:
         return None
-    readable = {*columns} - {register.name for register in resolved.registers}
-    names = [atom.name for atom in resolved.atoms if readable.issuperset(names_read(atom.expression))]
-    if names == list(texts):
+    names = [atom.name for atom in resolved.atoms if _signals_read(atom, resolved).issubset(columns)]
+    if names == [atom.name for atom in resolved.atoms]:
         return resolved
     return _resolve(module, names, options) if names else None
+
+
+def _signals_read(atom: Atom, vocabulary: Vocabulary) -> set[str]:
+    """Return the names of the signals that an atom reads, at this sample or before."""
+    updates = {register.name: register.update for register in vocabulary.registers}
+    expressions = {other.name: other.expression for other in vocabulary.atoms}
+    signals: set[str] = set()
+    seen: set[Expression] = set()
+    pending = [atom.expression]
+    while pending:
+        expression = pending.pop()
+        if expression in seen:
+            continue
+        seen.add(expression)
+        for node in nodes(expression):
+            if isinstance(node, AtomValue):
+                pending.append(expressions[node.name])
+            elif isinstance(node, (SignalValue, Before)) and node.name in updates:
+                pending.append(updates[node.name])
+            elif isinstance(node, SignalValue):
+                signals.add(node.name)
+    return signals
 
 
 def _resolve(module: Module, texts: Sequence[str], options: ResolveOptions | None) -> Vocabulary | None:
