@@ -33,6 +33,7 @@ def _pair(pair: SpecPair) -> dict[str, Any]:
         "name_a": pair.a.name,
         "name_b": pair.b.name,
         "relation": comparison.relation,
+        "method": comparison.method,
         "reason": unrelated_reason(pair.a, pair.b) if comparison.relation is None else None,
         "beginnings": _beginnings(pair),
         "only_a": _trace(pair, comparison.only_a),

@@ -13,6 +13,7 @@ from tltlc.tools.diff.values import ValueDifference
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.tools.diff.relation import Comparison
 
 _KINDS: Final = {"finite": "traces that end", "infinite": "traces that never end"}
 
@@ -26,6 +27,20 @@ def unrelated_reason(a: Fspa, b: Fspa) -> str:
         f"A and B are of different kinds: A is about {_KINDS[a.semantics]}, B is about {_KINDS[b.semantics]}, so no "
         "trace belongs to both. To compare what they require, give both the same `semantics`."
     )
+
+
+def method_sentence(comparison: Comparison) -> str:
+    """Return a sentence that says how specs that remember the trace so far were compared; empty for other specs."""
+    if comparison.method == "unfolded" and comparison.unfolded_states:
+        a, b = comparison.unfolded_states
+        return f"This is exact: what the specs remember was unfolded to {a:,} states in A and {b:,} in B."
+    if comparison.method == "search":
+        text = "Traces were searched, with a bounded number of steps: "
+        text += "what the specs remember has too many values to be unfolded to states."
+        if comparison.only_a or comparison.only_b:
+            text += " Both monitors have run on each trace below, but it may not be a shortest one."
+        return text
+    return ""
 
 
 def name_list(names: Sequence[str], most: int = 4) -> str:

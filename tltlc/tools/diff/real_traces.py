@@ -61,7 +61,7 @@ def confirm(
     of a group in ``exclusive`` hold together. With ``by_name``, atoms that do not follow from others
     may hold in any combination.
     """
-    if automata[0].semantics == "infinite" or (by_name and _follows_in_one(named)):
+    if automata[0].semantics == "infinite" or (by_name and follows_in_one(named)):
         return Confirmed(None, None, False)
     inputs, are_all = _letters(named, only) if by_name else _samples(named)
     names = [[atom.name for atom in fspa.atoms] for fspa in named]
@@ -82,7 +82,7 @@ def confirm(
     return Confirmed(found.get(0), found.get(1), is_decided)
 
 
-def _follows_in_one(named: tuple[Fspa, Fspa]) -> bool:
+def follows_in_one(named: tuple[Fspa, Fspa]) -> bool:
     """Whether a common atom follows from others in one automaton only, so that no letter can give it."""
     following = [following_atoms(fspa.atoms, fspa.registers) for fspa in named]
     common = {atom.name for atom in named[0].atoms}.intersection(atom.name for atom in named[1].atoms)

@@ -7,7 +7,7 @@ from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final, Literal
 
 from tltlc.automaton.compare import NamedLiterals, Trace, separating
-from tltlc.automaton.work import DEFAULT_WORK, OutOfWork
+from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import record, replace
 from tltlc.tools.diff.values import meaning, value_difference
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Vocabulary
 
 Relation = Literal["equivalent", "stricter", "looser", "incomparable", "undecided"]
+Method = Literal["automata", "unfolded", "search"]
 
 _STEPS_OF_A_PAIR: Final = 100
 """A comparison counts at least this many steps of work for each pair of exclusive atoms."""
@@ -40,10 +41,15 @@ class Comparison:
 
     ``stricter`` means that A accepts every trace that B accepts, but not vice versa; ``looser`` is
     the opposite. ``incomparable`` means that each accepts a trace that the other does not.
-    ``undecided`` is possible only if atoms remember the trace so far: then no trace was found that
-    shows a difference in one direction, but there may be one.
+    ``undecided`` is possible only if ``method`` is ``search``: then no trace was found that shows a
+    difference in one direction, but there may be one.
     ``only_a`` is a trace that only A accepts, and ``only_b`` a trace that only B accepts; over
-    finite traces and without registers, they are shortest.
+    finite traces they are shortest, unless ``method`` is ``search``.
+
+    ``method`` says how the comparison was made. ``automata``: on the automata as they are, which is
+    exact. ``unfolded``: registers were unfolded into states first, which is exact, too.
+    ``unfolded_states`` is then the number of states of A and B. ``search``: registers have too many
+    values, or remember numbers, and traces were searched with a bounded number of steps.
 
     For each name in ``split_names``, A and B have different atoms with this name; traces call them
     ``NAME of A`` and ``NAME of B``. ``impossible`` has conjunctions of literals for which no sample
@@ -62,6 +68,8 @@ class Comparison:
     impossible: tuple[NamedLiterals, ...] = ()
     exclusive: tuple[ExclusiveGroup, ...] = ()
     beginnings: Comparison | None = None
+    method: Method = "automata"
+    unfolded_states: tuple[int, int] | None = None
 
 
 def compare(
@@ -92,6 +100,10 @@ def compare(
             unbroken_a, unbroken_b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive
         )
         return replace(beginnings, relation=None, only_a=None, only_b=None, beginnings=beginnings)
+    if (a.registers or b.registers) and (unfolded := unfolded_pair(a, b, work, by_name=by_name)):
+        one, other = unfolded
+        compared = compare(one, other, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
+        return replace(compared, method="unfolded", unfolded_states=(len(one.states), len(other.states)))
     split_names = () if by_name else different_atoms(a, b)
     originals = a, b
     a, b = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
@@ -113,19 +125,40 @@ def compare(
         letters = FeasibleLetters(view_a, view_b, never)
         only_a, only_b = letters.feasible_trace(only_a, a, b, work), letters.feasible_trace(only_b, b, a, work)
         impossible = letters.impossible
+    method: Method = "automata"
     if (a.registers or b.registers) and (only_a or only_b):
         from tltlc.tools.diff.real_traces import confirm
 
         exclusive_names = [group.names for group in groups]
         only_a, only_b, is_decided = confirm(originals, (a, b), (only_a, only_b), exclusive_names, by_name=by_name)
+        method = "search"
         if not is_decided:
-            return Comparison("undecided", only_a, only_b, split_names, tuple(impossible), groups)
+            return Comparison("undecided", only_a, only_b, split_names, tuple(impossible), groups, method=method)
     relation: Relation = (
         ("equivalent" if only_b is None else "looser")
         if only_a is None
         else ("stricter" if only_b is None else "incomparable")
     )
-    return Comparison(relation, only_a, only_b, split_names, tuple(impossible), groups)
+    return Comparison(relation, only_a, only_b, split_names, tuple(impossible), groups, method=method)
+
+
+def unfolded_pair(a: Fspa, b: Fspa, work: int, *, by_name: bool) -> tuple[Fspa, Fspa] | None:
+    """Return both automata with registers unfolded into states, or None.
+
+    It is None if a register remembers a number, if the unfolding takes more than ``work`` steps, or if
+    with ``by_name`` a common atom follows from others in one automaton only: then no letter gives it.
+    """
+    from tltlc.monitor.unfolding import unfolded
+    from tltlc.tools.diff.real_traces import follows_in_one
+
+    if by_name and follows_in_one((a, b)):
+        return None
+    steps = Work(work)
+    try:
+        one, other = unfolded(a, steps), unfolded(b, steps)
+    except OutOfWork:
+        return None
+    return None if one is None or other is None else (one, other)
 
 
 def _unbroken_prefixes(fspa: Fspa) -> Fspa:

@@ -12,7 +12,15 @@ from tltlc.io.spec_file import STDIN, STDIN_NAME
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
-from tltlc.tools.diff.phrases import name_list, sample_text, type_text, unrelated_reason, value_text, values_text
+from tltlc.tools.diff.phrases import (
+    method_sentence,
+    name_list,
+    sample_text,
+    type_text,
+    unrelated_reason,
+    value_text,
+    values_text,
+)
 from tltlc.tools.diff.traces import difference_test, step_lines, trace_description
 
 if TYPE_CHECKING:
@@ -25,10 +33,7 @@ _RELATIONS: Final = {
     "stricter": ("B is stricter than A", "A also accepts every trace that B accepts"),
     "looser": ("B is looser than A", "B also accepts every trace that A accepts"),
     "incomparable": ("B accepts different traces than A", "each accepts some that the other does not"),
-    "undecided": (
-        "it was not decided whether B accepts the same traces as A",
-        "their atoms remember the trace so far, and the search for a trace that tells them apart is not complete",
-    ),
+    "undecided": ("it was not decided whether B accepts the same traces as A", ""),
 }
 _BREAKING: Final[Mapping[Relation | None, str]] = {
     "equivalent": "The same beginnings of traces break both for good, if any do.",
@@ -83,6 +88,8 @@ def _pair(pair: SpecPair) -> Iterator[str]:
         if comparison.relation == "equivalent":
             summary += ", but something else differs" if pair.differences else ", and nothing else differs"
         yield f"{name}\n  {summary}{f': {meaning}' if meaning else ''}."
+    if method := method_sentence(comparison):
+        yield f"  {fill(method, _WIDTH, subsequent_indent='  ')}"
     one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
     if one_sided:
         yield _exclusive(one_sided)

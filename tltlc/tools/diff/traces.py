@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.compare import Letter, Trace
 from tltlc.core.record import record
 from tltlc.monitor.guards import holds
+from tltlc.monitor.samples import Samples
 from tltlc.monitor.tables import tables
+from tltlc.resolve.registers import following_atoms
+from tltlc.resolve.values import number_text
 from tltlc.tools.diff.relation import OF_A, OF_B
-from tltlc.tools.witness.blocks import letter_values, test_block
+from tltlc.tools.witness.blocks import given_values, test_block
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -73,12 +76,23 @@ def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: s
 def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
     """Return lines that say which atoms hold at each step; equal consecutive steps share a line.
 
-    Lines look like ``step 1: alive`` and ``steps 2 to 9: nothing holds``.
+    Lines look like ``step 1: alive`` and ``steps 2 to 9 (0.8 s): nothing holds``. The time is that of
+    all these steps, if both specs have the same clock. Atoms that follow from others are left out.
     """
+    following = {
+        atom.name + (suffix if atom.name in pair.comparison.split_names else "")
+        for fspa, suffix in ((pair.a, OF_A), (pair.b, OF_B))
+        for atom in fspa.atoms
+        if atom.name in following_atoms(fspa.atoms, fspa.registers)
+    }
+    clock_s = pair.a.clock_s if pair.a.clock_s == pair.b.clock_s else None
     lines = []
-    for letter, run in groupby(enumerate(letters, start=1), lambda step: step[1]):
+    for letter, run in groupby(enumerate((letter - following for letter in letters), start=1), lambda step: step[1]):
         numbers = [number for number, _ in run]
-        steps = f"step {numbers[0]}" if len(numbers) == 1 else f"steps {numbers[0]} to {numbers[-1]}"
+        steps = f"step {numbers[0]}"
+        if len(numbers) > 1:
+            time = "" if clock_s is None else f" ({number_text(round(len(numbers) * clock_s, 3))} s)"
+            steps = f"steps {numbers[0]} to {numbers[-1]}{time}"
         lines.append(f"{steps}: {', '.join(ordered_atoms(pair, letter)) or 'nothing holds'}")
     return lines
 
@@ -94,11 +108,13 @@ def ordered_atoms(pair: SpecPair, letter: Letter) -> list[str]:
 def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
     """Return the state of an automaton after a trace.
 
-    No two atoms of an ``exclusive`` group of the automaton may hold together in the trace.
+    No two atoms of an ``exclusive`` group of the automaton may hold together in the trace. Atoms that
+    follow from others are computed, not read.
     """
-    leaving = tables(fspa).edges
-    state = 0
+    leaving, samples = tables(fspa).edges, Samples(fspa, None, [])
+    state, registers = 0, samples.initial
     for letter in letters:
-        atom_values = letter_values(fspa, letter)
-        state = next(edge.target for edge in leaving[state] if holds(edge.guard, atom_values))
+        values = samples.from_atoms(given_values(fspa, letter), registers, 1)
+        state = next(edge.target for edge in leaving[state] if holds(edge.guard, values.atoms))
+        registers = values.registers
     return fspa.states[state]
