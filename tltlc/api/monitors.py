@@ -8,10 +8,11 @@ names of the reward modes; ``mode_function`` returns the function that computes 
 ``Transition`` in a mode.
 ``schedule`` returns the order in which a monitor computes atoms and registers. ``given_atoms`` and
 ``registers_from_atoms`` say which of them do not, or do, follow from the values of atoms.
+``deciding_atoms`` returns the reasons for atoms that say that a rule is broken.
 ``tltlc.api.Monitor`` does all of this for one automaton, step by step.
 """
 
-from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
+from tltlc.automaton.memory import deciding_atoms, given_atoms, registers_from_atoms, schedule
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.nearest_edge import nearest_edge
@@ -42,6 +43,7 @@ __all__ = [
     "Transition",
     "automaton_argument",
     "bounding_literal",
+    "deciding_atoms",
     "ends_episode",
     "finite_signal_value",
     "given_atoms",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
-from tltlc.expression.tree import AtomValue, Expression, nodes
+from tltlc.expression.evaluate import evaluate
+from tltlc.expression.tree import AtomValue, Before, Expression, Op, SignalValue, VariableKey, nodes
 from tltlc.resolve import registers
 
 
@@ -47,6 +49,44 @@ def given_atoms(fspa: Fspa) -> tuple[int, ...]:
 def registers_from_atoms(fspa: Fspa) -> frozenset[str]:
     """Return the names of the registers whose values follow from the values of the atoms so far."""
     return registers.from_atoms(fspa.registers)
+
+
+def breaches_now(fspa: Fspa) -> dict[str, Expression]:
+    """Return the registers of kind ``breach`` about this sample alone: their names, and their values over its atoms."""
+    return {
+        register.name: register.update
+        for register in fspa.registers
+        if register.kind == "breach"
+        if not any(isinstance(node, (SignalValue, Before)) for node in nodes(register.update))
+    }
+
+
+def deciding_atoms(fspa: Fspa, atoms: Sequence[int], values: Sequence[float]) -> tuple[int, ...]:
+    """Return atoms that hold or fail at a sample, with the reasons in place of those about the sample alone.
+
+    ``values`` are the values of all atoms. Where the atom says that a rule about this sample is broken,
+    the reasons are the atoms that break it.
+    """
+    breaches = breaches_now(fspa)
+    number = {atom.name: index for index, atom in enumerate(fspa.atoms)}
+    known: dict[VariableKey, float] = {AtomValue(name): values[index] for name, index in number.items()}
+    reasons: dict[int, None] = {}
+    for index in atoms:
+        name = fspa.atoms[index].name
+        names = _reasons(breaches[name], known) if name in breaches and values[index] > 0.0 else [name]
+        reasons.update(dict.fromkeys(number[reason] for reason in names))
+    return tuple(reasons)
+
+
+def _reasons(value: Expression, known: Mapping[VariableKey, float]) -> Iterator[str]:
+    """Yield the names of the atoms that make a formula true, whose robustness is ``value``."""
+    if isinstance(value, Op) and value.op == "max":
+        yield from _reasons(max(value.args, key=lambda part: evaluate(part, known, {})), known)
+    elif isinstance(value, Op) and value.op == "min":
+        for part in value.args:
+            yield from _reasons(part, known)
+    else:
+        yield from _atoms_read(value)[:1]
 
 
 def _atoms_read(expression: Expression) -> list[str]:

@@ -10,11 +10,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, cast
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import breaches_now
 from tltlc.automaton.remembered_formulas import (
     Answer,
     broken_rule,
     counted,
     from_robustness,
+    kept_rule,
     opposite,
     remembered,
     waited_for,
@@ -23,6 +25,7 @@ from tltlc.automaton.value_phrases import VALUES, Phrase, value_phrase
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, Const, Expression, Op, ParamValue, SignalValue, When, nodes
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
+from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
@@ -94,11 +97,13 @@ class _Speaker:
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
         self._phrases: dict[str, Phrase | None] = {}
         self._passed = self._passed_times()
+        kept = {name: kept_rule(value) for name, value in breaches_now(fspa).items() if name in self._atoms}
+        self._rules = {name: rule for name, rule in kept.items() if rule is not None}
 
     def spoken(self, formula: Formula) -> Formula:
         """Return a formula with phrases in place of the names of atoms."""
         done: dict[Formula, Formula] = {}
-        for node in formula.bottom_up():
+        for node in self._with_rules(formula).bottom_up():
             done[node] = (
                 self._answers(node, done)
                 or self._turning(node, done)
@@ -107,6 +112,18 @@ class _Speaker:
                 or self._literal(node)
                 or rebuild(node, tuple(done[operand] for operand in node.args))
             )
+        return done[node]
+
+    def _with_rules(self, formula: Formula) -> Formula:
+        """Return a formula with the rules themselves in place of the atoms that say that they are broken."""
+        done: dict[Formula, Formula] = {}
+        for node in formula.bottom_up():
+            operand = node.args[0] if node.op == "not" else node
+            if operand.op == "atom" and operand.name in self._rules:
+                rule = self._rules[operand.name]
+                done[node] = rule if node is not operand else negation_normal_form(not_(rule))
+            else:
+                done[node] = rebuild(node, tuple(done[argument] for argument in node.args))
         return done[formula]
 
     # --- formulas ---------------------------------------------------------------------------------
@@ -225,6 +242,8 @@ class _Speaker:
 
     def _phrase_of(self, item: Atom, register: Register) -> Phrase | None:
         """Return the phrase of an atom that reads one register; None if it has none."""
+        if register.kind == "breach" and len(item.arguments) == 1:
+            return None
         timer = _TIMERS.get(register.kind, {}).get(item.base)
         if timer is not None and item.arguments:
             return self._timer_phrase(item, register, timer)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tltlc.expression.tree import AtomValue, Before, Condition, Const, Expression, Op, SignalValue, When, nodes
 from tltlc.logic.formula import FALSE, TRUE, Formula, and_, atom, iff, implies, not_, or_
+from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Register
 
 
@@ -79,6 +80,32 @@ def broken_rule(register: Register, registers: Mapping[str, Register]) -> tuple[
     event = counted(registers[read[0]], registers) if len(read) == 1 and read[0] in registers else None
     formula = from_robustness(broken)
     return None if event is None or formula is None else (event, opposite(formula))
+
+
+def kept_rule(value: Expression) -> Formula | None:
+    """Return the rule that is broken where a formula has this robustness; None for other expressions.
+
+    ``!a | b`` becomes ``a -> b``: the two have the same robustness.
+    """
+    if not isinstance(value, Op) or value.op not in ("min", "max"):
+        literal = from_robustness(value)
+        return None if literal is None else opposite(literal)
+    parts = [part for argument in value.args if (part := kept_rule(argument)) is not None]
+    if len(parts) < len(value.args):
+        return None
+    if value.op == "max":
+        return and_(*parts)
+    first = next((index for index, argument in enumerate(value.args) if _begins_negated(argument)), len(parts))
+    given = not_(and_(*(negation_normal_form(not_(part)) for part in parts[:first])))
+    if first in (0, len(parts)):
+        return given if first else or_(*parts)
+    return implies(given.args[0], or_(*parts[first:]))
+
+
+def _begins_negated(value: Expression) -> bool:
+    while isinstance(value, Op) and value.op in ("min", "max"):
+        value = value.args[0]
+    return isinstance(value, When)
 
 
 def opposite(formula: Formula) -> Formula:

@@ -15,6 +15,7 @@ from tltlc.grammar.tree import BinaryExpr, Clause, Expr, NameExpr, NumberExpr, S
 from tltlc.grammar.walk import conjuncts
 from tltlc.logic.formula import Formula, always, and_, bound_of, eventually, not_
 from tltlc.resolve.bounds import no_timer_error
+from tltlc.resolve.breaches import with_breaches
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import Context
 from tltlc.resolve.deadlines import rules_from_start, with_timers
@@ -71,6 +72,10 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
         return None
     conjunction = and_(*(part.formula for part in parts))
     words = vocabulary(conjunction.atoms(), groups, env.context)
+    if words.registers:
+        parts = with_breaches(parts, env.context)
+        conjunction = and_(*(part.formula for part in parts))
+        words = vocabulary(conjunction.atoms(), groups, env.context)
     return Spec(
         name=declaration.name,
         doc=declaration.doc,

@@ -167,11 +167,8 @@ class Timers(TimerAtoms):
         """
         # Like `for` in the language, a rule that begins at the event has a time that counts all of its samples.
         time = f"the next {self.time(high)}" if low else self.time(high + 1)
-        arguments = (time, _text(event), _text(rule))
         value = Op("min", (self.at_most(self._age(low, event), high), self._value(not_(rule))))
-        name = full_name("breach", arguments)
-        self._register(registers.breach(name, value))
-        return self._atom("breach", SignalValue(name), *arguments)
+        return self._breach(value, time, _text(event), _text(rule))
 
     def breach_from_start(self, low: int, high: int, rule: Formula) -> Formula:
         """Return the atom of "it is sample ``low`` to ``high``, counted from 0, and ``rule`` does not hold"."""
@@ -179,11 +176,16 @@ class Timers(TimerAtoms):
         inside = self.at_most(samples, high + 1)
         if low:
             inside = Op("min", (inside, self.at_least(samples, low + 1)))
-        arguments = (
-            (self.time(high + 1), _text(rule)) if low == 0 else (f"{self.time(low)} to {self.time(high)}", _text(rule))
-        )
+        time = self.time(high + 1) if low == 0 else f"{self.time(low)} to {self.time(high)}"
+        return self._breach(Op("min", (inside, self._value(not_(rule)))), time, _text(rule))
+
+    def broken(self, rule: Formula) -> Formula:
+        """Return the atom of "``rule`` does not hold"."""
+        return self._breach(self._value(not_(rule)), _text(rule))
+
+    def _breach(self, value: Expression, *arguments: str) -> Formula:
         name = full_name("breach", arguments)
-        self._register(registers.breach(name, Op("min", (inside, self._value(not_(rule))))))
+        self._register(registers.breach(name, value))
         return self._atom("breach", SignalValue(name), *arguments)
 
     def _samples(self) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from tltl_runtime.game.episode import RecordedEpisode
 from tltlc.api import Atom
+from tltlc.api.monitors import deciding_atoms
 
 
 def broken_atoms(
@@ -15,7 +16,8 @@ def broken_atoms(
 
     ``episode`` must have ended by a violation. Its last transition has a guard. The atoms form a prime
     implicant of this guard that was true at the last step. If several implicants were true, take one
-    with a ``preferred`` atom. The list is empty if none was true.
+    with a ``preferred`` atom. The list is empty if none was true. An atom that says that a rule is broken
+    is replaced by those that break it.
     """
     fspa, last_transition = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
@@ -24,4 +26,5 @@ def broken_atoms(
     ]
     true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
     true_primes.sort(key=lambda prime: not any(preferred(fspa.atoms[atom]) for atom, _ in prime))
-    return [(fspa.atoms[atom].name, expected) for atom, expected in (true_primes[0] if true_primes else ())]
+    reasons = deciding_atoms(fspa, [atom for atom, _ in next(iter(true_primes), ())], episode.atoms[-1].tolist())
+    return [(fspa.atoms[atom].name, holds[atom]) for atom in reasons]

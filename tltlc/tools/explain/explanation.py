@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
-from tltlc.automaton.memory import given_atoms
+from tltlc.automaton.memory import breaches_now, given_atoms
 from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
 from tltlc.automaton.work import OutOfWork
@@ -171,7 +171,7 @@ def explain(fspa: Fspa) -> Explanation:
         level=fspa.level,
         outline=_outline(fspa, formula) if isinstance(formula, Formula) else None,
         exclusive=tuple(tuple(fspa.atoms[index].name for index in group) for group in fspa.exclusive),
-        memory=tuple(_remembered(register) for register in fspa.registers if register.kind not in ("last", "first")),
+        memory=_memory(fspa),
         failures=_failures(fspa, guards),
         judge=fspa.judge,
         ending=ending(fspa),
@@ -182,6 +182,16 @@ def explain(fspa: Fspa) -> Explanation:
         counting=_counting_runs(fspa),
         succeed=_example_trace(fspa, _witness(moves, accept=True)),
         fail=_example_trace(fspa, _witness(moves, accept=False)),
+    )
+
+
+def _memory(fspa: Fspa) -> tuple[Remembered, ...]:
+    """Return what the monitor remembers, without registers that only serve others or forget at once."""
+    forgotten = breaches_now(fspa)
+    return tuple(
+        _remembered(register)
+        for register in fspa.registers
+        if register.kind not in ("last", "first") and register.name not in forgotten
     )
 
 

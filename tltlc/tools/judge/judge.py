@@ -8,6 +8,7 @@ from contextlib import suppress
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import deciding_atoms
 from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.guards import holds, prime_robustness
@@ -221,8 +222,8 @@ class Judge:
         """Return the indices of the atoms that decide which edge leaves ``state`` at a sample.
 
         ``values`` are the values of all atoms at the sample. They make the guard of exactly one edge
-        true. The result has the atoms of this guard's most robust prime implicant.
+        true. The result has the atoms of this guard's most robust prime implicant, or the reasons for them.
         """
         (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
         prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
-        return tuple(atom for atom, _ in prime)
+        return deciding_atoms(self._fspa, [atom for atom, _ in prime], values)
