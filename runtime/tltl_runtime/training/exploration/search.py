@@ -5,8 +5,8 @@ ignores walls: an agent that only increases it gets stuck behind a wall, where t
 goal is least. Random actions alone never crouch, climb and jump in the right order. So the search
 returns to a cell that it has reached, by replaying the actions that led there, and takes random
 actions from there. This is Go-Explore: Ecoffet et al., First return, then explore, Nature 590,
-2021. A cell of the search is a cell of the level's floor together with a state of the automaton.
-The search needs to know nothing else about the level.
+2021. A cell of the search is a cell of the level's floor together with a state of the automaton, and
+with what the spec remembers. The search needs to know nothing else about the level.
 
 An episode from a cell keeps the seed of the episode that reached the cell. So everything that the
 level draws from the seed stays the same, for example which door opens. The search keeps one
@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.policies.spaces.values import batch_row
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding, Actions
+from tltl_runtime.training.exploration.memory_cells import MemoryCells
 from tltl_runtime.training.exploration.replayed_starts import EpisodesInProgress, EpisodeStart
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.api import Diagnostic, record
@@ -48,6 +49,8 @@ No episode then begins at the level's start.
 _REPORT_INTERVAL_S = 0.5
 """The least time, in seconds, between two reports of progress."""
 
+Place = tuple[int, int]
+"""The number of a cell of the level, and the number of what the spec remembers there."""
 PolicyFunction = Callable[[Any], NDArray[Any]]
 """A policy as a function from the observation of one environment to an action, as a row [width]."""
 
@@ -98,7 +101,7 @@ class SearchProgress:
     """The progress of a search.
 
     ``steps`` counts decisions, except replayed ones, which ``replayed`` counts. ``places`` counts
-    the cells that were reached: pairs of a place in the level and an automaton state. ``lengths``
+    the cells that were reached: a place in the level, an automaton state, and what the spec remembers. ``lengths``
     are the lengths of the demonstrations, in decisions. ``complete`` is true if the search ended
     because it had enough demonstrations or had taken enough steps. It is false if the search goes
     on or the training ran out of time. ``dropped`` counts the cells that were left out, because the game
@@ -170,7 +173,8 @@ class TrajectorySearch:
     ``policy``, it plays the first episode of each environment; random actions then continue from
     the cells that it reached. What happens to games that are lost is added to ``faults``.
 
-    ``distances`` are the distances of the automaton's states to the goal, None for traps.
+    ``distances`` are the distances of the automaton's states to the goal, None for traps. ``memory``
+    says which moments differ in what the spec remembers; without it, none do.
 
     With ``earlier``, the search goes on after an earlier one that was stopped: it begins with the
     demonstrations of that search, and with its steps and seconds. The places that it had reached are
@@ -187,12 +191,13 @@ class TrajectorySearch:
         faults: list[Diagnostic] | None = None,
         earlier: FoundWays | None = None,
         distances: Sequence[int | None] = (),
+        memory: MemoryCells | None = None,
     ) -> None:
         self._env = env
         self._policy = policy
         self._faults = [] if faults is None else faults
         self._faults_before = len(self._faults)
-        self._distances = distances
+        self._distances, self._memory = distances, memory
         self._exploration = exploration
         self._before = earlier.progress if earlier else SearchProgress(0, 0, 0.0, 0, (), complete=False)
         self.demonstrations: list[SuccessfulEpisode] = list(earlier.demonstrations) if earlier else []
@@ -201,7 +206,7 @@ class TrajectorySearch:
         self._states = {failure.state for failure in failures}
         self._random = np.random.default_rng(seed)
         self._archive = _CellArchive(self._random)
-        self._cells: set[tuple[int, int]] = set()
+        self._cells: set[tuple[int, Place]] = set()
         self._dropped_starts = self._dropped_cells = 0
 
     def run(self) -> Iterator[SearchProgress]:
@@ -230,7 +235,7 @@ class TrajectorySearch:
             decisions_left -= 1
             for row in range(self._env.num_envs):
                 if not over[row]:
-                    if self._record_cell(episodes, row, infos):
+                    if self._record_cell(episodes, row, observation, infos):
                         decisions_left[row] = max(decisions_left[row], _RANDOM_DECISIONS // 2)
                 elif infos["final_info"]["success"][row]:
                     self._add(
@@ -261,7 +266,9 @@ class TrajectorySearch:
             return choices
         return np.hstack([choices, self._random.normal(size=(self._env.num_envs, layout.number_count))])
 
-    def _record_cell(self, episodes: EpisodesInProgress, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
+    def _record_cell(
+        self, episodes: EpisodesInProgress, row: int, observation: Any, infos: dict[str, NDArray[np.int64]]
+    ) -> bool:
         """Record the current cell of an environment; return whether it is new.
 
         Record nothing and return False in three cases: the player is in the air, where there is no
@@ -272,8 +279,9 @@ class TrajectorySearch:
         is_done = any(demonstration.seed == seed for demonstration in self.demonstrations)
         if cell < 0 or is_done or (self._states and state not in self._states):
             return False
-        self._cells.add((state, cell))
-        return self._archive.add(state, cell, seed, episodes.actions[row])
+        place = cell, self._memory.number(observation["automaton"][row]) if self._memory else 0
+        self._cells.add((state, place))
+        return self._archive.add(state, place, seed, episodes.actions[row])
 
     def _add(self, demonstration: SuccessfulEpisode) -> None:
         if all(known.seed != demonstration.seed for known in self.demonstrations):
@@ -328,19 +336,19 @@ class TrajectorySearch:
 class _CellArchive:
     """The cells that the search has reached, each with the fewest known actions that lead to it.
 
-    A cell is a place in the level together with an automaton state. The archive also counts how
-    often each cell was drawn.
+    A cell is a place in the level, and what the spec remembers there, together with an automaton state.
+    The archive also counts how often each cell was drawn.
     """
 
     def __init__(self, random: np.random.Generator) -> None:
         self._random = random
-        self._starts: dict[int, dict[int, EpisodeStart]] = {}
-        self._draw_counts: dict[int, dict[int, int]] = {}
+        self._starts: dict[int, dict[Place, EpisodeStart]] = {}
+        self._draw_counts: dict[int, dict[Place, int]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._starts)
 
-    def add(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
+    def add(self, state: int, cell: Place, seed: int, actions: Actions) -> bool:
         """Keep ``actions``, which lead to a cell, if they are the fewest so far; return whether the cell is new."""
         starts = self._starts.setdefault(state, {})
         known = starts.get(cell)

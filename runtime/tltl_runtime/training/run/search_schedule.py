@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from tltl_runtime.training.exploration.action_encoding import ActionEncoding
+from tltl_runtime.training.exploration.memory_cells import MemoryCells
 from tltl_runtime.training.exploration.reverse_curriculum import ReverseCurriculum
 from tltl_runtime.training.exploration.search import FoundWays, PolicyFunction, SearchProgress, TrajectorySearch
 from tltl_runtime.training.files.checkpoint import Checkpoint
@@ -82,14 +83,15 @@ def search_after_standstill(
 def _search_options(
     run: TrainingRun, group: ProcessGroup, env: WorkerVectorEnv, file: WaysFile, iteration: int, clock: TrainingClock
 ) -> dict[str, Any]:
-    """Return the options ``seed``, ``earlier`` and ``distances`` of a search after an iteration.
+    """Return the options ``seed``, ``earlier``, ``distances`` and ``memory`` of a search after an iteration.
 
     If ``file`` has ways of an earlier search that was stopped, the time of that search is added to ``clock``.
     """
     earlier = file.read(ActionEncoding(env.single_action_space))
     clock.add(earlier.progress.seconds if earlier else 0.0)
     seed = stream(run, group, Purpose.SEARCH, iteration, len(earlier.demonstrations) if earlier else 0)
-    return {"seed": seed, "earlier": earlier, "distances": [state.distance for state in run.fspa.states]}
+    distances = [state.distance for state in run.fspa.states]
+    return {"seed": seed, "earlier": earlier, "distances": distances, "memory": MemoryCells(run.fspa)}
 
 
 def _ways_file(run: TrainingRun, group: ProcessGroup, state: Checkpoint | None) -> WaysFile:
