@@ -96,9 +96,9 @@ class _Speaker:
         self._atoms = {item.name: item for item in fspa.atoms}
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
         self._phrases: dict[str, Phrase | None] = {}
-        self._passed = self._passed_times()
         kept = {name: kept_rule(value) for name, value in breaches_now(fspa).items() if name in self._atoms}
         self._rules = {name: rule for name, rule in kept.items() if rule is not None}
+        self._passed = self._passed_times()
 
     def spoken(self, formula: Formula) -> Formula:
         """Return a formula with phrases in place of the names of atoms."""

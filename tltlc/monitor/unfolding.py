@@ -41,13 +41,15 @@ def unfolded(fspa: Fspa, work: Work) -> Fspa | None:
     minimal, and verdicts may come late.
 
     The result is None if the truth of these atoms does not determine what is remembered, as with
-    ``highest(x)``, or if there are too many of them.
+    ``highest(x)``, if there are too many of them, or if the clock varies.
 
     Raises:
         OutOfWork: the unfolding takes more than ``work``.
     """
     if not fspa.registers:
         return fspa
+    if fspa.clock_varies:
+        return None
     given = given_atoms(fspa)
     names = {register.name for register in fspa.registers}
     reads_memory = any(not names.isdisjoint(names_read(fspa.atoms[index].expression)) for index in given)
@@ -116,7 +118,7 @@ class _Unfolding:
         leaving = self._leaving[before.state]
         if before.state in self._traps:
             return _Step(leaving[0], before)
-        values = self._samples.from_atoms(letter, before.registers, 1)
+        values = self._samples.from_atoms(letter, before.registers, (), 1)
         try:
             check_exclusive(fspa, values.atoms, 1)
         except MonitorError:

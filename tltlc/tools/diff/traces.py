@@ -15,6 +15,7 @@ from tltlc.resolve.registers import following_atoms
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.relation import OF_A, OF_B
 from tltlc.tools.witness.blocks import given_values, test_block
+from tltlc.tools.witness.step_lengths import length_names, length_of
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -70,14 +71,16 @@ def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: s
     """
     own_names = {name + suffix: name for name in split_names}
     common = {atom.name for atom in fspa.atoms} - set(split_names)
-    return frozenset(own_names.get(name, name) for name in letter if name in common or name in own_names)
+    own = frozenset(own_names.get(name, name) for name in letter if name in common or name in own_names)
+    return own | length_names(letter)
 
 
 def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
     """Return lines that say which atoms hold at each step; equal consecutive steps share a line.
 
     Lines look like ``step 1: alive`` and ``steps 2 to 9 (0.8 s): nothing holds``. The time is that of
-    all these steps, if both specs have the same clock. Atoms that follow from others are left out.
+    all these steps, if both specs have the same clock; if it varies, a single step has its time, too.
+    Atoms that follow from others are left out.
     """
     following = {
         atom.name + (suffix if atom.name in pair.comparison.split_names else "")
@@ -89,10 +92,11 @@ def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
     lines = []
     for letter, run in groupby(enumerate((letter - following for letter in letters), start=1), lambda step: step[1]):
         numbers = [number for number, _ in run]
-        steps = f"step {numbers[0]}"
-        if len(numbers) > 1:
-            time = "" if clock_s is None else f" ({number_text(round(len(numbers) * clock_s, 3))} s)"
-            steps = f"steps {numbers[0]} to {numbers[-1]}{time}"
+        step_s = (length_of(letter, pair.a) or None) if pair.a.clock_varies else clock_s
+        time = "" if step_s is None else f" ({number_text(round(len(numbers) * step_s, 3))} s)"
+        steps = f"steps {numbers[0]} to {numbers[-1]}{time}"
+        if len(numbers) == 1:
+            steps = f"step {numbers[0]}{time if pair.a.clock_varies and numbers[0] > 1 else ''}"
         lines.append(f"{steps}: {', '.join(ordered_atoms(pair, letter)) or 'nothing holds'}")
     return lines
 
@@ -114,7 +118,8 @@ def _state(fspa: Fspa, letters: Iterable[Letter]) -> State:
     leaving, samples = tables(fspa).edges, Samples(fspa, None, [])
     state, registers = 0, samples.initial
     for letter in letters:
-        values = samples.from_atoms(given_values(fspa, letter), registers, 1)
+        length = samples.step_length(length_of(letter, fspa), 1)
+        values = samples.from_atoms(given_values(fspa, letter), registers, length, 1)
         state = next(edge.target for edge in leaving[state] if holds(edge.guard, values.atoms))
         registers = values.registers
     return fspa.states[state]

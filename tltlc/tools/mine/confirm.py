@@ -18,6 +18,7 @@ from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.score import Support
 from tltlc.tools.mine.vocabulary import MiningVocabulary
 from tltlc.tools.witness.blocks import given_values, letter_values
+from tltlc.tools.witness.step_lengths import length_of
 
 _NAME: Final = "mined_candidate_"
 """The prefix of the names that candidates have while they are compiled."""
@@ -126,7 +127,8 @@ class _MemoryRun(_Run):
         self._registers = self._samples.initial
 
     def step(self, letter: Letter) -> None:
-        values = self._samples.from_atoms(given_values(self._fspa, letter), self._registers, 1)
+        length = self._samples.step_length(length_of(letter, self._fspa), 1)
+        values = self._samples.from_atoms(given_values(self._fspa, letter), self._registers, length, 1)
         self._registers = values.registers
         self.state = self._fspa.states[self._target(values.atoms)]
 
