@@ -153,7 +153,10 @@ class Samples:
             return ()
         if given is None:
             raise _error("TLT0619", when, "its time since the sample before is missing, and the clock varies")
-        value = float(given) if hasattr(given, "__float__") and not getattr(given, "ndim", 0) else None
+        try:
+            value = float(given) if hasattr(given, "__float__") and not getattr(given, "ndim", 0) else None
+        except OverflowError:
+            value = inf
         if value is None or not 0.0 <= value < inf:
             text = f"{given!r:.40}" if value is None else number_text(value)
             raise _error("TLT0619", when, f"its time since the sample before is {text}, not a number of seconds")
