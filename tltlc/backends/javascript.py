@@ -18,7 +18,7 @@ from tltlc.backends import Files, Options, Target
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
-from tltlc.program.build import program
+from tltlc.program.build import DT, program
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer, comment_lines
 from tltlc.program.shapes import StateTables
@@ -136,7 +136,9 @@ class _Source:
         present += ["registers"] if fspa.registers else []
         present += ["computed"] if fspa.registers and "failing" in present else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
-        present += ["some"] if fspa.signals or "atom" in present or not all(program_.always_finite) else []
+        present += ["varies"] if fspa.clock_varies else []
+        needs_errors = fspa.clock_varies or "atom" in present or not all(program_.always_finite)
+        present += ["some"] if fspa.signals or needs_errors else []
         present += ["clamp"] if fspa.signals or "range" in present else []
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["params"] if program_.variables_used & {*program_.params} else []
@@ -158,6 +160,8 @@ class _Source:
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": _list(self._states()),
             **self._state_tables(program_.tables),
+            "dt": f"{DT}, " if fspa.clock_varies else "",
+            "length": "lengths.next(cells, reader.first), " if fspa.clock_varies else "",
             "step": step,
         }
         return fill_template("monitor.mjs.txt", places, present)
@@ -176,8 +180,10 @@ class _Source:
         params = [(param.name, "number", snippets.field_comment(param.name, param)) for param in fspa.params]
         title = f"// Types of {self._module}, written by tltlc."
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
+        places["dt"] = f"{DT}: number, " if fspa.clock_varies else ""
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         return fill_template("monitor.d.mts.txt", places, present)
 
     def _states(self) -> list[str]:
@@ -210,9 +216,11 @@ class _Source:
         )
 
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that checks ``dt``, and reads signals, clamped to their ranges, and params into variables."""
         used = self._program.variables_used
         lines: list[str] = []
+        if self._fspa.clock_varies:
+            lines += _branch([f"!({_in_range(DT, 0.0, None)})"], f"throw this.#length({DT});")
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({index}, signals)"
             if name not in used:
