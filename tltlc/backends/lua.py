@@ -28,7 +28,7 @@ from tltlc.backends.languages.lua_syntax import (
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
-from tltlc.program.build import program
+from tltlc.program.build import DT, program
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.shapes import StateTables
@@ -98,7 +98,7 @@ class _Source:
                 name: f"param{key_access(param.name)}" for param, name in zip(fspa.params, program_.params, strict=True)
             },
             **{name: f"value{key_access(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
-            **{name: f"part.{name}" for name in parts},
+            **{name: f"part.{name}" for name in [*parts, *([DT] if fspa.clock_varies else [])]},
             **{
                 name: f"register{key_access(register.name)}"
                 for register, name in zip(fspa.registers, program_.registers, strict=True)
@@ -131,6 +131,7 @@ class _Source:
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["exclusive"] if program_.exclusive else []
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {
             "p": fspa.name,
@@ -169,6 +170,8 @@ class _Source:
             **self._state_tables(program_.tables),
             "returns": ", the progress of the step" if self._at_goal else "",
             "moves": moves,
+            "dt": f"{DT}, " if fspa.clock_varies else "",
+            "length": "length_of(cells, first), " if fspa.clock_varies else "",
             "parts": "\n".join(self._printer.parts).rstrip(),
             "step": step,
         }
@@ -249,9 +252,19 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._tables(), self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        parts.append(self._remember())
-        return snippets.paragraphs(*parts)
+        parts = [self._length(), self._tables(), self._read(), self._compute(), self._check(), self._move()]
+        return snippets.paragraphs(*parts, self._judge(), self._remember())
+
+    def _length(self) -> list[str]:
+        """Return the code that checks ``dt`` and makes it a float, if the clock varies."""
+        if not self._fspa.clock_varies:
+            return []
+        return [
+            f'if type({DT}) ~= "number" or not ({DT} >= 0.0 and {DT} < huge) then',
+            f"  return nil, at_step(self, length_problem({DT}))",
+            "end",
+            f"{self._printer.name(DT)} = {DT} + 0.0",
+        ]
 
     def _tables(self) -> list[str]:
         """Return the Lua code that declares ``problem`` and, if variables are fields of tables, the tables."""
