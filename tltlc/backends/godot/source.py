@@ -22,7 +22,7 @@ from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
-from tltlc.program.build import program
+from tltlc.program.build import DT, program
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called
@@ -93,10 +93,9 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
     """
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
     places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
-    return {
-        script: _Source(fspa, dialect).text(),
-        main: fill_template("monitor_main.gd.txt", places, [dialect.version]),
-    }
+    places["and_length"] = ", _length" if fspa.clock_varies else ""
+    present = [dialect.version, *(["varies"] if fspa.clock_varies else [])]
+    return {script: _Source(fspa, dialect).text(), main: fill_template("monitor_main.gd.txt", places, present)}
 
 
 class _Source:
@@ -104,7 +103,7 @@ class _Source:
 
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
-        reserved = RESERVED | {"registers"} if fspa.registers else RESERVED
+        reserved = RESERVED | ({"registers"} if fspa.registers else set()) | ({DT} if fspa.clock_varies else set())
         self._program = program(fspa, reserved)
         program_ = self._program
         variables = [*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before]
@@ -126,6 +125,7 @@ class _Source:
         present += ["params"] if fspa.params else []
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -161,6 +161,9 @@ class _Source:
             "param_checks": Gd.block(line for index in range(len(fspa.params)) for line in self._param_check(index)),
             "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
             "sample": "sample" if program_.reads_sample else "_sample",
+            "dt": f", {DT}: float" if fspa.clock_varies else "",
+            "and_delta": ", delta" if fspa.clock_varies else "",
+            "wrong_length": ", WRONG_LENGTH" if fspa.clock_varies else "",
             "step": step,
         }
         return fill_template("monitor.gd.txt", places, present)
@@ -228,9 +231,12 @@ class _Source:
         )
 
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that checks ``dt``, and reads signals, clamped to their ranges, and params into variables."""
         used = self._program.variables_used
         lines: list[str] = []
+        if self._fspa.clock_varies:
+            lines += [f"if not ({DT} >= 0.0 and {DT} < INF):", f"\t_wrong_length = {DT}"]
+            lines.append("\treturn _refuse(Problem.WRONG_LENGTH, 0)")
         checked = False
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
             if signal.type == "bool":
