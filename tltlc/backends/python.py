@@ -20,7 +20,7 @@ from tltlc.backends.languages.python_syntax import long_dict, long_tuple, short_
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import with_declaration
-from tltlc.program.build import program
+from tltlc.program.build import DT, program
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import Printer
@@ -55,6 +55,22 @@ _RESERVED: Final = (
 
 _FUNCTIONS: Final[dict[str, str]] = {"power": "pow", "sqrt": "sqrt", "exp": "exp", "tanh": "tanh"}
 """The functions of a program that are in the module ``math``, with their names there."""
+
+_SAMPLE: Final = "dict[str, float]"
+"""The type of a sample of a trace."""
+
+_STEP_LENGTHS: Final[dict[str, str]] = {
+    "collection": "Collection, ",
+    "dt": f", {DT}: float | None = None",
+    "and_dt": f", {DT}",
+    "sample": f"tuple[{_SAMPLE}, float]",
+    "and_length": ", length",
+    "lengths": ", lengths: _StepLengths",
+    "and_lengths": ", lengths",
+    "row_length": ", lengths.of_row(cells, lines)",
+    "object_length": ", lengths.of_object(found, lines)",
+}
+"""The pieces of the template for a clock that varies; with a fixed clock, all but the sample are empty."""
 
 _NO_LIMITING: Final = Assign(states.LIMITING, Int(-1))
 
@@ -205,9 +221,12 @@ class _Source:
         fields: tuple[Signal | Param, ...] = (*fspa.signals, *fspa.params)
         # Where a bound is missing, `inf` is printed.
         used += ["inf"] if any(None in (field.low, field.high) for field in fields) else []
-        pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
+        used += ["inf"] if fspa.clock_varies else []
+        pieces |= _STEP_LENGTHS if fspa.clock_varies else {**dict.fromkeys(_STEP_LENGTHS, ""), "sample": _SAMPLE}
+        pieces["imports"] = f"from math import {', '.join(sorted({*used, 'isfinite'}))}"
         present = ["states" if self._program.tables is None else "tables"]
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         return fill_template("monitor.py.txt", pieces, present)
 
     def _states(self, tables: StateTables | None) -> dict[str, str]:
@@ -282,12 +301,15 @@ class _Source:
         return [line for part in parts for line in part]
 
     def _read(self) -> list[str]:
-        """Return the code that reads signals, as floats clamped to their ranges, and params into variables."""
+        """Return the code that reads ``dt`` and signals, as floats in their ranges, and params into variables."""
         params = f"({', '.join(self._program.params)},) = self._params"
+        lines: list[str] = []
+        if self._fspa.clock_varies:
+            lines += [f"if type({DT}) is not float or not 0.0 <= {DT} < inf:", f"{INDENT}{DT} = self._length({DT})"]
         if not self._program.signals:
-            return [params] if self._program.params else []
+            return [*lines, params] if self._program.params else lines
         signals = [*zip(self._fspa.signals, self._program.signals, strict=True)]
-        lines = ["try:"]
+        lines += ["try:"]
         lines += [f"{INDENT}{variable} = signals[{string_literal(signal.name)}]" for signal, variable in signals]
         lines += ["except KeyError:", f"{INDENT}raise self._missing(signals) from None"]
         for index, (signal, variable) in enumerate(signals):
