@@ -231,7 +231,7 @@ VALUE = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
     max_leaves=8,
 )
-KEYS = st.sampled_from(["text", "spec", "letters", "notation", "other"])
+KEYS = st.sampled_from(["text", "spec", "letters", "lengths", "notation", "other"])
 ASKED = st.one_of(
     VALUE, st.dictionaries(KEYS, VALUE), st.fixed_dictionaries({"text": st.text()}, optional={"letters": VALUE})
 )
@@ -247,3 +247,4 @@ def test_a_json_request_is_read_or_rejected(request_: str) -> None:
         assert isinstance(parsed, Question)
         assert isinstance(parsed.text, str)
         assert all(isinstance(letter, (list, dict)) for letter in parsed.letters)
+        assert all(length is None or isinstance(length, (int, float)) for length in parsed.lengths)

@@ -181,6 +181,55 @@ def test_signals_are_set_by_sliders_and_numbers(page: Page) -> None:
     expect(page.get_by_label("alive at step 1")).not_to_be_checked()
 
 
+TIMED = "signal a: bool\nsignal b: bool\nclock varies\nspec timed { keep a implies eventually within 2 s b }\n"
+
+
+def test_the_time_between_steps_is_set_if_the_clock_varies(page: Page) -> None:
+    write(page, TIMED)
+    expect(page.locator("#english h2")).to_have_text("timed")
+    time, verdicts = page.get_by_label(re.compile("^time since the last step at")), page.locator("#steps .verdict")
+    for _ in range(3):
+        page.get_by_role("button", name="Add step").click()
+    page.get_by_label("a at step 1").check()
+    expect(verdicts).to_have_text(["pending", "pending", "violated"])
+    expect(time.nth(1)).to_have_value("2")
+    time.nth(1).fill("0.5")
+    time.nth(2).fill("1.5")
+    expect(verdicts).to_have_text(["pending", "pending", "pending"])
+    before = wait_for_address(page)
+    time.nth(2).fill("1.75")
+    expect(verdicts.last).to_have_text("violated")
+    wait_for_address(page, before)
+    page.reload()
+    expect(verdicts.last).to_have_text("violated")
+    expect(time.nth(2)).to_have_value("1.75")
+    page.get_by_role("radio", name="signals").check()
+    expect(page.locator("#steps th.column")).to_have_count(2)
+    page.get_by_label("b at step 2").check()
+    expect(verdicts.last).to_have_text("holding")
+    time.nth(1).fill("-1")
+    expect(page.locator("#steps .refused")).to_have_count(1)
+    expect(page.locator("#moment")).to_contain_text("its time since the sample before is -1, not a number of seconds")
+    # With a fixed clock there is no such time.
+    write(page, TIMED.replace("varies", "1 Hz"))
+    expect(time).to_have_count(0)
+    expect(page.locator("#steps .refused")).to_have_count(0)
+    write(page, TIMED)
+    expect(time.nth(1)).to_have_value("-1")
+
+
+def test_a_trace_gets_times_if_its_text_is_changed_to_a_clock_that_varies(page: Page) -> None:
+    write(page, TIMED.replace("varies", "1 Hz"))
+    expect(page.locator("#english h2")).to_have_text("timed")
+    page.get_by_role("button", name="Show a failure").click()
+    expect(page.locator("#steps .verdict").last).to_have_text("violated")
+    times = page.get_by_label(re.compile("^time since the last step"))
+    expect(times).to_have_count(0)
+    write(page, TIMED)
+    expect(times.first).to_have_value("2")
+    expect(page.locator("#steps .verdict").last).to_have_text("violated")
+
+
 def test_a_state_shows_what_remains_by_mouse_and_by_keyboard(page: Page) -> None:
     page.locator("#picture .state").nth(1).click()
     expect(page.locator("#state h3")).to_have_text("State 1 pending 2 steps to the goal")

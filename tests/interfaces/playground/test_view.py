@@ -138,6 +138,48 @@ def test_an_invalid_step_ends_the_rows() -> None:
     assert rows[1]["error"] == "step 2: the signal `a` is nan, not a finite number"
 
 
+VARIES = """clock varies
+signal seen: bool
+signal x in [0, 1]
+spec watch {
+    keep seen implies eventually within 2 s x > 0.5
+}
+"""
+
+
+def test_steps_have_lengths_if_the_clock_varies() -> None:
+    seen, unseen = {"seen": 1.0, "x": 0.25}, {"seen": 0.0, "x": 0.25}
+    for letters in ([seen, unseen, unseen], [["seen"], [], []]):
+        for lengths, verdicts in {
+            (0.0, 2.0, 0.5): ["pending", "pending", "violated"],
+            (0.0, 1.5, 0.5): ["pending", "pending", "pending"],
+            (9.0, 0.0, 1e9): ["pending", "pending", "violated"],
+        }.items():
+            rows = view(VARIES, "", letters, lengths=lengths)["spec"]["rows"]
+            assert [row["verdict"] for row in rows] == verdicts
+        for wrong, text in {None: "missing, and the clock varies", -0.5: "-0.5, not a number of seconds"}.items():
+            rows = view(VARIES, "", letters, lengths=[1.0, wrong])["spec"]["rows"]
+            assert [row.get("error") for row in rows] == [None, f"step 2: its time since the sample before is {text}"]
+        assert len(view(VARIES, "", letters, lengths=[1.0])["spec"]["rows"]) == 2
+    assert view(VARIES)["spec"]["idle"]["dt"] == 2.0
+
+
+def test_a_fixed_clock_needs_no_lengths() -> None:
+    text = VARIES.replace("varies", "2 Hz")
+    assert view(text)["spec"]["idle"]["dt"] is None
+    letters = [["seen"], [], [], [], [], []]
+    rows = view(text, "", letters, lengths=[-1.0, 100.0])["spec"]["rows"]
+    assert rows == view(text, "", letters)["spec"]["rows"]
+    assert [row["verdict"] for row in rows] == ["pending"] * 4 + ["violated"] * 2
+
+
+def test_a_spec_without_time_is_shown_on_a_clock_that_varies() -> None:
+    text = VARIES.replace("within 2 s ", "")
+    assert view(text)["spec"]["idle"]["dt"] == 1.0
+    rows = view(text, "", [["seen"], ["x > 0.5"]], lengths=[0.0, 60.0])["spec"]["rows"]
+    assert [row["accepting"] for row in rows] == [False, True]
+
+
 def test_a_long_list_of_failing_states_is_cut() -> None:
     spec = view("signal a: bool\nsignal b: bool\nspec x = (G[0,20] !a) & F b")["spec"]
     assert len(spec["explanation"]["failures"][0]["states"]) > 20

@@ -37,13 +37,17 @@ MOST_MESSAGES: Final = 200
 
 
 def view(
-    text: str, spec: str = "", letters: Iterable[PageLetter] = (), notation: Notation = "english"
+    text: str,
+    spec: str = "",
+    letters: Iterable[PageLetter] = (),
+    notation: Notation = "english",
+    lengths: Iterable[float | None] = (),
 ) -> dict[str, Any]:
     """Return what the page shows about a text, one of its specs, and a trace of that spec.
 
     ``spec`` is the name of a spec; if none has that name, the first one is shown. ``letters`` are
-    the steps of the trace. ``notation`` is the notation of formulas in the picture. The keys of the
-    result:
+    the steps of the trace. ``notation`` is the notation of formulas in the picture. ``lengths`` are
+    the times since the steps before, in seconds, if the clock varies. The keys of the result:
 
     - ``diagnostics``: each with code, severity, title, help, labels and fixes. Failed tests are
       included. The fixes are those of :mod:`tltlc.tools.lint.fixes`, each with a title and
@@ -82,7 +86,7 @@ def view(
     ]
     if compiled.specs:
         shown = next((spec_view for spec_view in compiled.specs if spec_view.spec.name == spec), compiled.specs[0])
-        page["spec"] = _spec(shown.fspa, explain(shown.fspa), letters, notation)
+        page["spec"] = _spec(shown.fspa, explain(shown.fspa), letters, lengths, notation)
     return page
 
 
@@ -94,7 +98,11 @@ def _messages(
 
 
 def _spec(
-    fspa: Fspa, source_explanation: Explanation, letters: Iterable[PageLetter], notation: Notation
+    fspa: Fspa,
+    source_explanation: Explanation,
+    letters: Iterable[PageLetter],
+    lengths: Iterable[float | None],
+    notation: Notation,
 ) -> dict[str, Any]:
     explanation = json_values(source_explanation)
     svg, note = picture(fspa, notation)
@@ -122,7 +130,7 @@ def _spec(
         ],
         "picture": svg,
         "note": note,
-        "rows": rows(fspa, letters),
+        "rows": rows(fspa, letters, lengths),
         "idle": idle_step(fspa),
         **shortest_traces(fspa),
     }

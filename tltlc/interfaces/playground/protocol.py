@@ -31,13 +31,14 @@ class RequestError(ValueError):
 class Question:
     """A request of the playground page about a spec text.
 
-    ``spec``, ``letters`` and ``notation`` are the parameters of :func:`view`.
+    ``spec``, ``letters``, ``notation`` and ``lengths`` are the parameters of :func:`view`.
     """
 
     text: str
     spec: str
     letters: tuple[PageLetter, ...]
     notation: Notation
+    lengths: tuple[float | None, ...]
 
 
 def answer(request: str) -> str:
@@ -50,7 +51,7 @@ def answer(request: str) -> str:
     if parsed is None:
         return _json(start())
     try:
-        return _json(view(parsed.text, parsed.spec, parsed.letters, parsed.notation))
+        return _json(view(parsed.text, parsed.spec, parsed.letters, parsed.notation, parsed.lengths))
     except (MemoryError, RecursionError):
         return error_answer(TOO_LARGE)
     except Exception:
@@ -59,7 +60,7 @@ def answer(request: str) -> str:
 
 
 def question(request: str) -> Question | None:
-    """Parse a request: a JSON object with the keys ``text``, ``spec``, ``letters`` and ``notation``.
+    """Parse a request: a JSON object with the keys ``text``, ``spec``, ``letters``, ``notation`` and ``lengths``.
 
     All keys but ``text`` are optional. Return None for ``{}``, which asks for the result of
     :func:`start`. Raises RequestError if the text is not a valid request.
@@ -80,7 +81,10 @@ def question(request: str) -> Question | None:
         raise RequestError(f"`notation` must be one of {', '.join(get_args(Notation))}")
     if not all(map(_is_letter, letters)):
         raise RequestError("a letter must be a list of atoms, or an object that maps names of signals to numbers")
-    return Question(parsed["text"], spec, tuple(letters), notation)
+    lengths = parsed.get("lengths", [])
+    if not isinstance(lengths, list) or not all(length is None or _is_number(length) for length in lengths):
+        raise RequestError("`lengths` must be a list of numbers or nulls")
+    return Question(parsed["text"], spec, tuple(letters), notation, tuple(lengths))
 
 
 def error_answer(title: str, help_: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
@@ -96,8 +100,12 @@ def size_error_answer() -> str:
 
 def _is_letter(letter: Any) -> bool:
     if isinstance(letter, dict):
-        return all(isinstance(value, (int, float)) for value in letter.values())
+        return all(map(_is_number, letter.values()))
     return isinstance(letter, list) and all(isinstance(name, str) for name in letter)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float))
 
 
 def _json(value: Any) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain, repeat
 from typing import Any, Final, Union
 
 from tltlc.automaton.fspa import Fspa
@@ -11,6 +12,7 @@ from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
 from tltlc.tools.witness.blocks import given_values
+from tltlc.tools.witness.deadlines import shortest_deadline_s
 from tltlc.tools.witness.samples import SampleFinder
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
@@ -24,10 +26,11 @@ _LONGEST: Final = 200
 """The most steps of a suggested trace; the page shows it in a table."""
 
 
-def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
+def rows(fspa: Fspa, letters: Iterable[PageLetter], lengths: Iterable[float | None] = ()) -> list[dict[str, Any]]:
     """Run the monitor on a trace, and return a row with its output for each step.
 
-    ``letters`` are the inputs of the steps. A letter gives the names of the atoms that hold (unknown
+    ``letters`` are the inputs of the steps, and ``lengths`` the times since the steps before, in
+    seconds; only a clock that varies needs them. A letter gives the names of the atoms that hold (unknown
     names, and those of atoms that follow from others, are ignored), or the values of the signals. In a
     row, ``from`` is the state before the step, ``values`` are the values of the atoms in order, and
     ``signals`` are values of the signals with which exactly these atoms hold; None if no such values
@@ -36,14 +39,15 @@ def rows(fspa: Fspa, letters: Iterable[PageLetter]) -> list[dict[str, Any]]:
     """
     monitor, finder = Monitor(fspa), None if fspa.registers else SampleFinder(fspa)
     result: list[dict[str, Any]] = []
-    for letter in letters:
+    for letter, length in zip(letters, chain(lengths, repeat(None)), strict=False):
+        dt = length if fspa.clock_varies else None
         before = monitor.state
         try:
             if isinstance(letter, Mapping):
-                step = monitor.step(letter)
+                step = monitor.step(letter, dt)
                 sample: object = {signal.name: float(letter[signal.name]) for signal in fspa.signals}
             else:
-                step = monitor.step_atoms(given_values(fspa, frozenset(letter)))
+                step = monitor.step_atoms(given_values(fspa, frozenset(letter)), dt)
                 sample = finder and finder.sample_for_letter(frozenset(letter))
         except MonitorError as error:
             result.append({"error": error.diagnostics[0].title, "help": error.diagnostics[0].help})
@@ -71,9 +75,13 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
 
     In this step, few atoms hold, and the automaton stays in the initial state if possible. ``atoms``
     has the names of the atoms that hold, and ``signals`` the values of the signals; None if no such
-    values were found.
+    values were found. ``dt`` is the time since the step before in seconds, that of the shortest deadline;
+    None unless the clock varies.
     """
+    return {**_idle_letter(fspa), "dt": shortest_deadline_s([fspa]) if fspa.clock_varies else None}
 
+
+def _idle_letter(fspa: Fspa) -> dict[str, Any]:
     def cost(prime: tuple[tuple[int, bool], ...]) -> int:
         return sum(polarity for _, polarity in prime)
 

@@ -66,7 +66,8 @@ async function ask() {
   const busy = setTimeout(() => number === asked && showSummary("Compiling…"), 400);
   try {
     const letters = page.letters.map((letter) => (page.mode === "atoms" ? letter.atoms : (letter.signals ?? {})));
-    const answer = await asking.ask({ text: editor.text(), spec: page.spec, letters, notation: page.notation });
+    const lengths = page.letters.map(({ dt }) => dt ?? null);
+    const answer = await asking.ask({ text: editor.text(), spec: page.spec, letters, notation: page.notation, lengths });
     if (number === asked) take(answer);
   } catch (error) {
     if (number === asked) showSummary(`No answer: ${error.message}`);
@@ -97,10 +98,14 @@ function take({ diagnostics, more, specs, tests, spec }) {
   remember();
 }
 
-/** Give each letter the signals of this spec that it lacks; return whether any lacked one. */
+/** Give each letter the signals of this spec, and the time, that it lacks; return whether any lacked one. */
 function complete({ signals, idle }) {
-  if (page.mode !== "signals") return false;
   let changed = false;
+  for (const letter of idle.dt === null ? [] : page.letters) {
+    changed ||= typeof letter.dt !== "number";
+    letter.dt ??= idle.dt;
+  }
+  if (page.mode !== "signals") return changed;
   for (const letter of page.letters) {
     letter.signals ??= {};
     for (const { name, slider } of signals) {
@@ -198,7 +203,7 @@ function arrows(event) {
 function add() {
   const before = page.letters.at(-1);
   const copied = page.mode === "signals" && before ? before : page.view.idle;
-  page.letters.push(structuredClone(copied));
+  page.letters.push(structuredClone({ ...copied, dt: before?.dt ?? page.view.idle.dt }));
   page.current = page.letters.length - 1;
   page.picked = null;
   render();
@@ -241,7 +246,9 @@ function remember() {
 async function keep() {
   clearTimeout(remembering);
   const letters = page.letters.map((letter) => letter[page.mode]);
-  const fragment = await packed({ text: editor.text(), spec: page.spec, mode: page.mode, letters, current: page.current });
+  const saved = { text: editor.text(), spec: page.spec, mode: page.mode, letters, current: page.current };
+  if (page.view?.idle.dt) saved.lengths = page.letters.map(({ dt }) => dt);
+  const fragment = await packed(saved);
   const fits = fragment.length <= MOST_IN_LINK;
   written = fits ? fragment : "";
   history.replaceState(null, "", written || location.pathname);
@@ -254,7 +261,10 @@ async function restore() {
   if (typeof saved?.text !== "string") return false;
   const mode = saved.mode === "signals" ? "signals" : "atoms";
   const given = Array.isArray(saved.letters) ? saved.letters.filter((letter) => letter && typeof letter === "object") : [];
-  const letters = given.slice(0, MOST_STEPS).map((letter) => ({ atoms: [], signals: null, [mode]: LETTERS[mode](letter) }));
+  const lengths = Array.isArray(saved.lengths) ? saved.lengths.map((dt) => (typeof dt === "number" ? dt : null)) : [];
+  const letters = given.slice(0, MOST_STEPS).map((letter, index) => {
+    return { atoms: [], signals: null, dt: lengths[index] ?? null, [mode]: LETTERS[mode](letter) };
+  });
   const current = Math.min(Math.max(Math.trunc(Number(saved.current)) || 0, 0), Math.max(letters.length - 1, 0));
   editor.setText(saved.text);
   named();

@@ -17,9 +17,10 @@ export function show({ spec, letters, mode, current, rows }) {
   byId("trace").hidden = !spec;
   if (!spec) return;
   const columns = mode === "atoms" ? spec.atoms : spec.signals;
-  const shape = JSON.stringify([mode, columns, letters.length]);
+  const timed = spec.idle.dt !== null;
+  const shape = JSON.stringify([mode, columns, timed, letters.length]);
   if (shape !== built) {
-    build(mode, columns, letters);
+    build(mode, columns, timed, letters);
     built = shape;
   }
   [...byId("steps").querySelectorAll("tbody tr")].forEach((row, index) => {
@@ -31,17 +32,18 @@ export function show({ spec, letters, mode, current, rows }) {
   warn(strangers(spec, letters, mode), mode);
 }
 
-function build(mode, columns, letters) {
+function build(mode, columns, timed, letters) {
   const heads = columns.map((column) =>
     element("th", { scope: "col", class: "column", title: column.doc || null }, column.name, column.unit ? ` (${column.unit})` : ""),
   );
   const titles = ["state", "verdict", "progress", "reward"].map((name) => element("th", { scope: "col" }, name));
-  const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "step"), heads, titles, element("th", { scope: "col", "aria-label": "remove" })));
-  const body = element("tbody", {}, letters.map((letter, index) => rowOf(mode, columns, letter, index)));
+  const times = timed ? element("th", { scope: "col", title: "at the first step it counts for nothing" }, "time since the last step (s)") : [];
+  const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "step"), times, heads, titles, element("th", { scope: "col", "aria-label": "remove" })));
+  const body = element("tbody", {}, letters.map((letter, index) => rowOf(mode, columns, timed, letter, index)));
   byId("steps").replaceChildren(head, body);
 }
 
-function rowOf(mode, columns, letter, index) {
+function rowOf(mode, columns, timed, letter, index) {
   const go = element("button", { type: "button", class: "go", click: () => handlers.go(index) }, String(index + 1));
   const cells = columns.map((column) => element("td", { class: "input" }, mode === "atoms" ? toggle(column, letter, index) : setter(column, letter, index)));
   const remove = element("button", { type: "button", class: "remove", "aria-label": `Remove step ${index + 1}`, click: () => handlers.remove(index) }, "×");
@@ -52,6 +54,7 @@ function rowOf(mode, columns, letter, index) {
       focusin: () => handlers.go(index),
     },
     element("th", { scope: "row" }, go),
+    timed ? element("td", { class: "length" }, clock(letter, index)) : [],
     cells,
     element("td", { class: "at" }),
     element("td", { class: "step-verdict" }),
@@ -59,6 +62,16 @@ function rowOf(mode, columns, letter, index) {
     element("td", { class: "reward" }),
     element("td", {}, remove),
   );
+}
+
+/** The input of the time since the step before. */
+function clock(letter, index) {
+  const read = ({ target }) => {
+    if (target.value === "" || !Number.isFinite(target.valueAsNumber)) return;
+    letter.dt = target.valueAsNumber;
+    handlers.changed();
+  };
+  return element("input", { type: "number", min: 0, step: "any", "aria-label": `time since the last step at step ${index + 1}, in seconds`, input: read });
 }
 
 function toggle({ name, follows }, letter, index) {
@@ -77,7 +90,7 @@ function toggle({ name, follows }, letter, index) {
 function setter({ name, type, values, slider, low, high }, letter, index) {
   const label = `${name} at step ${index + 1}`;
   const set = (value) => {
-    letter.signals[name] = value;
+    letter.signals = { ...letter.signals, [name]: value };
     handlers.changed();
   };
   if (type === "bool") return element("input", { type: "checkbox", "aria-label": label, change: (event) => set(Number(event.target.checked)) });
@@ -103,6 +116,8 @@ function fill(row, letter, step, mode, columns) {
       else if (input !== document.activeElement) input.value = input.type === "number" ? shown(value) : value;
     }
   });
+  const length = row.querySelector("td.length input");
+  if (length && length !== document.activeElement) length.value = letter.dt ?? "";
   const known = step && !step.error;
   row.classList.toggle("wrong", Boolean(step?.error));
   row.querySelector(".at").textContent = known ? step.state : "";
