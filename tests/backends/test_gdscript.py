@@ -30,6 +30,7 @@ from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, exp
 from tests.tools.conformance.runner import Outcome
 from tests.tools.conformance.runners.gdscript3 import RUNNERS
 from tests.waiting import HANG_S
+from tltlc import compile_text
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -308,7 +309,8 @@ WORDS = (
 
 def test_the_versions_differ_only_in_keywords() -> None:
     """No test runs Godot 4, but its scripts differ from those of Godot 3 only in names of types and functions."""
-    for fspa in (cover_and_hide(), awkward(), *(make().fspa for make in [*CASES.values()][::8])):
+    (varying,) = compile_text("clock varies\nsignal a: bool\nspec varying { keep once within 2 s a }")
+    for fspa in (cover_and_hide(), awkward(), varying, *(make().fspa for make in [*CASES.values()][::8])):
         dialect_4 = replace(gdscript.DIALECT, functions=gdscript3.DIALECT.functions, swapped=frozenset())
         new, old = (
             "\n".join(map(str, source.files(fspa, dialect).values())) for dialect in (dialect_4, gdscript3.DIALECT)
