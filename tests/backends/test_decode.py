@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.backends.test_schema import DOCUMENT, DOCUMENTS, PLACES
 from tests.fuzzing import times
-from tltlc import backends
+from tltlc import backends, compile_text
 from tltlc.artefact.decode import decode, read
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.core.source import SourceFile
@@ -41,6 +41,13 @@ def errors(document: object) -> tuple[Diagnostic, ...]:
 @times(25)
 @given(automata() | infinite_automata() | hostile_automata())
 def test_the_document_of_an_automaton_is_decoded_unchanged(fspa: Fspa) -> None:
+    (text,) = backends.emit("json", fspa).values()
+    assert decode(json.loads(str(text)), "bot/artefact") == fspa
+
+
+@pytest.mark.parametrize("clause", ["reach seen", "keep once within 2 s seen"])
+def test_the_document_on_a_clock_that_varies_is_decoded_unchanged(clause: str) -> None:
+    (fspa,) = compile_text(f"clock varies signal seen: bool spec s {{ {clause} }}")
     (text,) = backends.emit("json", fspa).values()
     assert decode(json.loads(str(text)), "bot/artefact") == fspa
 

@@ -18,9 +18,10 @@ def encode(fspa: Fspa) -> dict[str, Any]:
 
     Signals, params and atoms without documentation have no key ``doc``.
     """
+    version = VERSION if fspa.registers or fspa.clock_varies else 1
     return {
         "format": "fspa",
-        "version": VERSION if fspa.registers or fspa.clock_varies else 1,
+        "version": version,
         "spec": {
             "name": fspa.name,
             "doc": fspa.doc,
@@ -36,7 +37,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "signals": [_signal(signal) for signal in fspa.signals],
         "params": [_param(param) for param in fspa.params],
         "atoms": [{"name": atom.name, "expression": to_json(atom.expression), **_doc(atom.doc)} for atom in fspa.atoms],
-        **({"registers": [_register(register) for register in fspa.registers]} if fspa.registers else {}),
+        **({"registers": [_register(register) for register in fspa.registers]} if version == VERSION else {}),
         "exclusive": [list(group) for group in fspa.exclusive],
         "states": [_state(fspa, state) for state in fspa.states],
         "initial": 0,

@@ -354,8 +354,6 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
             data__registers_is_list = isinstance(data__registers, (list, tuple))
             if data__registers_is_list:
                 data__registers_len = len(data__registers)
-                if data__registers_len < 1:
-                    raise JsonSchemaValueException((*path, 'registers'), 'minItems', 1)
                 for data__registers_x, data__registers_item in enumerate(data__registers):
                     if not isinstance(data__registers_item, (dict)):
                         raise JsonSchemaValueException((*path, 'registers', data__registers_x), 'type', 'object')
