@@ -22,6 +22,7 @@ from tests.fixtures import cover_and_hide
 from tests.tools.conformance.runner import Outcome
 from tests.tools.conformance.runners.csharp import RUNNERS, STRICT
 from tests.waiting import HANG_S
+from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
@@ -187,6 +188,8 @@ namespace UnityEngine
 
         public static void LogWarning(object message, Object context) { Console.WriteLine("warning: " + message); }
     }
+
+    public static class Time { public const float fixedDeltaTime = 0.5f; }
 }
 
 namespace UnityEngine.Events
@@ -211,7 +214,10 @@ namespace UnityEngine.Events
         public void Invoke(T value) { if (_called != null) _called(value); }
     }
 }
+"""
+"""A stand-in for Unity's library."""
 
+GAME = r"""
 internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
 {
     private static void Main()
@@ -266,7 +272,7 @@ internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
 
 def test_the_component_for_unity_raises_events_and_reports_errors(tmp_path: Path) -> None:
     write_monitor(cover_and_hide(), tmp_path)
-    (tmp_path / "game.cs").write_text(UNITY)
+    (tmp_path / "game.cs").write_text(UNITY + GAME)
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
     compile_program(tmp_path, "-out:game.exe", *sources)
     lines = [
@@ -277,6 +283,36 @@ def test_the_component_for_unity_raises_events_and_reports_errors(tmp_path: Path
         *("error: step 1: no finite number for the signal `distance(s1)`", "False"),
         *("error: the param `level_size` cannot be 0: its range is [2, 10000]", "False"),
     ]
+    assert run_program(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+
+
+HURRY = r"""
+internal sealed class Game : Tltl.hurry_monitor_behaviour
+{
+    private static void Main()
+    {
+        var game = new Game();
+        game.onDone.AddListener(() => System.Console.WriteLine("done"));
+        game.stepInFixedUpdate = true;
+        game.OnEnable();
+        System.Console.WriteLine(game.Step(-0.25) + " " + game.Step(double.NaN));
+        game.FixedUpdate();
+        game.FixedUpdate();
+        System.Console.WriteLine(game.Monitor.RegisterAt(1));
+        System.Console.WriteLine(game.Step(0.75) + " " + game.Monitor.RegisterAt(1));
+    }
+}
+"""
+
+
+def test_the_component_for_unity_takes_the_time_of_a_frame(tmp_path: Path) -> None:
+    (fspa,) = compile_text("clock varies signal late: bool spec hurry { keep time_holding(not late) <= 1 s }")
+    write_monitor(fspa, tmp_path)
+    (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}{HURRY}")
+    sources = ("game.cs", "hurry_monitor.cs", "hurry_monitor_behaviour.cs")
+    compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
+    refused = "error: step 1: its time since the sample before is -0.25, not a number of seconds"
+    lines = [refused, "False False", "0.5", "done", "True 1.25"]
     assert run_program(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
@@ -315,7 +351,7 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
         params=tuple(replace(param, doc="") for param in fspa.params),
     )
     write_monitor(fspa, tmp_path)
-    (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}")
+    (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}{GAME}")
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
     compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     assert "A ratio in [0, 1]." in (tmp_path / "game.xml").read_text()

@@ -107,11 +107,15 @@ class _Source:
         present += ["params"] if fspa.params else []
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         with recursion_room():
             step = _C.block(self._step())
         places = {
             "p": self._prefix,
             "title": snippets.title_comment(fspa, self._printer.comment),
+            "dt": ", dt" if fspa.clock_varies else "",
+            "dt_parameter": ", double dt" if fspa.clock_varies else "",
+            "row_dt": ", row->dt" if fspa.clock_varies else "",
             "file": self._file,
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),

@@ -69,7 +69,15 @@ def emit(fspa: Fspa, options: Options) -> Files:
     NAME is the name of the automaton.
     """
     monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
-    return {monitor: _Source(fspa, monitor).text(), behaviour: fill_template("behaviour.cs.txt", {"p": fspa.name})}
+    varies = fspa.clock_varies
+    places = {
+        "p": fspa.name,
+        "dt": ", dt" if varies else "",
+        "dt_parameter": "double dt" if varies else "",
+        "fixed_dt": "Time.fixedDeltaTime" if varies else "",
+    }
+    component = fill_template("behaviour.cs.txt", places, ["varies"] if varies else [])
+    return {monitor: _Source(fspa, monitor).text(), behaviour: component}
 
 
 def _pascal_case(name: str) -> str:
@@ -125,6 +133,7 @@ class _Source:
         present += ["note"] if program_.functions & FAILING else []
         present += ["exclusive"] if program_.exclusive else []
         present += ["registers"] if fspa.registers else []
+        present += ["varies"] if fspa.clock_varies else []
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
@@ -133,6 +142,9 @@ class _Source:
         places = {
             "p": fspa.name,
             "title": snippets.title_comment(fspa, self._printer.comment),
+            "dt": ", dt" if fspa.clock_varies else "",
+            "dt_parameter": ", double dt" if fspa.clock_varies else "",
+            "row_dt": ", times.Next(trace)" if fspa.clock_varies else "",
             "file": self._file,
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),

@@ -118,6 +118,7 @@ class _Source:
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["states"] if program_.tables is None else ["tables"]
         present += ["registers"] if fspa.registers else []
+        present += ["varies" if fspa.clock_varies else "fixed"]
         present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -126,6 +127,8 @@ class _Source:
         places = {
             "p": fspa.name,
             "title": "\n".join(self._title()),
+            "dt": ", dt" if fspa.clock_varies else "",
+            "dt_parameter": ", dt: f64" if fspa.clock_varies else "",
             "file": self._file,
             "needs": "\n".join(self._needs(program_.functions & _MATH)),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
