@@ -23,6 +23,7 @@ from tltlc.tools.conformance import (
     operators,
     random_cases,
     shapes,
+    varying_clock,
 )
 from tltlc.tools.conformance.case import CaseBuilders, ConformanceCase
 from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput, Rejection, expected_output
@@ -36,6 +37,7 @@ CASES: Final[CaseBuilders] = {
     **odd_traces.CASES,
     **random_cases.CASES,
     **memory.CASES,
+    **varying_clock.CASES,
 }
 
 VERSION: Final = 1

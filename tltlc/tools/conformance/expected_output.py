@@ -13,14 +13,24 @@ from tltlc.automaton.memory import schedule
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.evaluate import evaluate
-from tltlc.expression.tree import AtomValue, Before, VariableKey
+from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
 from tltlc.monitor import Monitor, Step
+from tltlc.monitor.samples import STEP_LENGTH
 from tltlc.monitor.trace_rows import TraceLines, TraceTable, read_rows
 from tltlc.monitor.traces import TraceSample, read_trace
 from tltlc.resolve.spec import Atom, Register
 
 RejectionKind = Literal[
-    "no sample", "missing signal", "bad cell", "not finite", "by zero", "no root", "too large", "together"
+    "no sample",
+    "missing signal",
+    "missing time",
+    "bad cell",
+    "wrong dt",
+    "not finite",
+    "by zero",
+    "no root",
+    "too large",
+    "together",
 ]
 
 COLUMNS: Final = (
@@ -70,7 +80,7 @@ def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
     monitor, rows, sample = Monitor(fspa), list[tuple[str, ...]](), TraceSample()
     rejection = None
     try:
-        for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
+        for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals, clock_varies=fspa.clock_varies):
             rows.append(_row_cells(len(rows) + 1, monitor.step(sample)))
     except TltlError as error:
         rejection = _rejection(monitor, error.diagnostics[0], trace, sample)
@@ -92,6 +102,8 @@ def _rejection(monitor: Monitor, error: Diagnostic, trace: bytes, sample: TraceS
     fspa, step = monitor.fspa, monitor.steps + 1
     if error.code == "TLT0620":
         return Rejection("no sample", step)
+    if error.code == "TLT0619":
+        return Rejection("wrong dt", step)
     if error.code == "TLT0612":
         return Rejection("not finite", step, tuple(_infinite_signals(fspa, sample)[:1]))
     if error.code == "TLT0613":
@@ -102,7 +114,8 @@ def _rejection(monitor: Monitor, error: Diagnostic, trace: bytes, sample: TraceS
     label = error.labels[0]
     line, _ = label.source.position(label.span.start)
     if error.code == "TLT0621":
-        return Rejection("missing signal", step, _missing_signals(fspa, trace), line)
+        missing = _missing_signals(fspa, trace)
+        return Rejection("missing signal" if missing else "missing time", step, missing or ("time", "dt"), line)
     return Rejection("bad cell", step, line=line)
 
 
@@ -154,10 +167,12 @@ def _conflicting_atoms(monitor: Monitor, sample: TraceSample) -> tuple[str, ...]
 
 
 def _known(monitor: Monitor, sample: TraceSample) -> dict[VariableKey, float]:
-    """Return the values of the signals at a sample that a monitor rejected, and of the registers before it."""
+    """Return what is known at a sample that a monitor rejected: signals, registers before it, and its step length."""
     values: dict[VariableKey, float] = dict(_clamp(monitor.fspa, sample).items())
     for register, value in zip(monitor.fspa.registers, monitor.registers, strict=True):
         values[Before(register.name)] = value
+    if monitor.fspa.clock_varies:
+        values[StepLength()] = sample[STEP_LENGTH]
     return values
 
 

@@ -10,7 +10,7 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY
 from tltlc.monitor import Monitor, MonitorError
-from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.monitor.samples import STEP_LENGTH, Samples, check_exclusive
 from tltlc.monitor.traces import read_trace
 from tltlc.resolve.spec import Signal
 from tltlc.tools.conformance.draw import Draw
@@ -39,52 +39,81 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[object]], end: str = "
     return text.getvalue().encode()
 
 
-def random_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, *, rejected: bool = False) -> bytes:
+def random_trace(
+    fspa: Fspa,
+    draw: Draw,
+    length: int,
+    pools: Pools = EMPTY,
+    *,
+    rejected: bool = False,
+    step_lengths: Sequence[float] = (),
+) -> bytes:
     """Return a random trace, as a CSV file, of ``length`` samples that a monitor accepts.
 
     ``pools`` gives, for some signals, the values to draw from. With ``rejected``, one more sample
     follows, which the monitor rejects. Each sample is drawn again until it fits, but at most
     ``_ATTEMPTS`` times; after that, the last one is taken anyway.
+
+    If the clock varies, the trace has a column ``dt``, whose values are drawn from ``step_lengths``, in
+    seconds.
     """
     # The predicates are compiled once here, not for each sample.
     atoms = Samples(fspa, None, [])
     registers = atoms.initial
     samples: list[Mapping[str, float]] = []
     for number in range(length + rejected):
-        sample, registers = _sample(fspa, atoms, draw, pools, registers, accepted=number < length)
+        dt = {STEP_LENGTH: draw.choice(step_lengths)} if fspa.clock_varies else {}
+        sample, registers = _sample(fspa, atoms, draw, pools, registers, dt, accepted=number < length)
         samples.append(sample)
     rows = [[_text(draw, signal, sample[signal.name]) for signal in fspa.signals] for sample in samples]
-    return table([signal.name for signal in fspa.signals], rows)
+    columns = [signal.name for signal in fspa.signals]
+    if fspa.clock_varies:
+        columns.append("dt")
+        rows = [[*row, repr(sample[STEP_LENGTH])] for row, sample in zip(rows, samples, strict=True)]
+    return table(columns, rows)
 
 
-def lively_trace(fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY) -> bytes:
+def lively_trace(
+    fspa: Fspa, draw: Draw, length: int, pools: Pools = EMPTY, step_lengths: Sequence[float] = ()
+) -> bytes:
     """Draw several random traces, and return the one that visits the most states.
 
     Of those that visit equally many, return the one with the most steps before its verdict is final.
+    ``step_lengths`` is that of :func:`random_trace`.
     """
     return max(
-        [random_trace(fspa, draw, length, pools) for _ in range(_TRIES)], key=lambda trace: _liveliness(fspa, trace)
+        [random_trace(fspa, draw, length, pools, step_lengths=step_lengths) for _ in range(_TRIES)],
+        key=lambda trace: _liveliness(fspa, trace),
     )
 
 
 def _liveliness(fspa: Fspa, trace: bytes) -> tuple[int, int]:
     """Return the number of states that a trace visits, and the number of steps before a final verdict."""
     monitor = Monitor(fspa)
-    steps = [monitor.step(sample) for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals)]
+    samples = read_trace(io.BytesIO(trace), "trace", fspa.signals, clock_varies=fspa.clock_varies)
+    steps = [monitor.step(sample) for sample in samples]
     open_ = sum(step.verdict in ("holding", "pending") for step in steps)
     return len({step.state for step in steps}), open_
 
 
 def _sample(
-    fspa: Fspa, atoms: Samples, draw: Draw, pools: Pools, registers: tuple[float, ...], accepted: bool
+    fspa: Fspa,
+    atoms: Samples,
+    draw: Draw,
+    pools: Pools,
+    registers: tuple[float, ...],
+    dt: Mapping[str, float],
+    accepted: bool,
 ) -> tuple[dict[str, float], tuple[float, ...]]:
     """Return a random sample that a monitor accepts, or one that it rejects if ``accepted`` is false.
 
     ``registers`` are the values of the registers before the sample; those after it are returned, too.
+    ``dt`` has the length of the step if the clock varies.
     Samples are drawn until one fits. After ``_ATTEMPTS`` samples, the last one is returned anyway.
     """
     for _ in range(_ATTEMPTS):
         sample = {signal.name: _value(draw, signal, pools.get(signal.name, ())) for signal in fspa.signals}
+        sample.update(dt)
         after = _registers_after(fspa, atoms, sample, registers)
         if (after is not None) == accepted:
             break
