@@ -296,23 +296,37 @@ internal sealed class Game : Tltl.hurry_monitor_behaviour
         game.stepInFixedUpdate = true;
         game.OnEnable();
         System.Console.WriteLine(game.Step(-0.25) + " " + game.Step(double.NaN));
+        game.signals.x = 0.0;
         game.FixedUpdate();
         game.FixedUpdate();
         System.Console.WriteLine(game.Monitor.RegisterAt(1));
-        System.Console.WriteLine(game.Step(0.75) + " " + game.Monitor.RegisterAt(1));
+        // The time of a refused sample counts for the next one, but not a wrong time.
+        game.signals.x = double.NaN;
+        System.Console.WriteLine(game.Step(0.25) + " " + game.Step(-4.0) + " " + game.Step(double.NaN));
+        game.signals.x = 0.0;
+        System.Console.WriteLine(game.Step(0.5) + " " + game.Monitor.RegisterAt(1));
+        game.signals.x = double.NaN;
+        game.Restart();
+        System.Console.WriteLine(game.Step(9.0));
+        game.Restart();
+        game.signals.x = 0.0;
+        System.Console.WriteLine(game.Step(0.0) + " " + game.Step(0.125) + " " + game.Monitor.RegisterAt(1));
     }
 }
 """
 
 
 def test_the_component_for_unity_takes_the_time_of_a_frame(tmp_path: Path) -> None:
-    (fspa,) = compile_text("clock varies signal late: bool spec hurry { keep time_holding(not late) <= 1 s }")
+    signals = "signal late: bool signal x in [0, 1]"
+    (fspa,) = compile_text(f"clock varies {signals} spec hurry {{ keep time_holding(not late) <= 1 s or x > 0.5 }}")
     write_monitor(fspa, tmp_path)
     (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}{HURRY}")
     sources = ("game.cs", "hurry_monitor.cs", "hurry_monitor_behaviour.cs")
     compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     refused = "error: step 1: its time since the sample before is -0.25, not a number of seconds"
-    lines = [refused, "False False", "0.5", "done", "True 1.25"]
+    missing = ": no finite number for the signal `x`"
+    lines = [refused, "False False", "0.5", f"error: step 3{missing}", "False False False", "done", "True 1.25"]
+    lines += [f"error: step 1{missing}", "False", "True True 0.125"]
     assert run_program(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
 
 

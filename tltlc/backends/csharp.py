@@ -72,8 +72,8 @@ def emit(fspa: Fspa, options: Options) -> Files:
     varies = fspa.clock_varies
     places = {
         "p": fspa.name,
-        "dt": ", dt" if varies else "",
         "dt_parameter": "double dt" if varies else "",
+        "elapsed": ", elapsed" if varies else "",
         "fixed_dt": "Time.fixedDeltaTime" if varies else "",
     }
     component = fill_template("behaviour.cs.txt", places, ["varies"] if varies else [])
