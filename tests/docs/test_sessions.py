@@ -47,11 +47,11 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("page", "tool", "commands"),
     [
-        ("unreal", "g++", 3),
+        ("unreal", "g++", 5),
         ("web", "node", 5),
         ("love", "lua5.4", 6),
-        ("unity", "mcs", 3),
-        ("rust", "rustc", 3),
+        ("unity", "mcs", 5),
+        ("rust", "rustc", 5),
         ("godot", "godot3-server", 5),
     ],
 )
