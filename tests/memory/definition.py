@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from math import ceil, exp, inf, sqrt, tanh
 from typing import Any, Final
@@ -29,6 +30,7 @@ _CONNECTIVES: Final = ("not", "and", "or", "implies", "iff")
 Range = tuple[float, float]
 
 
+@cache
 def exact(number: NumberExpr) -> Fraction:
     """Return a number with its unit, in SI units."""
     return Fraction(repr(number.value)) * Fraction(_UNITS.get(number.unit or "", "1"))
@@ -55,7 +57,7 @@ class Definition(Names):
         self._params = params
         self._known: dict[Any, Any] = {}
         for declaration in module.declarations:
-            if isinstance(declaration, tree.ClockDecl):
+            if isinstance(declaration, tree.ClockDecl) and declaration.value is not None:
                 unit, value = declaration.value.unit, declaration.value
                 self._period = 1 / Fraction(repr(value.value)) if unit == "Hz" else exact(value)
 

@@ -14,6 +14,7 @@ at the first sample             ``F G[T] p`` is ``F(p has held for T | p & !X tr
 at the first sample             ``G(p -> F[T] q)`` is ``G !late & G(due -> X true)``
 at the first sample             ``G(p -> G[T] q)`` is ``G !breach``
 at the first sample             ``G(p -> X f)``, f as above, is the same of ``previously p``, & ``G(p -> X true)``
+at the first sample             ``G(p -> !F[T] f)`` is ``!F(p & F[T] f)``
 anywhere                        ``F(p & F[later, T] f)`` is ``F(p & X(recent U (recent & f)))``
 anywhere                        ``F(p & F[T] f)`` is ``F(p & (lately U (lately & f)))``
 ==============================  ==============================================================
@@ -99,9 +100,11 @@ class _TimedRewriting(Rewriting):
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
         temporal = [part for part in clause if not is_present(part)]
         window = _window(temporal[0]) if len(temporal) == 1 else None
+        event = and_(*(negated(part) for part in clause if part not in temporal))
+        if len(temporal) == 1 and temporal[0].op == "not" and time_bound_of(temporal[0].args[0]) is not None:
+            return not_(eventually(self.anchored(and_(event, temporal[0].args[0]), None)))
         if window is None or window.later:
             return None
-        event = and_(*(negated(part) for part in clause if part is not temporal[0]))
         if not self.fits(event, window.body):
             return None
         request = self._timers.previous(event) if window.following else event
