@@ -25,7 +25,7 @@ OPERATORS = (
 BOUNDS = [
     ("eventually within 20 steps p", "F[0,20] p", "<>[0,20] p", "◇[0,20] p"),
     ("eventually within 1 step p", "F[0,1] p", "<>[0,1] p", "◇[0,1] p"),
-    ("eventually within 2 s (p)", "F[0,2 s](p)", "<>[0,2 s](p)", "◇[0,2 s](p)"),
+    ("eventually within 2 s (p)", "F within 2 s (p)", "<> within 2 s (p)", "◇ within 2 s (p)"),
     ("always for 20 steps not p", "G[0,19] !p", "[][0,19] !p", "□[0,19] ¬p"),
     ("always for 1 step p", "G[0,0] p", "[][0,0] p", "□[0,0] p"),
     ("always for 2 s p", "G for 2 s p", "[] for 2 s p", "□ for 2 s p"),
@@ -77,6 +77,13 @@ def test_bounds_are_written_in_each_style(row: tuple[str, ...]) -> None:
         for style, expected in zip(STYLES, row, strict=True):
             assert check(f"spec s = {spelling}", style) == f"spec s = {expected}\n"
         assert formula(spelling) == formula(row[0])
+
+
+@pytest.mark.parametrize(("style", "expected"), [*zip(STYLES, BOUNDS[2], strict=True)])
+def test_a_time_from_now_on_is_in_words_in_each_style(style: str, expected: str) -> None:
+    # Brackets need a fixed clock, and the clock may be declared in another file.
+    assert check("spec s = F[0,2 s] (p)", style) == f"spec s = {expected}\n"
+    assert formula("F[0,2 s] (p)") == formula(expected)
 
 
 @pytest.mark.parametrize(

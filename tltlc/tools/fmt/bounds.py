@@ -34,8 +34,9 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
 
     ``for 3 steps`` gives the number of samples, and ``[0,2]`` the offset of the last one, so both
     mean the same. A time is rounded up to samples, so ``for`` with a time cannot be written in
-    brackets. Neither can ``after``, or the bound of an operator about the past. ``number`` returns a
-    number as the source spells it.
+    brackets. Neither can ``after``, or the bound of an operator about the past. ``within 2 s`` is
+    always in words, since brackets need a fixed clock, and another file may declare the clock.
+    ``number`` returns a number as the source spells it.
     """
     bound = node.bound
     if bound is None:
@@ -43,7 +44,7 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
     high = number(bound.high)
     if bound.words:
         texts = {"words": f"{_WORD[node.op]} {high}"}
-        last = _in_brackets(node.op, bound.high, high)
+        last = _in_brackets(node.op, high) if bound.high.unit in _STEPS else None
         return {**texts, "brackets": f"[0,{last}]"} if last else texts
     assert bound.low is not None
     low = number(bound.low)
@@ -53,17 +54,18 @@ def bound_forms(node: tree.Unary, number: Callable[[tree.NumberExpr], Number]) -
     if bound.low.value or bound.low.unit not in _STEPS:
         return texts
     phrase = _in_words(node.op, bound.high, high)
-    return {**texts, "words": f"{_WORD[node.op]} {phrase}"} if phrase else texts
+    if phrase is None:
+        return texts
+    words = {"words": f"{_WORD[node.op]} {phrase}"}
+    return {**texts, **words} if bound.high.unit in _STEPS else words
 
 
-def _in_brackets(op: str, high: tree.NumberExpr, number: Number) -> str | None:
-    """Convert a bound in words to brackets; return the upper end of the brackets.
+def _in_brackets(op: str, number: Number) -> str | None:
+    """Convert a bound of some steps in words to brackets; return the upper end of the brackets.
 
-    ``high`` is the number after ``within`` or ``for``, and ``number`` its text. For ``within 3 steps``
-    return ``3``, and for ``for 3 steps`` return ``2``. Return None if no brackets mean the same.
+    ``number`` is the text after ``within`` or ``for``. For ``within 3 steps`` return ``3``, and for
+    ``for 3 steps`` return ``2``. Return None if no brackets mean the same.
     """
-    if high.unit not in _STEPS:
-        return str(number) if op == "F" else None
     count = number.digits
     if op == "F":
         return count
