@@ -45,7 +45,7 @@ from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.trampoline import FormulaGenerator, run_to_result
-from tltlc.resolve.unfolding import unfold
+from tltlc.resolve.unfolding import bounded_parts, unfold
 from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, ResolvedValue, Unknown
 
@@ -72,6 +72,19 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 def formula(expr: Expr, env: Env) -> Formula:
     """Return the formula of an expression; raise ResolutionError if it is not a formula or too large."""
     return unfold(with_bounds(expr, env), env.context)
+
+
+def known_formula(expr: Expr, env: Env) -> Formula | None:
+    """Return the formula of an expression without bounds.
+
+    Return None if the expression is not a formula or too large, or if it has a bound although the clock
+    varies: then only a whole clause has timers in place of bounds.
+    """
+    try:
+        known = formula(expr, env)
+    except ResolutionError:
+        return None
+    return None if any(True for _ in bounded_parts(known)) else known
 
 
 def with_bounds(expr: Expr, env: Env) -> Formula:

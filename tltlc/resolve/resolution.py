@@ -89,10 +89,7 @@ def resolve_atoms(
     def formula_of(expression: Expr) -> Formula | None:
         # The context refers to expressions by identity, so they must live as long as the context.
         expressions.append(expression)
-        try:
-            return formulas.formula(expression, env)
-        except ResolutionError:
-            return None
+        return formulas.known_formula(expression, env)
 
     if context.log.diagnostics():
         return None, formula_of, context.log.diagnostics()

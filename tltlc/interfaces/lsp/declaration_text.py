@@ -23,7 +23,6 @@ from tltlc.interfaces.lsp.occurrences import Symbol
 from tltlc.logic.text.english import english_text
 from tltlc.resolve import formulas, units
 from tltlc.resolve.context import Context
-from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.spec import Spec
 from tltlc.resolve.values import Env, number_text, range_text
 
@@ -146,11 +145,8 @@ def _english(declaration: LetDecl, env: Env) -> str | None:
     binding = env.scope.names.get(declaration.name)
     if binding is None:
         return None
-    try:
-        formula = formulas.formula(declaration.body, env.inside(binding.scope, {}))
-    except ResolutionError:
-        return None
-    return english_text(formula)
+    formula = formulas.known_formula(declaration.body, env.inside(binding.scope, {}))
+    return None if formula is None else english_text(formula)
 
 
 def _article(type_: str) -> str:

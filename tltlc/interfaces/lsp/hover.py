@@ -21,7 +21,6 @@ from tltlc.interfaces.lsp.slow_analysis import DocumentAnalysis
 from tltlc.logic import formula as build
 from tltlc.logic.text.english import english_text
 from tltlc.resolve import formulas
-from tltlc.resolve.problem import ResolutionError
 
 _FORMS: Final = {**DECLARATIONS, **CLAUSES, **TEST_ITEMS}
 _FORMULA_CLAUSES: Final = ("reach", "keep", "avoid", "require")
@@ -115,11 +114,8 @@ def _part(document: Document, clause: Clause, offset: int) -> tuple[str, Span] |
 
 
 def _meaning(document: Document, part: Expr) -> str | None:
-    try:
-        formula = formulas.formula(part, document.resolution.env)
-    except ResolutionError:
-        return None
-    return _sentence(formula)
+    formula = formulas.known_formula(part, document.resolution.env)
+    return None if formula is None else _sentence(formula)
 
 
 def _meaning_of_clause(document: Document, clause: Clause) -> str | None:

@@ -19,9 +19,7 @@ from tltlc.logic.text.phrases import is_state
 from tltlc.resolve import formulas
 from tltlc.resolve.groups import entities
 from tltlc.resolve.imports import LoadedModule
-from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.spec import ResolvedFile, Spec
-from tltlc.resolve.unfolding import bounded_parts
 from tltlc.resolve.values import Env
 from tltlc.tools.lint.names import MentionedNames, mentioned_names
 
@@ -57,16 +55,12 @@ class ScopedExpression:
         return ScopedExpression(tree, self.env)
 
     def formula(self) -> Formula | None:
-        """Return the resolved formula, or None if the expression is not a formula.
+        """Return the resolved formula without bounds.
 
-        None also for a formula with a bound on a clock that varies: only the timers of a whole clause give
-        it a meaning.
+        Return None if the expression is not a formula, or if it has a bound on a clock that varies,
+        for which only a whole clause has a timer.
         """
-        try:
-            formula = formulas.formula(self.tree, self.env)
-        except ResolutionError:
-            return None
-        return None if self.env.context.clock_varies and any(True for _ in bounded_parts(formula)) else formula
+        return formulas.known_formula(self.tree, self.env)
 
     def depends_on_one_step(self) -> bool:
         """Whether the expression is a formula with atoms, but without temporal operators.
