@@ -48,6 +48,8 @@ def marks(truth: Sequence[bool]) -> str:
         ("require eventually within 1 s p", "..1.", "....", (0, 0.5, 0.75, 0), "...."),
         ("require always for 1 s p", "11..", "....", (9, 0.5, 0.5, 0), "1111"),
         ("require always for 1 s p", "11.1", "....", (9, 0.5, 0.25, 0), "11.."),
+        ("require always for 1 s p require always for 2 s q", "11..", "111.", (9, 0.5, 0.5, 1), "1111"),
+        ("require always for 1 s p require always for 2 s q", "11..", "111.", (9, 0.5, 0.5, 0.75), "111."),
         ("keep p implies eventually within 1 s q", "1...", "..1.", (0, 0.5, 0.5, 0), "..11"),
         ("keep p implies eventually within 1 s q", "1...", "..1.", (0, 0.5, 0.75, 0), "...."),
         ("keep within 1 s of p, q", "11..", "...1", (0, 0.25, 0.5, 0.25), "...1"),

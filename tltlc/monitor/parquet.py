@@ -9,7 +9,7 @@ from typing import Any, Final
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.io.limits import PARQUET
 from tltlc.monitor.packed import unpacked
-from tltlc.monitor.sample_times import times_name
+from tltlc.monitor.sample_times import lengths_name, times_name
 from tltlc.resolve.spec import Signal
 
 _MAGIC: Final = b"PAR1"
@@ -92,8 +92,8 @@ def _columns(file: Any, signals: Collection[Signal] | None) -> list[str]:
     if signals is None:
         wanted = {name for name, kind in kinds if _is_value(kind) or _is_text(kind)}
     else:
-        time = times_name([name for name, _ in kinds], signals)
-        wanted = {*(signal.name for signal in signals), *([time] if time else [])}
+        names = [name for name, _ in kinds]
+        wanted = {signal.name for signal in signals} | {times_name(names, signals), lengths_name(names, signals)}
     enums = wanted if signals is None else {signal.name for signal in signals if signal.values}
     names = [name for name, _ in kinds if name in wanted]
     for name, kind in kinds:
