@@ -30,7 +30,7 @@ def test_witnesses_pass_as_tests_and_as_traces(clauses: str, tltlc: Run, inside:
     text = f"{HEAD}spec s {{ {clauses} }}\n"
     Path("s.tltl").write_text(text)
     outcome = tltlc("witness", "s.tltl", "--cover")
-    assert outcome.out.count("test \"") >= 1
+    assert outcome.out.count('test "') >= 1
     assert "step for " in outcome.out
     Path("pasted.tltl").write_text(text + outcome.out)
     result = tltlc("test", "pasted.tltl")
