@@ -68,6 +68,10 @@ def test_the_guide_to_many_members_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "many.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 8
 
 
+def test_the_guide_to_frame_times_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "frame-times.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 4
+
+
 def test_the_guide_to_linting_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "linting.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 2
 
