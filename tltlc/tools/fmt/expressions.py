@@ -93,7 +93,9 @@ class Expressions:
         """Write items with commas between them, as many on each line as fit."""
         for place, item in enumerate(items):
             comma = "," if place < len(items) - 1 else ""
-            self._page.put_comments(item.span.start, indent)
+            # The comments of an item that stays whole come before it, on the level of the list.
+            is_whole = isinstance(item.value, tree.IsExpr) or (item.value is not None and is_speed(item.value))
+            self._page.put_comments(item.span.end if is_whole else item.span.start, indent)
             if place and not self._page.is_at_line_start:
                 text = self._item_text(item)
                 if text is not None and 1 + len(text) + len(comma) <= self._page.room:
