@@ -110,7 +110,7 @@ def test_a_test_block_has_steps_and_expectations() -> None:
     assert (test.title, test.spec.name) == ("the exit first does not count", "cover_and_hide")
     steps = [item for item in test.items if isinstance(item, tree.TestStep)]
     expects = [item for item in test.items if isinstance(item, tree.TestExpect)]
-    assert [(step.times, len(step.atoms)) for step in steps] == [(1, 2), (3, 2)]
+    assert [(step.times, len(step.atoms)) for step in steps] == [(1, 2), (1, 2), (3, 2)]
     assert [(item.kind, item.value, item.comparison) for item in expects] == [
         ("verdict", "pending", None),
         ("progress", 0.5, ">="),

@@ -33,7 +33,7 @@ CLAUSES: Final = {
 }
 
 TEST_ITEMS: Final = {
-    "step": "`step a, not b`, `step 3x a` or `step for 2 s a`",
+    "step": "`step a, not b`, `step 3x a`, `step for 2 s a` or `step health = 40, a`",
     "expect": '`expect satisfied` (or holding, pending, violated), `expect progress >= 0.5` or `expect state "F a"`',
 }
 

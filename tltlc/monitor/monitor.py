@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from copy import copy
 from typing import Any, NamedTuple, SupportsFloat
 
@@ -130,6 +130,21 @@ class Monitor:
             raise ValueError(f"{needed} needed, not {tuple(values)}")
         length = self._samples.step_length(dt, self.steps + 1)
         return self._take(self._samples.from_atoms(values, self.registers, length, self.steps + 1), last)
+
+    def step_test(self, numbers: Mapping[str, float], holds: Collection[str], dt: SupportsFloat | None = None) -> Step:
+        """Take one sample as a ``step`` of a test gives it, and return the result.
+
+        ``numbers`` maps the names of some signals to numbers in SI units. Atoms that depend on no other
+        number are computed, and so are those that follow from other atoms. Of the rest, those named in
+        ``holds`` hold, with the value 1, and the others do not, with the value -1. ``dt`` is that of
+        :meth:`step`.
+
+        Raises:
+            MonitorError: TLT0613 an atom without a value, TLT0614 exclusive atoms that hold at once, TLT0619
+                as for :meth:`step`. The state stays unchanged.
+        """
+        length = self._samples.step_length(dt, self.steps + 1)
+        return self._take(self._samples.of_test(numbers, holds, self.registers, length, self.steps + 1), last=False)
 
     def _take(self, sample: SampleValues, last: bool) -> Step:
         values = sample.atoms

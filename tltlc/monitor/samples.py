@@ -6,7 +6,7 @@ a sample.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from copy import copy
 from math import inf, isfinite
 from typing import Final, NamedTuple, SupportsFloat
@@ -16,6 +16,7 @@ from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
+from tltlc.resolve.computed_atoms import Computed, computed
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
@@ -58,6 +59,7 @@ class Samples:
         self._order = schedule(fspa)
         self.given = given_atoms(fspa)
         self._from_atoms = registers_from_atoms(fspa)
+        self._computed_from: dict[frozenset[str], Computed] = {}
         registers = [register.name for register in fspa.registers]
         atoms = [AtomValue(atom.name) for atom in fspa.atoms] if registers else []
         length = (StepLength(),) if fspa.clock_varies else ()
@@ -177,6 +179,30 @@ class Samples:
             [0.0] * len(self._names), registers, dt_s, when, dict(zip(self.given, given, strict=True))
         )
 
+    def of_test(
+        self,
+        numbers: Mapping[str, float],
+        holds: Collection[str],
+        registers: Sequence[float],
+        dt_s: tuple[float, ...],
+        when: int | str,
+    ) -> SampleValues:
+        """Return the values of all atoms and registers at a step of a test.
+
+        ``numbers`` has the values of some signals. Atoms that depend on no other number are computed, as are
+        those that follow from other atoms. Of the rest, those named in ``holds`` are 1, and all others -1.
+        ``dt_s`` is a result of :meth:`step_length`; ``when`` and the errors are those of :meth:`values`.
+        """
+        fspa = self._fspa
+        set_names = frozenset(numbers)
+        if set_names not in self._computed_from:
+            self._computed_from[set_names] = computed(set_names, fspa.atoms, fspa.registers, fspa.signals)
+        found = self._computed_from[set_names]
+        names = {index: fspa.atoms[index].name for index in self.given}
+        given = {index: 1.0 if name in holds else -1.0 for index, name in names.items() if name not in found.atoms}
+        sample = [numbers.get(name, float(name in holds)) for name in self._names]
+        return self._with_registers(sample, registers, dt_s, when, given, found.registers)
+
     def _with_registers(
         self,
         sample: Sequence[float],
@@ -184,8 +210,12 @@ class Samples:
         dt_s: tuple[float, ...],
         when: int | str,
         given: Mapping[int, float] | None = None,
+        updated: Collection[str] = (),
     ) -> SampleValues:
-        """Return the values of atoms and registers at a sample, with the values of the atoms in ``given``."""
+        """Return the values of atoms and registers at a sample, with the values of the atoms in ``given``.
+
+        With ``given``, registers keep their value unless they follow from atoms or are named in ``updated``.
+        """
         signals, count = len(self._names), len(self._updates)
         known = [*sample, *before, *before, *[0.0] * len(self._atoms), *dt_s]
         for step in self._order:
@@ -196,7 +226,7 @@ class Samples:
                 else:
                     value = self._atom_value(index, known, when)
                     known[signals + 2 * count + index] = self._clamped_atom_value(index, value, when)
-            elif given is None or self._fspa.registers[index].name in self._from_atoms:
+            elif given is None or (name := self._fspa.registers[index].name) in self._from_atoms or name in updated:
                 known[signals + index] = self._register_value(index, known, when)
         atoms = known[signals + 2 * count : len(known) - len(dt_s)]
         return SampleValues(tuple(atoms), tuple(known[signals : signals + count]))

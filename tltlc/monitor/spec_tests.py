@@ -7,7 +7,6 @@ from operator import ge, gt, le, lt
 from typing import Final
 
 from tltlc.automaton.fspa import NOTATIONS, Fspa
-from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
@@ -50,10 +49,10 @@ def run_tests(program: ResolvedFile, automata: Iterable[Fspa]) -> tuple[TestResu
 def run_test(test: Test, fspa: Fspa) -> TestResult:
     """Run one test of a spec on the automaton of the spec, and return the result.
 
-    At each ``step`` of the test, the atoms that the step names have the value 1, and all other
-    atoms -1, except those that follow from others (:func:`tltlc.automaton.memory.given_atoms`). An
-    ``expect`` is about the trace of all steps before it. The test ends with the first failure, which
-    has the code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
+    At each ``step`` of the test, the atoms that the step names have the value 1, and all other atoms -1,
+    except those that follow from others or from numbers of the test (:meth:`Monitor.step_test`). An
+    ``expect`` is about the trace of all steps before it. The test ends with the first failure, which has
+    the code TLT0640 if an expectation fails, or TLT0614 if exclusive atoms hold at the same step.
     """
     monitor = Monitor(fspa)
     last: Step | None = None
@@ -63,11 +62,10 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
             if failure is not None:
                 return TestResult(test, failure)
             continue
-        values = [1.0 if fspa.atoms[index].name in item.holds else -1.0 for index in given_atoms(fspa)]
         try:
             for _ in range(item.times):
                 before, registers = last, monitor.registers
-                last = monitor.step_atoms(values, item.dt_s if fspa.clock_varies else None)
+                last = monitor.step_test(item.numbers, item.holds, item.dt_s if fspa.clock_varies else None)
                 if last == before and monitor.registers == registers:
                     break  # Further steps with the same sample would give the same result.
         except MonitorError as error:

@@ -5,10 +5,11 @@ They do not contain parts of the syntax tree, only spans in the source text for 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
 from tltlc.core.names import ComparisonName, full_name
-from tltlc.core.record import record
+from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
@@ -210,14 +211,17 @@ class Vocabulary:
 
 @record
 class RepeatedSample:
-    """A ``step`` of a test: a sample of truth values, repeated ``times`` times.
+    """A ``step`` of a test: a sample, repeated ``times`` times.
 
-    The atoms named in ``holds`` are true at the sample, and all other atoms are false. ``dt_s`` is the
-    time of each sample since the sample before, in seconds, where the clock varies.
+    ``numbers`` maps the names of signals that the test sets to their values, in SI units. Atoms that
+    depend on no other number are computed. Of the rest, those named in ``holds`` are true at the sample,
+    and all others are false. ``dt_s`` is the time of each sample since the sample before, in seconds,
+    where the clock varies.
     """
 
     times: int
     holds: frozenset[str]
+    numbers: Mapping[str, float] = EMPTY
     dt_s: float = 0.0
 
 

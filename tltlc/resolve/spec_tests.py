@@ -1,4 +1,4 @@
-"""Resolve ``test`` blocks: traces of truth values of atoms, and what a spec must say of them."""
+"""Resolve ``test`` blocks: traces of truth values of atoms and of numbers, and what a spec must say of them."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from tltlc.resolve.constants import samples, seconds
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.registers import following_atoms
+from tltlc.resolve.set_numbers import is_setting, settings_of
 from tltlc.resolve.sources import sources
 from tltlc.resolve.spec import Expect, RepeatedSample, Spec, Test
 from tltlc.resolve.values import Env
@@ -43,9 +44,19 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
         return None
     items: list[RepeatedSample | Expect] = []
     complete = True
+    try:
+        settings = settings_of(declaration, spec, env)
+    except ResolutionError as failure:
+        context.log.add(failure.diagnostic)
+        return None
+    numbers: dict[str, float] = {}
     for item in declaration.items:
         try:
-            items.append(_step(item, spec, env) if isinstance(item, TestStep) else _expect(item, env))
+            if isinstance(item, TestStep):
+                numbers |= settings.values[item]
+                items.append(_step(item, dict(numbers), settings.computed, spec, env))
+            else:
+                items.append(_expect(item, env))
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
             complete = False
@@ -57,12 +68,14 @@ def resolve_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env)
     return Test(declaration.title, name, tuple(items), source, declaration.span) if complete else None
 
 
-def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
+def _step(
+    item: TestStep, numbers: Mapping[str, float], computed: frozenset[str], spec: Spec, env: Env
+) -> RepeatedSample:
     source = env.scope.source
     names = {_without_spaces(atom.name): atom.name for atom in spec.atoms}
     following = following_atoms(spec.atoms, spec.registers)
     values: dict[str, bool] = {}
-    for literal_expr in (part for atom in item.atoms for part in conjuncts(atom)):
+    for literal_expr in (part for atom in item.atoms if not is_setting(atom) for part in conjuncts(atom)):
         name, holds = _literal(literal_expr, names, env)
         if _without_spaces(name) not in names:
             given = [f"`{atom.name}`" for atom in spec.atoms if atom.name not in following]
@@ -70,6 +83,9 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
             verb = "has" if not given else "has the atoms" if len(given) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
+        if name in computed:
+            title = f"`{name}` follows from the numbers of this test: a step cannot choose it"
+            raise problem("TLT0218", title, source, literal_expr.span, advice="leave it out")
         if name in following:
             raise _following_atom_error(name, spec, source, literal_expr.span)
         if values.setdefault(name, holds) != holds:
@@ -81,7 +97,7 @@ def _step(item: TestStep, spec: Spec, env: Env) -> RepeatedSample:
                 advice="leave one out",
             )
     times, dt_s = _length(item, env)
-    return RepeatedSample(times, frozenset(name for name, holds in values.items() if holds), dt_s)
+    return RepeatedSample(times, frozenset(name for name, holds in values.items() if holds), numbers, dt_s)
 
 
 def _length(item: TestStep, env: Env) -> tuple[int, float]:

@@ -67,6 +67,11 @@ def offered_labels(text: str, folder: Path | None = None, before: str = BEFORE, 
             ["times(near(s1)) > 3"],
         ),
         (
+            'signal n: int in [0, 5]\nspec few { keep n > 3 }\ntest "t" for few {\n    step ¦',
+            ["n > 3", "n = "],
+            ["near(s1)"],
+        ),
+        (
             'test "t" for leave {\n    step near(s1)\n    expect ¦',
             ["satisfied", "holding", "pending", "violated", "progress", "state"],
             ["near"],

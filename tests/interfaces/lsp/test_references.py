@@ -235,3 +235,22 @@ def test_a_group_and_its_members_are_renamed(at: str, new: str, count: int) -> N
     old = at.partition(" ")[0].rstrip(",")
     assert texts_after_rename(at, new, text=GROUPS) == {"main": GROUPS.replace(old, new)}
     assert GROUPS.count(old) == count
+
+
+def test_a_number_that_a_step_sets_is_renamed_and_a_value_of_an_enum_is_not() -> None:
+    text = """\
+signal alert: bool
+signal fuel in [0, 9]
+signal mode: (idle, alert)
+spec s { keep fuel > 3 or alert or mode is idle }
+test "t" for s {
+    step fuel = 4, mode = alert, alert
+    expect holding
+}
+"""
+    renamed = texts_after_rename("fuel in", "energy", text=text)
+    assert [*renamed.values()] == [text.replace("fuel", "energy")]
+    renamed = texts_after_rename("alert: bool", "alarm", text=text)
+    assert [*renamed.values()] == [
+        text.replace("alert: bool", "alarm: bool").replace("or alert", "or alarm").replace(", alert\n", ", alarm\n")
+    ]

@@ -113,6 +113,8 @@ def item(random: Random) -> list[str]:
             return ["expect", random.choice(["holding", 'state "F  a // b"', 'state ""'])]
         case _:
             atoms = [formula(random, 1) for _ in range(random.randint(1, 9))]
+            if random.random() < 0.3:
+                atoms.insert(0, ["x", "=", *number(random, 1)])
             return ["step", *random.choice([[], ["3", "x"], ["12x"]]), *commas(atoms)]
 
 

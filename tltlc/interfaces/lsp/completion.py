@@ -249,7 +249,7 @@ def _spec_item(declaration: SpecDecl, document: Document) -> types.CompletionIte
 
 
 def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.CompletionItem]:
-    """Yield completions for the atoms that a step of the ``test`` block around the cursor can name.
+    """Yield completions for the atoms and numbers that a step of the ``test`` block around the cursor can name.
 
     ``block`` contains the tokens from the start of the block up to the cursor.
     """
@@ -260,6 +260,13 @@ def _atoms(document: Document, block: tuple[Token, ...]) -> Iterator[types.Compl
             for atom in (atom for atom in spec.atoms if atom.name not in following):
                 yield types.CompletionItem(
                     atom.name, kind=_ItemKind.Event, detail=f"atom of {name}", documentation=atom.doc or None
+                )
+            for signal in (signal for signal in spec.signals if signal.type != "bool"):
+                yield types.CompletionItem(
+                    f"{signal.name} = ",
+                    kind=_ItemKind.Variable,
+                    detail=f"number of {name}",
+                    documentation=signal.doc or None,
                 )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from typing import Literal, Union
 
 from tltlc.core.record import EMPTY, record
@@ -178,7 +179,9 @@ class _Walk:
                 for name in part.entities:
                     self._note_use(name.name, name.span, visible)
                 visible = self._with_variable(part, visible)
-            waiting += [(child, visible) for child in children(part)]
+            # The value that a step of a test sets has no names of declarations, but perhaps that of an enum's value.
+            is_setting = isinstance(part, tree.BinaryExpr) and part.op == "="
+            waiting += [(child, visible) for child in islice(children(part), 1 if is_setting else None)]
 
     def _with_variable(self, part: tree.Quantified, local: _Locals) -> _Locals:
         """Return the local names that are visible in the body of the quantifier ``part``.

@@ -14,7 +14,7 @@ _PAST: Final = ("once", "historically", "previously", "begins", "ends")
 """The operators about the past, which have no letters or symbols."""
 
 _INFIX: Final = {
-    **{op: f" {op} " for op in ("then", "since", "<", "<=", ">", ">=", "==", "!=", "+", "-", "*", "/")},
+    **{op: f" {op} " for op in ("=", "then", "since", "<", "<=", ">", ">=", "==", "!=", "+", "-", "*", "/")},
     "^": "^",
 }
 
