@@ -12,8 +12,8 @@ from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
 from tltlc.tools.witness.blocks import given_values
-from tltlc.tools.witness.deadlines import shortest_deadline_s
 from tltlc.tools.witness.samples import SampleFinder
+from tltlc.tools.witness.step_lengths import shortest_deadline_s
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
@@ -78,7 +78,7 @@ def idle_step(fspa: Fspa) -> dict[str, Any]:
     values were found. ``dt`` is the time since the step before in seconds, that of the shortest deadline;
     None unless the clock varies.
     """
-    return {**_idle_letter(fspa), "dt": shortest_deadline_s([fspa]) if fspa.clock_varies else None}
+    return {**_idle_letter(fspa), "dt": shortest_deadline_s(fspa) if fspa.clock_varies else None}
 
 
 def _idle_letter(fspa: Fspa) -> dict[str, Any]:

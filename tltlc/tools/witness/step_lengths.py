@@ -56,12 +56,21 @@ def length_of(letter: Letter, fspa: Fspa) -> float | None:
     return next((name.seconds for name in letter if isinstance(name, StepLengthName)), 0.0)
 
 
+def shortest_deadline_s(fspa: Fspa) -> float:
+    """Return the shortest time that a register of an automaton is compared with, in seconds; 1 s if there is none."""
+    return min(_deadlines((fspa,)), default=_WITHOUT_DEADLINES_S)
+
+
 def lengths_to_try(automata: Iterable[Fspa]) -> tuple[float, ...]:
     """Return lengths of steps with which traces can meet and miss the deadlines of automata; 1 s if there are none.
 
-    They are the shortest deadlines, and a quarter of the shortest one. A register that counts time stops
-    at twice the longest deadline that it is compared with.
+    They are the shortest deadlines, and a quarter of the shortest one.
     """
-    maxima = {register.high for fspa in automata for register in fspa.registers if register.unit == "s"}
-    deadlines = sorted(high / 2 for high in maxima if high)[:_MOST_DEADLINES]
+    deadlines = sorted(_deadlines(automata))[:_MOST_DEADLINES]
     return (deadlines[0] / 4, *deadlines) if deadlines else (_WITHOUT_DEADLINES_S,)
+
+
+def _deadlines(automata: Iterable[Fspa]) -> set[float]:
+    """Return the times of the registers: one that counts time stops at twice the longest that it is compared with."""
+    maxima = (register.high for fspa in automata for register in fspa.registers if register.unit == "s")
+    return {high / 2 for high in maxima if high}
