@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from random import Random
 from unittest.mock import patch
 
 import pytest
@@ -12,6 +14,7 @@ from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.resolve import specs
+from tltlc.tools.diff import relation as relation_module
 from tltlc.tools.diff.breaking import compare_versions
 from tltlc.tools.diff.diff_json import document
 from tltlc.tools.diff.pairs import FileDiff, diff
@@ -109,6 +112,58 @@ def test_a_shorter_deadline_is_compared_exactly_with_a_shortest_trace() -> None:
     assert "This is exact: what the specs remember was unfolded to 303 states in A and 243 in B." in report
     assert "    step 1: alarm\n    steps 2 to 241 (4 s): nothing holds\n    step 242: hidden\n" in report
     assert document(FileDiff("a", "b", (pair,)))["specs"][0]["method"] == "unfolded"
+
+
+TWO_TIMERS = "keep within {} of alarm, hidden  keep within {} of seen, hidden  reach door"
+TWO_NAMES = "clock 60 Hz\n" + "".join(f"signal {name}: bool\n" for name in ("alarm", "hidden", "seen", "door"))
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "relation"),
+    [
+        (("5 s", "5 s"), ("4 s", "5 s"), "stricter"),
+        (("5 s", "4 s"), ("5 s", "5 s"), "looser"),
+        (("5 s", "4 s"), ("4 s", "5 s"), "incomparable"),
+        (("5 s", "5 s"), ("300 steps", "300 steps"), "equivalent"),
+    ],
+)
+def test_timers_of_different_clauses_are_unfolded_apart(a: tuple[str, str], b: tuple[str, str], relation: str) -> None:
+    # The values of both timers together are 90,000, too many to unfold.
+    old, new = (_fspa(TWO_TIMERS.format(*times), TWO_NAMES) for times in (a, b))
+    pair = diff(old, new, feasible_only=True)
+    comparison = pair.comparison
+    assert comparison.relation == relation
+    assert comparison.method == "clauses"
+    for trace, accepting, rejecting in ((comparison.only_a, old, new), (comparison.only_b, new, old)):
+        if trace is not None:
+            assert _accepts(accepting, trace.prefix)
+            assert not _accepts(rejecting, trace.prefix)
+    assert "This is exact: what the clauses remember was unfolded to states" in text(FileDiff("a", "b", (pair,)))
+
+
+def test_groups_of_clauses_relate_as_their_states_do() -> None:
+    methods = [check_groups(Random(seed)) for seed in range(40)]
+    assert methods.count("clauses") > 15
+
+
+def check_groups(random: Random) -> str:
+    """Compare two specs of two clauses with timers, and as states; return how those with timers were compared."""
+    first, second = (RULES[random.choice(list(RULES))] for _ in range(2))
+    # The second clause is about other atoms, or partly so.
+    renamed = dict(zip("abc", random.choice((("d", "e", "c"), ("d", "e", "f"))), strict=True))
+    second = re.sub(r"\b[abc]\b", lambda match: renamed[match[0]], second)
+    names = SIGNALS + "".join(f"signal {name}: bool\n" for name in "def")
+    clauses = [
+        f"{first.format(n=n, m=1)}  {second.format(n=m, m=1)}"
+        for n, m in ((2, 3), random.choice(((2, 3), (3, 3), (2, 2), (3, 2))))
+    ]
+    with patch.object(specs, "MOST_UNFOLDED", 0), patch.object(relation_module, "_QUICK", 10**9):
+        timers = diff(*(_fspa(clause, names) for clause in clauses)).comparison
+    with unfolded():
+        states = diff(*(_fspa(clause, names) for clause in clauses)).comparison
+    assert timers.relation == states.relation, clauses
+    assert timers.method != "search"
+    return timers.method
 
 
 def test_more_values_than_the_work_allows_are_searched() -> None:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final, Literal
 
-from tltlc.automaton.compare import NamedLiterals, Trace, separating
+from tltlc.automaton.compare import Letter, NamedLiterals, Trace, separating
 from tltlc.automaton.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.core.record import record, replace
 from tltlc.tools.diff.values import meaning, value_difference
+from tltlc.tools.witness.step_lengths import length_names
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Vocabulary
 
 Relation = Literal["equivalent", "stricter", "looser", "incomparable", "undecided"]
-Method = Literal["automata", "unfolded", "search"]
+Method = Literal["automata", "unfolded", "clauses", "search"]
 
 _STEPS_OF_A_PAIR: Final = 100
 """A comparison counts at least this many steps of work for each pair of exclusive atoms."""
+
+_QUICK: Final = 10
+"""An unfolding is quick if it takes this share of the work, one tenth."""
 
 OF_A: Final = " of A"
 OF_B: Final = " of B"
@@ -44,11 +48,12 @@ class Comparison:
     ``undecided`` is possible only if ``method`` is ``search``: then no trace was found that shows a
     difference in one direction, but there may be one.
     ``only_a`` is a trace that only A accepts, and ``only_b`` a trace that only B accepts; over
-    finite traces they are shortest, unless ``method`` is ``search``.
+    finite traces they are shortest, unless ``method`` is ``clauses`` or ``search``.
 
     ``method`` says how the comparison was made. ``automata``: on the automata as they are, which is
     exact. ``unfolded``: registers were unfolded into states first, which is exact, too.
-    ``unfolded_states`` is then the number of states of A and B. ``search``: registers have too many
+    ``unfolded_states`` is then the number of states of A and B. ``clauses``: groups of clauses were
+    unfolded and compared with each other, which is exact as well. ``search``: registers have too many
     values, or remember numbers, and traces were searched with a bounded number of steps.
 
     For each name in ``split_names``, A and B have different atoms with this name; traces call them
@@ -100,10 +105,11 @@ def compare(
             unbroken_a, unbroken_b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive
         )
         return replace(beginnings, relation=None, only_a=None, only_b=None, beginnings=beginnings)
-    if (a.registers or b.registers) and (unfolded := unfolded_pair(a, b, work, by_name=by_name)):
-        one, other = unfolded
-        compared = compare(one, other, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
-        return replace(compared, method="unfolded", unfolded_states=(len(one.states), len(other.states)))
+    if a.registers or b.registers:
+        exclusive = tuple(exclusive)
+        exact = _compare_unfolded(a, b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
+        if exact is not None:
+            return exact
     split_names = () if by_name else different_atoms(a, b)
     originals = a, b
     a, b = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
@@ -134,25 +140,75 @@ def compare(
         method = "search"
         if not is_decided:
             return Comparison("undecided", only_a, only_b, split_names, tuple(impossible), groups, method=method)
-    relation: Relation = (
-        ("equivalent" if only_b is None else "looser")
-        if only_a is None
-        else ("stricter" if only_b is None else "incomparable")
-    )
-    return Comparison(relation, only_a, only_b, split_names, tuple(impossible), groups, method=method)
+    return Comparison(_relation(only_a, only_b), only_a, only_b, split_names, tuple(impossible), groups, method=method)
 
 
-def unfolded_pair(a: Fspa, b: Fspa, work: int, *, by_name: bool) -> tuple[Fspa, Fspa] | None:
-    """Return both automata with registers unfolded into states, or None.
-
-    It is None if a register remembers a number, if the unfolding takes more than ``work`` steps, or if
-    with ``by_name`` a common atom follows from others in one automaton only: then no letter gives it.
-    """
-    from tltlc.monitor.unfolding import unfolded
+def _compare_unfolded(
+    a: Fspa, b: Fspa, *, by_name: bool, feasible_only: bool, work: int, exclusive: tuple[ExclusiveGroup, ...]
+) -> Comparison | None:
+    """Compare two specs with registers unfolded into states; None if that is not possible, or takes too much work."""
     from tltlc.tools.diff.real_traces import follows_in_one
 
+    # With `by_name`, no letter gives an atom that follows from others in one of the two specs only.
     if by_name and follows_in_one((a, b)):
         return None
+
+    def compared(one: Fspa, other: Fspa) -> Comparison:
+        return compare(one, other, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
+
+    # A small unfolding of the whole specs gives shortest traces. A large one takes longer than one of each clause.
+    for share in (_QUICK, 1):
+        unfolded = unfolded_pair(a, b, work // share)
+        if unfolded is not None:
+            one, other = unfolded
+            return replace(
+                compared(one, other), method="unfolded", unfolded_states=(len(one.states), len(other.states))
+            )
+        if share == _QUICK and a.semantics == "finite":
+            by_clauses = _compare_clauses(a, b, compared, by_name=by_name, exclusive=exclusive)
+            if by_clauses is not None:
+                return by_clauses
+    return None
+
+
+def _compare_clauses(
+    a: Fspa,
+    b: Fspa,
+    compared: Callable[[Fspa, Fspa], Comparison],
+    *,
+    by_name: bool,
+    exclusive: tuple[ExclusiveGroup, ...],
+) -> Comparison | None:
+    """Compare two specs by groups of their clauses; None if that does not decide how they relate."""
+    from tltlc.tools.diff.clause_groups import compare_groups
+
+    split_names = () if by_name else different_atoms(a, b)
+
+    def own_part(fspa: Fspa, suffix: str) -> Callable[[Letter], Letter]:
+        return lambda letter: own_letter(letter, split_names, fspa, suffix)
+
+    result = compare_groups(a, b, compared, (own_part(a, OF_A), own_part(b, OF_B)))
+    if result is None:
+        return None
+    groups = _merge((*_own_groups(a, b), *exclusive), {atom.name for fspa in (a, b) for atom in fspa.atoms})
+    relation = _relation(result.only_a, result.only_b)
+    return Comparison(relation, result.only_a, result.only_b, split_names, result.impossible, groups, method="clauses")
+
+
+def _relation(only_a: Trace | None, only_b: Trace | None) -> Relation:
+    """Return how B relates to A, by the traces that only one of them accepts."""
+    if only_a is None:
+        return "equivalent" if only_b is None else "looser"
+    return "stricter" if only_b is None else "incomparable"
+
+
+def unfolded_pair(a: Fspa, b: Fspa, work: int) -> tuple[Fspa, Fspa] | None:
+    """Return both automata with registers unfolded into states.
+
+    The result is None if a register remembers a number, or if the unfolding takes more than ``work`` steps.
+    """
+    from tltlc.monitor.unfolding import unfolded
+
     steps = Work(work)
     try:
         one, other = unfolded(a, steps), unfolded(b, steps)
@@ -223,6 +279,19 @@ def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ..
 
         return with_derived(names, a, b)
     return tuple(names)
+
+
+def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
+    """Return the atoms of a letter that belong to the spec ``fspa``, as that spec names them.
+
+    The letter is over the atoms of two specs. For each name in ``split_names``, the specs have
+    different atoms with this name. The letter tells them apart by a suffix, and ``suffix`` is the one
+    of this spec: with the suffix `` of A``, the name ``seen of A`` becomes ``seen``.
+    """
+    own_names = {name + suffix: name for name in split_names}
+    common = {atom.name for atom in fspa.atoms} - set(split_names)
+    own = frozenset(own_names.get(name, name) for name in letter if name in common or name in own_names)
+    return own | length_names(letter)
 
 
 def _with_suffix(fspa: Fspa, names: tuple[str, ...], suffix: str) -> Fspa:

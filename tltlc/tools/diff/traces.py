@@ -13,9 +13,9 @@ from tltlc.monitor.samples import Samples
 from tltlc.monitor.tables import tables
 from tltlc.resolve.registers import following_atoms
 from tltlc.resolve.values import number_text
-from tltlc.tools.diff.relation import OF_A, OF_B
+from tltlc.tools.diff.relation import OF_A, OF_B, own_letter
 from tltlc.tools.witness.blocks import given_values, test_block
-from tltlc.tools.witness.step_lengths import length_names, length_of
+from tltlc.tools.witness.step_lengths import length_of
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa, State
@@ -60,19 +60,6 @@ def difference_test(pair: SpecPair, description: TraceDescription, title: str) -
     if description.a.verdict == description.b.verdict or not fspa.atoms or not named <= atoms_a | atoms_b:
         return None
     return side, test_block(title, fspa, letters, {len(letters): (state.verdict,)})
-
-
-def own_letter(letter: Letter, split_names: Iterable[str], fspa: Fspa, suffix: str) -> Letter:
-    """Return the atoms of a letter that belong to the spec ``fspa``, as that spec names them.
-
-    The letter is over the atoms of two specs. For each name in ``split_names``, the specs have
-    different atoms with this name. The letter tells them apart by a suffix, and ``suffix`` is the one
-    of this spec: with the suffix `` of A``, the name ``seen of A`` becomes ``seen``.
-    """
-    own_names = {name + suffix: name for name in split_names}
-    common = {atom.name for atom in fspa.atoms} - set(split_names)
-    own = frozenset(own_names.get(name, name) for name in letter if name in common or name in own_names)
-    return own | length_names(letter)
 
 
 def step_lines(pair: SpecPair, letters: Sequence[Letter]) -> list[str]:
