@@ -45,6 +45,8 @@ from tltlc.tools.mine.search import MiningOptions, SpecSearch
 from tltlc.tools.mine.single_times import single_times
 from tltlc.tools.mine.templates import TIMED
 from tltlc.tools.mine.timed_evidence import TimedEvidence, gaps, intervals
+from tltlc.tools.mine.trace_clock import clock_declaration, trace_clock
+from tltlc.tools.mine.trace_letters import TraceFile
 from tltlc.tools.mine.vocabulary import vocabulary_of_library
 
 Run = Callable[..., Outcome]
@@ -189,6 +191,49 @@ def test_mined_times_are_in_seconds_and_the_file_compiles(tltlc: Run, inside: Pa
     (fspa,) = compile_file("mined.tltl", CompileOptions(specs=("mined_1",)))
     assert fspa.clock_s == CLOCK_S
     assert all(judge(fspa, trace).accepted for trace in evidence.traces)
+
+
+def test_the_clock_comes_from_the_times_of_the_samples(tltlc: Run, inside: Path) -> None:
+    evidence = timed_evidence(answers(1, 20), 1, traces=20)
+    Path("good").mkdir()
+    for number, trace in enumerate(evidence.traces):
+        rows = [",".join(["time", *evidence.atoms()])]
+        for step, letter in enumerate(trace.letters):
+            rows.append(",".join([f"{step / 60:.3f}", *(str(int(name in letter)) for name in evidence.atoms())]))
+        Path(f"good/{number:02}.csv").write_text("\n".join(rows) + "\n")
+    outcome = tltlc("mine", "good", "-o", "mined.tltl", "--json")
+    assert outcome.status == 0
+    assert "keep a implies eventually within 0.4 s b" in json.loads(outcome.out)["proposals"][0]["clauses"]
+    assert "\nclock 60 Hz\n" in Path("mined.tltl").read_text()
+    assert tltlc("test", "mined.tltl").status == 0
+
+
+@pytest.mark.parametrize(
+    ("times", "declaration"),
+    [
+        ([0, 0.1, 0.2, 0.3], "clock 10 Hz\n"),
+        ([7.0, 7.017, 7.033, 7.05], "clock 60 Hz\n"),
+        ([0, 2.5, 5, 7.5], "clock 2.5 s\n"),
+        ([0, 1, 1.5, 7], ""),
+        ([3], ""),
+        ([0, float("nan"), 1], ""),
+        ([], ""),
+    ],
+)
+def test_a_clock_fits_all_times(times: list[float], declaration: str) -> None:
+    rows = ["Time,a", *(f"{time},1" for time in times)]
+    objects = [json.dumps({"time": time, "a": True}) for time in times if time == time]
+    files = [TraceFile("t.csv", "\n".join(rows).encode())]
+    assert clock_declaration(trace_clock(files)) == declaration
+    if len(objects) == len(times):
+        files = [TraceFile("t.jsonl", "\n".join(objects).encode())]
+        assert clock_declaration(trace_clock(files)) == declaration
+
+
+def test_a_trace_without_times_has_no_clock() -> None:
+    timed, untimed = (TraceFile("t.csv", text.encode()) for text in ("time,a\n0,1\n1,1\n", "a\n1\n1\n"))
+    assert trace_clock([timed]) == 1.0
+    assert trace_clock([timed, untimed]) is None
 
 
 def test_round_times_leave_room() -> None:

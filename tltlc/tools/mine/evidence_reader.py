@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tltlc.core.record import replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.sample_times import times_name
 from tltlc.resolve.options import ResolveOptions
 from tltlc.tools.mine.column_diagnostics import TraceColumns, odd_columns
 from tltlc.tools.mine.columns import columns, common_columns
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
 from tltlc.tools.mine.mutants import with_mutants
+from tltlc.tools.mine.trace_clock import clock_declaration, trace_clock
 from tltlc.tools.mine.trace_letters import (
     ProgressCallback,
     TraceFile,
@@ -53,7 +55,9 @@ def read_evidence(
     warnings = tuple(group.warning() for group in odd)
     try:
         vocabulary = (
-            vocabulary_of_columns(common) if library is None else vocabulary_of_library(library, common, options)
+            vocabulary_of_columns(common, _clock((*good, *bad), common))
+            if library is None
+            else vocabulary_of_library(library, common, options)
         )
     except TltlError as error:
         # The warnings come first, because a trace that differs from the others is the most likely cause.
@@ -72,6 +76,13 @@ def read_evidence(
     contradictions = _contradictions(traces, counterexamples)
     evidence = Evidence(traces, counterexamples, clock_s=clock_s)
     return vocabulary, evidence, (*warnings, *notices, *bad_notices, *contradictions)
+
+
+def _clock(files: Sequence[TraceFile], columns: Mapping[str, bool]) -> str:
+    """Return the declaration of the clock of traces without a library; empty if their times show none."""
+    name = times_name(columns, ())
+    # A column of true and false is a signal, whatever its name.
+    return "" if name is None or columns[name] else clock_declaration(trace_clock(files))
 
 
 def _contradictions(

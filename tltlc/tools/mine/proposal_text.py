@@ -32,7 +32,8 @@ def proposals_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits
     parts = ["\n".join(_proposal(rank, proposal, evidence, bits)) for rank, proposal in enumerate(proposals, start=1)]
     if evidence.made_up:
         parts.append(
-            "No counterexamples were given, so made-up ones are used: traces that are cut short, reordered or broken."
+            "No counterexamples were given, so made-up ones are used: traces that are cut short, reordered, slower, "
+            "or broken."
         )
     parts.append(fill(_MEASURE, _WIDTH))
     return "\n\n".join(parts)

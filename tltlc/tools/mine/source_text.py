@@ -13,6 +13,7 @@ from tltlc.tools.mine.bits import Bits
 from tltlc.tools.mine.confirm import Proposal, ProposalVerdict
 from tltlc.tools.mine.evidence import Evidence
 from tltlc.tools.mine.reasons import reasons
+from tltlc.tools.mine.trace_clock import clock_declaration
 from tltlc.tools.mine.vocabulary import MiningVocabulary, signal_declarations
 from tltlc.tools.witness.blocks import expectations, test_block
 
@@ -47,15 +48,15 @@ def source_text(proposals: Sequence[Proposal], evidence: Evidence, bits: Bits, p
 def declarations(proposals: Sequence[Proposal], vocabulary: MiningVocabulary, import_text: str | None) -> str:
     """Return the declarations of the names that the proposals use, and no others.
 
-    Without a library, ``import_text`` is None, and the columns are declared as signals. With a
-    library, ``import_text`` is the line that imports it. Then the result is this line, and a
-    declaration of the entities that the library lacks.
+    Without a library, ``import_text`` is None. Then the columns are declared as signals, and so is the
+    clock of the traces. With a library, ``import_text`` is the line that imports it. Then the result is
+    this line, and a declaration of the entities that the library lacks.
     """
     used = {atom.name: atom for proposal in proposals for atom in proposal.fspa.atoms}
     if import_text is None:
         atoms = [atom for atom in vocabulary.reader.atoms if atom.name in used]
         # Signals with arguments come first, after the entities that are their arguments.
-        return signal_declarations(
+        return clock_declaration(vocabulary.reader.clock_s) + signal_declarations(
             (atom.base, atom.arguments) for atom in sorted(atoms, key=lambda atom: not atom.arguments)
         )
     arguments = {argument for atom in used.values() for argument in atom.arguments}

@@ -103,10 +103,11 @@ def _no_readable_atom(library: SourceFile, vocabulary: Vocabulary | None, column
     return TltlError([Diagnostic("TLT0760", title, help=help_)])
 
 
-def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
+def vocabulary_of_columns(columns: Mapping[str, bool], clock: str = "") -> MiningVocabulary:
     """Return a vocabulary in which each column of true and false is an atom.
 
-    ``columns`` maps the name of each column to whether all its values are true or false.
+    ``columns`` maps the name of each column to whether all its values are true or false. ``clock`` is the
+    declaration of the clock; empty without one.
 
     Raises:
         TltlError: TLT0760, no column is an atom.
@@ -115,7 +116,8 @@ def vocabulary_of_columns(columns: Mapping[str, bool]) -> MiningVocabulary:
     names, unread = truths[:_MOST], frozenset(truths[_MOST:])
     simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
-    library = SourceFile("<traces>", signal_declarations([*calls.values(), *((name, ()) for name in simple)]), "text")
+    signals = signal_declarations([*calls.values(), *((name, ()) for name in simple)])
+    library = SourceFile("<traces>", clock + signals, "text")
     readable = _readable_atoms(_module(library), [name for name in names if name in simple or name in calls], columns)
     if readable is None:
         raise _no_columns(names)
