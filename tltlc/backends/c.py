@@ -27,7 +27,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
-from tltlc.program.tree import FAILING, Assign, Int
+from tltlc.program.tree import FAILING, Assign, Choice, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Atom, Param, Signal
 
@@ -91,7 +91,7 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
-        self._program = program(fspa, _RESERVED)
+        self._program = program(fspa, (*_RESERVED, "signs") if fspa.registers else _RESERVED, has_bools=True)
         self._entered = states.TARGET if self._program.tables is None else f"state_kinds[{states.TARGET}]"
         self._printer = _C(fspa.name, fspa.atoms)
 
@@ -261,7 +261,13 @@ class _Source:
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(case)]
+        names, booleans = self._program.bools_read_in(case), self._program.bool_signals
+        return [
+            f"const bool {name} = sample->{name};"
+            if name in booleans
+            else f"const double {name} = sample->{name} ? 1.0 : 0.0;"
+            for name in names
+        ]
 
     def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
         """Return the code that checks and clamps signals.
@@ -394,7 +400,13 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        return [f"monitor->registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
+        kept = list(zip(self._program.registers, self._program.kept, strict=True))
+        # Compilers make a branch of a conditional expression.
+        lines = ["static const double signs[] = {-1.0, 1.0};"] if any(isinstance(v, Choice) for _, v in kept) else []
+        for index, (name, value) in enumerate(kept):
+            text = f"signs[{name}]" if isinstance(value, Choice) else self._printer.text(value)
+            lines.append(f"monitor->registers[{index}] = {text};")
+        return lines
 
 
 # --- pieces ---------------------------------------------------------------------------------------

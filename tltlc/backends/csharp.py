@@ -18,7 +18,7 @@ from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement, Table
 from tltlc.program.used_names import functions_called, variables_read
@@ -118,7 +118,7 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        self._program = program(fspa, [*_WORDS, *_TEMPLATE])
+        self._program = program(fspa, [*_WORDS, *_TEMPLATE], has_bools=True)
         self._printer = _CSharp()
 
     def text(self) -> str:
@@ -247,7 +247,11 @@ class _Source:
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(case)]
+        names, booleans = self._program.bools_read_in(case), self._program.bool_signals
+        return [
+            f"bool {name} = sample.{name};" if name in booleans else f"double {name} = sample.{name} ? 1.0 : 0.0;"
+            for name in names
+        ]
 
     def _compute(self) -> list[str]:
         """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
@@ -340,7 +344,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        return [f"_registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
+        texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
+        return [f"_registers[{index}] = {text};" for index, text in enumerate(texts)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.nesting_limit import split_deep_values
-from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Assign, Declare, Int
 from tltlc.program.used_names import functions_called, variables_read
@@ -83,7 +83,7 @@ class _JavaScript(Printer):
         """Return a declaration: ``const`` if the variable keeps its value, ``let`` otherwise."""
         if statement.value is None:
             return f"let {statement.name};"
-        return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value)};"
+        return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value, CHOICE)};"
 
     def assignment(self, statement: Assign) -> str:
         """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
@@ -331,7 +331,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        return [f"this.registers[{index}] = {name};" for index, name in enumerate(self._program.registers)]
+        texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
+        return [f"this.registers[{index}] = {text};" for index, text in enumerate(texts)]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

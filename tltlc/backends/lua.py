@@ -31,6 +31,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
+from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called, variables_read
@@ -392,8 +393,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        registers = zip(self._program.before, self._program.registers, strict=True)
-        return [f"{self._printer.name(before)} = {self._printer.name(now)}" for before, now in registers]
+        registers = zip(self._program.before, self._program.kept, strict=True)
+        return [f"{self._printer.name(before)} = {self._printer.text(kept, CHOICE)}" for before, kept in registers]
 
 
 # --- pieces ---------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
-from tltlc.program.printer import Printer
+from tltlc.program.printer import CHOICE, OR, Printer
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import (
     FAILING,
@@ -90,6 +90,7 @@ class _Python(Printer):
     """
 
     COMMENT: ClassVar[str] = "#"
+    TEST: ClassVar[int] = OR
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "True", "false": "False"}
     END: ClassVar[str] = ""
@@ -108,7 +109,7 @@ class _Python(Printer):
     def declaration(self, statement: Declare) -> str:
         """Return a declaration with a value, which is an assignment in Python."""
         assert statement.value is not None, "variables without a value are left out"
-        return f"{statement.name} = {self.text(statement.value)}"
+        return f"{statement.name} = {self.text(statement.value, CHOICE)}"
 
     def name(self, name: str) -> str:
         """Return the name of a variable in Python.
@@ -127,7 +128,7 @@ class _Python(Printer):
         match statement:
             case Assign(states.LIMITING, Int(index)):
                 return string_literal(self._atoms[index]) if index >= 0 else "None"
-        return self.text(statement.value)
+        return self.text(statement.value, CHOICE)
 
     def head(self, test: str, *, first: bool) -> str:
         """Return the line that begins a case: ``if`` or ``elif``, with its test."""
@@ -153,6 +154,10 @@ class _Python(Printer):
             case NumericCall("divide", (left, right)):
                 return super()._text_and_binding(BinaryNumber("/", left, right))
         return super()._text_and_binding(node)
+
+    def choice(self, test: str, value: str, otherwise: str) -> str:
+        """Return the text of a conditional expression in Python."""
+        return f"{value} if {test} else {otherwise}"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function in Python."""
@@ -411,8 +416,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        names = self._program.registers
-        return call_lines("self.registers = ", tuple_items(names)) if names else []
+        values = [self._printer.text(value, CHOICE) for value in self._program.kept]
+        return call_lines("self.registers = ", tuple_items(values)) if values else []
 
 
 # --- pieces ---------------------------------------------------------------------------------------

@@ -18,9 +18,20 @@ from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
-from tltlc.program.printer import Printer, comment_lines
+from tltlc.program.printer import CHOICE, OR, UNIT, Printer, comment_lines
 from tltlc.program.shapes import StateTables
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, Declare, ProgramVariable, Table, Type
+from tltlc.program.tree import (
+    FAILING,
+    Assign,
+    BinaryNumber,
+    Choice,
+    CommentLine,
+    Declare,
+    ProgramExpression,
+    ProgramVariable,
+    Table,
+    Type,
+)
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -64,6 +75,7 @@ class _Rust(Printer):
     """
 
     TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
+    TEST: ClassVar[int] = OR
     TABLES: ClassVar[dict[Table, str]] = {name: name.upper() for name in Printer.TABLES}
 
     def __init__(self) -> None:
@@ -74,7 +86,7 @@ class _Rust(Printer):
         head = f"let mut {statement.name}" if statement.changes else f"let {statement.name}"
         if statement.value is None:
             return f"{head}: {self.TYPES[statement.type]};"
-        return f"{head} = {self.text(statement.value)};"
+        return f"{head} = {self.text(statement.value, CHOICE)};"
 
     def assignment(self, statement: Assign) -> str:
         """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
@@ -86,6 +98,15 @@ class _Rust(Printer):
     def head(self, test: str, *, first: bool) -> str:
         """Return the line that begins a case: ``if`` or ``else if``, with its test."""
         return f"if {test} {{" if first else f"}} else if {test} {{"
+
+    def choice(self, test: str, value: str, otherwise: str) -> str:
+        """Return an ``if`` that is an expression."""
+        return f"if {test} {{ {value} }} else {{ {otherwise} }}"
+
+    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
+        text, binding = super()._text_and_binding(node)
+        # An `if` needs no brackets: the compiler warns about them.
+        return text, UNIT if isinstance(node, Choice) else binding
 
     def entry(self, table: Table, index: str) -> str:
         """Return the code that reads an entry of a table; integers become indices."""
@@ -106,7 +127,7 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        self._program = program(fspa, _RESERVED)
+        self._program = program(fspa, _RESERVED, has_bools=True)
         self._printer = _Rust()
 
     def text(self) -> str:
@@ -258,7 +279,13 @@ class _Source:
         step reads.
         """
         names = self._program.bools_read_in(case)
-        return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
+        booleans = self._program.bool_signals
+        return [
+            f"let {name} = sample.{name};"
+            if name in booleans
+            else f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};"
+            for name in names
+        ]
 
     def _compute(self) -> list[str]:
         """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
@@ -346,8 +373,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        names = self._program.registers
-        return [f"self.registers = [{_Rust.items(names)}];"] if names else []
+        values = [self._printer.text(value, CHOICE) for value in self._program.kept]
+        return [f"self.registers = [{_Rust.items(values)}];"] if values else []
 
 
 # --- pieces ---------------------------------------------------------------------------------------

@@ -18,19 +18,21 @@ lead to it are true.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import reduce
 from typing import Final, Union, overload
 
 from tltlc.core.record import replace
 from tltlc.expression import tree as source
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
+from tltlc.program.flags import Flags, Truths
 from tltlc.program.tree import (
     All,
     Any,
     Assign,
     BinaryNumber,
     Bool,
+    Choice,
     Compare,
     Declare,
     If,
@@ -57,6 +59,9 @@ Two kinds of nesting are counted separately, and each may be this deep: ``when``
 each other, and the ``else`` parts that hold later cases of one ``when``.
 """
 
+_READ: Final = (source.SignalValue, source.AtomValue, source.Before, source.StepLength)
+_ZERO: Final = source.Const(0.0)
+
 _SourceNode = Union[source.Expression, source.Condition]
 
 
@@ -78,7 +83,8 @@ class _BranchPath:
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
     """Return ``statements``, changed so that they declare the variable ``name``.
 
-    ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``.
+    ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``, or from
+    :meth:`ExpressionTranslator.declare_flag`, which declares it already.
     If the last statement assigns this value, a declaration with the value replaces it. Otherwise, a
     declaration without a value comes first. ``changes`` says whether the variable is assigned again
     later, for example when the value of an atom is clamped to [-1, 1].
@@ -86,6 +92,8 @@ def with_declaration(name: str, statements: Sequence[Statement], *, changes: boo
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
         return (*before, Declare(name, "real", last.value, changes))
+    if isinstance(last, Declare) and last.name == name:
+        return tuple(statements)
     return (Declare(name, "real", None, changes or _is_reassigned(name, statements)), *statements)
 
 
@@ -108,11 +116,30 @@ class ExpressionTranslator:
     registers, ``signals`` also maps the names of registers, and the nodes that read anything else. The
     names of temporary variables are ``prefix`` and a number: ``t_1``, ``t_2``, and so on, with the
     prefix ``t_``. No two of them have the same name.
+
+    ``flags`` are the atoms and registers that are only -1 or 1 (:mod:`tltlc.program.flags`), if there are any.
+    Those in ``booleans`` have a variable that is true where they are 1; so may bool signals, which are 0 or 1.
     """
 
-    def __init__(self, signals: Mapping[source.VariableKey, str], params: Mapping[str, str], prefix: str) -> None:
+    def __init__(
+        self,
+        signals: Mapping[source.VariableKey, str],
+        params: Mapping[str, str],
+        prefix: str,
+        flags: Flags | None = None,
+        booleans: Collection[source.VariableKey] = (),
+    ) -> None:
         self._signals, self._params, self._prefix = dict(signals), params, prefix
+        self._flags, self._booleans = flags, booleans
+        self._truths = None if flags is None else Truths(flags)
         self._count = 0
+
+    def declare_flag(self, name: str, expression: source.Expression) -> list[Statement]:
+        """Return statements that declare the Boolean ``name``: it is true where a flag, an expression, is 1."""
+        assert self._truths is not None, "the expression is a flag"
+        lines: list[Statement] = []
+        test = self._test(self._truths.condition(expression), lines)
+        return [*lines, Declare(name, "bool", test)]
 
     def assign(self, name: str, expression: source.Expression) -> list[Statement]:
         """Return statements that assign the value of an expression to the variable ``name``."""
@@ -261,8 +288,16 @@ class ExpressionTranslator:
         """Translate an expression; append to ``lines`` the statements that must run before the result."""
         if isinstance(node, source.Const):
             return Real(float(node.value))
-        if isinstance(node, (source.SignalValue, source.AtomValue, source.Before, source.StepLength)):
-            return ProgramVariable(self._signals[source.variable_key(node)])
+        if isinstance(node, _READ):
+            key = source.variable_key(node)
+            variable = ProgramVariable(self._signals[key])
+            if key not in self._booleans:
+                return variable
+            signal = isinstance(node, source.SignalValue) and self._flags is not None and key not in self._flags
+            return Choice(variable, Real(1.0), Real(0.0 if signal else -1.0))
+        if self._truths is not None and self._truths.splits(node):
+            test = self._test(self._truths.condition(node), lines)
+            return Choice(test, Real(1.0), Real(-1.0))
         if isinstance(node, source.ParamValue):
             return ProgramVariable(self._params[node.name])
         if isinstance(node, source.When):
@@ -312,6 +347,8 @@ class ExpressionTranslator:
         left, right = node.args
         assert not isinstance(left, source.Condition) and not isinstance(right, source.Condition)
         op = node.op
+        if op == ">" and isinstance(left, _READ) and source.variable_key(left) in self._booleans and right == _ZERO:
+            return ProgramVariable(self._signals[source.variable_key(left)])
         return Compare(op, self._argument(left, lines), self._argument(right, lines))
 
     def _part(self, node: _SourceNode, lines: list[Statement]) -> ProgramExpression:
@@ -369,6 +406,8 @@ class ExpressionTranslator:
                 return 1 + max(self._depth(left), self._depth(right))
             case NumericCall(_, args) | All(args) | Any(args):
                 return 1 + max(map(self._depth, args))
+            case Choice(test, value, otherwise):
+                return 1 + max(map(self._depth, (test, value, otherwise)))
             case Negate(operand) | Not(operand):
                 return 1 + self._depth(operand)
         return 0

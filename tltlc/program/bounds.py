@@ -15,10 +15,12 @@ from typing import Final, Literal
 
 from tltlc.core.record import record, replace
 from tltlc.program.tree import (
+    FAILING,
     All,
     Any,
     Assign,
     BinaryNumber,
+    Choice,
     Compare,
     Declare,
     If,
@@ -30,7 +32,7 @@ from tltlc.program.tree import (
     Real,
     Statement,
 )
-from tltlc.program.used_names import parts
+from tltlc.program.used_names import functions_in, parts
 
 _MOST: Final = sys.float_info.max
 _OPPOSITE: Final[Mapping[str, Literal["<", "<=", ">", ">="]]] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
@@ -212,7 +214,9 @@ class _Facts:
                 known = self.range(variable)
                 return variable if known is not None and known.high <= greatest else node
             case NumericCall(function, args):
-                return NumericCall(function, tuple(map(self.rewrite, args)))
+                return self._chosen(NumericCall(function, tuple(map(self.rewrite, args))))
+            case Choice(test, value, otherwise):
+                return Choice(self.rewrite(test), self.rewrite(value), self.rewrite(otherwise))
             case BinaryNumber(op, left, right):
                 return BinaryNumber(op, self.rewrite(left), self.rewrite(right))
             case Compare(compared, left, right):
@@ -225,6 +229,21 @@ class _Facts:
                 return All(tuple(map(self.rewrite, args)))
             case Any(args):
                 return Any(tuple(map(self.rewrite, args)))
+        return node
+
+    def _chosen(self, node: NumericCall) -> ProgramExpression:
+        """Return the ``min`` or ``max`` of a number in [-1, 1] and a flag, which is -1 or 1, as a choice of one.
+
+        The number is then computed only if the flag does not decide. Return any other call as it is.
+        """
+        match node:
+            case NumericCall("min" | "max", (value, Choice(test, Real(1.0), Real(-1.0)))) | NumericCall(
+                "min" | "max", (Choice(test, Real(1.0), Real(-1.0)), value)
+            ):
+                range_ = self.range(value)
+                if range_ is None or range_.low < -1.0 or range_.high > 1.0 or functions_in([value]) & FAILING:
+                    return node
+                return Choice(test, value, Real(-1.0)) if node.function == "min" else Choice(test, Real(1.0), value)
         return node
 
     def range(self, node: ProgramExpression) -> ValueRange | None:
@@ -263,6 +282,8 @@ class _Facts:
                     return None
                 pick = min if function == "min" else max
                 return ValueRange(pick(first.low, second.low), pick(first.high, second.high))
+            case Choice(_, value, otherwise):
+                return _hull([self.range(value), self.range(otherwise)])
             case NumericCall("abs", (operand,)):
                 range_ = self.range(operand)
                 return range_ and _absolute(range_)

@@ -13,10 +13,20 @@ from tltlc.monitor.tables import ends_on_entry, tables
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import ExpressionTranslator
 from tltlc.program.bounds import ValueRange, range_between
+from tltlc.program.compact_states import WORST, AtomVariables
+from tltlc.program.flags import Flags
 from tltlc.program.names import VariableNames
 from tltlc.program.sample_ranges import RegisterVariables, prove_sample
 from tltlc.program.shapes import Case, StateTables, cases_and_tables
-from tltlc.program.tree import FAILING, NumericFunction, Statement
+from tltlc.program.tree import (
+    FAILING,
+    Choice,
+    NumericFunction,
+    ProgramExpression,
+    ProgramVariable,
+    Real,
+    Statement,
+)
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Register, Signal
 
@@ -42,8 +52,10 @@ class Program:
 
     - ``signals``, ``params`` and ``atoms`` are the names of the variables with their values.
       ``registers`` are those with the values of the registers after the sample, and ``before`` those
-      with their values before it. A monitor keeps the values after the sample when the step has
-      succeeded.
+      with their values before it. Where an atom or register is only -1 or 1, its variable may be a
+      Boolean, which is true for 1. A monitor keeps the values in ``kept``, which are those of the
+      registers after the sample, when the step has succeeded. ``bool_signals`` are the variables of
+      signals that are Booleans, too.
     - ``values`` has, for each atom, the statements that assign its value; none if no case needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
@@ -73,6 +85,8 @@ class Program:
     atoms: tuple[str, ...]
     registers: tuple[str, ...]
     before: tuple[str, ...]
+    kept: tuple[ProgramExpression, ...]
+    bool_signals: frozenset[str]
     values: tuple[tuple[Statement, ...], ...]
     always_in_range: tuple[bool, ...]
     updates: tuple[tuple[Statement, ...], ...]
@@ -133,19 +147,22 @@ class Program:
         return (statement for value in (*self.values, *self.updates) for statement in value)
 
 
-def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
+def program(fspa: Fspa, reserved: Iterable[str], *, has_bools: bool = False) -> Program:
     """Return the program of an automaton's monitor.
+
+    If ``has_bools``, bool signals are Booleans where there are registers (``bool_signals``), not 0 and 1.
 
     ``reserved`` are the names that no variable may have: keywords of the language in which the
     program will be printed, and names in the template of its file.
     """
-    names = VariableNames([*reserved, *_OWN, *([DT] if fspa.clock_varies else [])])
+    own = [*_OWN, *([DT] if fspa.clock_varies else []), *((WORST,) if fspa.registers else ())]
+    names = VariableNames([*reserved, *own])
     # Expressions of deeply nested predicates need a higher recursion limit.
     with recursion_room():
-        return _program(fspa, names)
+        return _program(fspa, names, has_bools)
 
 
-def _program(fspa: Fspa, names: VariableNames) -> Program:
+def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
     signals = {signal.name: names.new_name(signal.name) for signal in fspa.signals}
     params = {param.name: names.new_name(param.name, "param") for param in fspa.params}
     atoms = tuple(names.new_name(atom.name, "atom") for atom in fspa.atoms)
@@ -163,27 +180,39 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         variables |= {AtomValue(atom.name): name for atom, name in zip(fspa.atoms, atoms, strict=True)}
     if fspa.clock_varies:
         variables[StepLength()] = DT
-    arithmetic = ExpressionTranslator(variables, params, _prefix([*variables.values(), *params.values(), *atoms]))
     order = schedule(fspa)
-    computations = {
-        (atoms[step.index] if step.kind == "atom" else now[step.index]): (
-            fspa.atoms[step.index].expression if step.kind == "atom" else fspa.registers[step.index].update
-        )
-        for step in order
-    }
+    flags = Flags(fspa, order) if registers else None
+    bool_signals = {signal.name for signal in fspa.signals if signal.type == "bool"} if flags and has_bools else set()
+    booleans = _booleans(fspa, flags) | bool_signals if flags else frozenset()
+    prefix = _prefix([*variables.values(), *params.values(), *atoms])
+    arithmetic = ExpressionTranslator(variables, params, prefix, flags, booleans)
+    computations: dict[str, list[Statement]] = {}
+    booleans_now: set[str] = set()
+    for step in order:
+        name = atoms[step.index] if step.kind == "atom" else now[step.index]
+        key: VariableKey
+        if step.kind == "atom":
+            expression, key = fspa.atoms[step.index].expression, AtomValue(fspa.atoms[step.index].name)
+        else:
+            expression, key = fspa.registers[step.index].update, fspa.registers[step.index].name
+        if key in booleans:
+            booleans_now.add(name)
+            computations[name] = arithmetic.declare_flag(name, expression)
+        else:
+            computations[name] = arithmetic.assign(name, expression)
     ranges = {name: _range(signal) for name, signal in zip(signals.values(), fspa.signals, strict=True)}
     ranges |= {
         name: range_between(param.low, param.high) for name, param in zip(params.values(), fspa.params, strict=True)
     }
     ranges |= {DT: range_between(0.0, None)} if fspa.clock_varies else {}
-    proved = prove_sample(
-        {name: arithmetic.assign(name, expression) for name, expression in computations.items()}, registers, ranges
-    )
+    proved = prove_sample(computations, registers, ranges, booleans_now)
     # A function in the condition of a `when` may fail even if the result is always in range. So an atom that calls such
     # a function does not count as always in range.
     fails = {name for name, value in proved.items() if functions_called(value.statements) & FAILING}
     in_range = tuple(name not in fails and proved[name].lies_in(-1.0, 1.0) for name in atoms)
-    cases, state_tables = cases_and_tables(tables(fspa), atoms)
+    sharp = [index for index, atom in enumerate(fspa.atoms) if flags and AtomValue(atom.name) in flags]
+    guards = AtomVariables(atoms, frozenset(sharp), frozenset(booleans_now)) if registers else atoms
+    cases, state_tables = cases_and_tables(tables(fspa), guards)
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
     updates = tuple(proved[name].statements for name in now)
     kept = variables_read(statement for update in updates for statement in update)
@@ -202,6 +231,11 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         atoms=atoms,
         registers=now,
         before=before,
+        bool_signals=frozenset(signals[name] for name in bool_signals),
+        kept=tuple(
+            Choice(ProgramVariable(name), Real(1.0), Real(-1.0)) if name in booleans_now else ProgramVariable(name)
+            for name in now
+        ),
         values=needed,
         always_in_range=in_range,
         updates=updates,
@@ -217,6 +251,17 @@ def _program(fspa: Fspa, names: VariableNames) -> Program:
         reward_statements=reward_step.statements(fspa),
         ends=tuple(ends_on_entry(fspa, state) for state in fspa.states),
     )
+
+
+def _booleans(fspa: Fspa, flags: Flags) -> frozenset[VariableKey]:
+    """Return the keys of the atoms and registers that have Boolean variables.
+
+    Monitors test exclusive atoms as numbers.
+    """
+    exclusive = {fspa.atoms[atom].name for group in fspa.exclusive if len(group) > 1 for atom in group}
+    keys: list[VariableKey] = [AtomValue(atom.name) for atom in fspa.atoms if atom.name not in exclusive]
+    keys += [register.name for register in fspa.registers]
+    return frozenset(key for key in keys if key in flags)
 
 
 def _only_in(atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Case]) -> tuple[int | None, ...]:

@@ -22,12 +22,12 @@ def shorter_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]]
     is ``min(max(clause) for each clause)``. Literals keep the order of the terms. No term may be
     empty.
     """
-    clauses = _clauses(terms)
+    clauses = equivalent_clauses(terms)
     return clauses if clauses is not None and sum(map(len, clauses)) < sum(map(len, terms)) else None
 
 
-def _clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
-    """Return the clauses: the minimal sets of literals that share a literal with every term.
+def equivalent_clauses(terms: Sequence[Sequence[_Literal]]) -> list[list[_Literal]] | None:
+    """Return clauses that are equivalent to ``terms``: the minimal sets of literals that share one with every term.
 
     Return None if there are more clauses than :data:`_MOST`. The method is from C. Berge,
     Hypergraphs, 1989.

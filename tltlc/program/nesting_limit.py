@@ -10,7 +10,17 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import count
 from typing import Final
 
-from tltlc.program.tree import Assign, Declare, If, Negate, NumericCall, ProgramExpression, ProgramVariable, Statement
+from tltlc.program.tree import (
+    Assign,
+    Choice,
+    Declare,
+    If,
+    Negate,
+    NumericCall,
+    ProgramExpression,
+    ProgramVariable,
+    Statement,
+)
 
 PART: Final = "part"
 """The prefix of the variables that :func:`split_deep_values` adds, which are numbered from 1."""
@@ -56,6 +66,10 @@ def _cut(value: ProgramExpression, lines: list[Statement], names: Iterator[str])
     if isinstance(value, Negate):
         operand, depth = _cut(value.operand, lines, names)
         return Negate(operand), depth
+    if isinstance(value, Choice):
+        chosen, chosen_depth = _cut(value.value, lines, names)
+        otherwise, depth = _cut(value.otherwise, lines, names)
+        return Choice(value.test, chosen, otherwise), max(chosen_depth, depth) + 1
     if not isinstance(value, NumericCall):
         return value, 0
     args, deepest = [], 0

@@ -17,6 +17,7 @@ from tltlc.program.tree import (
     Assign,
     BinaryNumber,
     Bool,
+    Choice,
     CommentLine,
     Compare,
     ComparisonOp,
@@ -35,7 +36,7 @@ from tltlc.program.tree import (
     Type,
 )
 
-_OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
+CHOICE, OR, _AND, COMPARISON, _SUM, _PRODUCT, _SIGN, UNIT = range(-1, 7)
 """Binding strengths of operators: a higher number binds more tightly."""
 
 _BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
@@ -65,6 +66,8 @@ class Printer:
         "==": "==",
         "!=": "!=",
     }
+    TEST: ClassVar[int] = COMPARISON
+    """How tightly the test of a choice must bind to need no brackets."""
     END: ClassVar[str] = ";"
     """The end of a statement."""
     TABLES: ClassVar[dict[Table, str]] = {name: name for name in get_args(Table)}
@@ -90,12 +93,12 @@ class Printer:
 
     def declaration(self, statement: Declare) -> str:
         """Return the code that declares a variable, with its first value if the statement has one."""
-        value = "" if statement.value is None else f" = {self.text(statement.value)}"
+        value = "" if statement.value is None else f" = {self.text(statement.value, CHOICE)}"
         return f"{self.TYPES[statement.type]} {statement.name}{value}{self.END}"
 
     def assignment(self, statement: Assign) -> str:
         """Return the code that assigns a value to a variable."""
-        return f"{self.name(statement.name)} = {self.text(statement.value)}{self.END}"
+        return f"{self.name(statement.name)} = {self.text(statement.value, CHOICE)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:
         """Return the lines of code for an ``if`` with all its cases and its ``else``."""
@@ -157,7 +160,7 @@ class Printer:
 
     # --- expressions ------------------------------------------------------------------------------
 
-    def text(self, node: ProgramExpression, room: int = _OR) -> str:
+    def text(self, node: ProgramExpression, room: int = OR) -> str:
         """Return the text of an expression, in parentheses if its operator binds less tightly than ``room``.
 
         ``room`` is a binding strength, such as that of ``+``; a higher number binds more tightly.
@@ -177,6 +180,10 @@ class Printer:
         """Return the code that calls a numeric function such as ``min``."""
         return f"{function}({', '.join(arguments)})"
 
+    def choice(self, test: str, value: str, otherwise: str) -> str:
+        """Return the code of an expression with the value of ``value`` if the test is true, else of ``otherwise``."""
+        return f"{test} ? {value} : {otherwise}"
+
     def entry(self, table: Table, index: str) -> str:
         """Return the code that reads an entry of a table."""
         return f"{self.TABLES[table]}[{index}]"
@@ -186,31 +193,34 @@ class Printer:
         match node:
             case Real(value):
                 # Look at the text, because -0.0 is not less than 0.
-                return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), _UNIT)
+                return (f"-{self.real(-value)}", _SIGN) if repr(value)[0] == "-" else (self.real(value), UNIT)
             case Int(value):
-                return str(value), _SIGN if value < 0 else _UNIT
+                return str(value), _SIGN if value < 0 else UNIT
             case Bool(value):
-                return self.WORDS["true" if value else "false"], _UNIT
+                return self.WORDS["true" if value else "false"], UNIT
             case ProgramVariable(name):
-                return self.name(name), _UNIT
+                return self.name(name), UNIT
             case Negate(operand):
-                return f"-{self.text(operand, _UNIT)}", _SIGN
+                return f"-{self.text(operand, UNIT)}", _SIGN
             case BinaryNumber(op, left, right):
                 binding = _BINDING[op]
                 return f"{self.text(left, binding)} {op} {self.text(right, binding + 1)}", binding
             case NumericCall(function, args):
-                return self.call(function, [self.text(argument) for argument in args]), _UNIT
+                return self.call(function, [self.text(argument) for argument in args]), UNIT
+            case Choice(test, value, otherwise):
+                texts = [self.text(test, self.TEST), self.text(value), self.text(otherwise)]
+                return self.choice(*texts), CHOICE
             case TableEntry(table, index):
-                return self.entry(table, self.text(index)), _UNIT
+                return self.entry(table, self.text(index)), UNIT
             case Compare(op, left, right):
-                return f"{self.text(left, _SUM)} {self.COMPARISONS[op]} {self.text(right, _SUM)}", _COMPARISON
+                return f"{self.text(left, _SUM)} {self.COMPARISONS[op]} {self.text(right, _SUM)}", COMPARISON
             case Not(operand):
-                return f"{self.WORDS['not']}{self.text(operand, _UNIT)}", _SIGN
+                return f"{self.WORDS['not']}{self.text(operand, UNIT)}", _SIGN
             case All(args) | Any(args):
-                binding = _AND if isinstance(node, All) else _OR
+                binding = _AND if isinstance(node, All) else OR
                 word = self.WORDS["and" if isinstance(node, All) else "or"]
                 # Compilers warn about `a && b || c` without parentheses.
-                return f" {word} ".join(self.text(argument, _COMPARISON) for argument in args), binding
+                return f" {word} ".join(self.text(argument, COMPARISON) for argument in args), binding
         raise TypeError(f"not an expression: {node!r}")
 
 

@@ -8,7 +8,7 @@ given up: its register may then have any finite value, since the monitor checks 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from tltlc.core.record import record
 from tltlc.program.bounds import ValueRange, prove_ranges, range_between
@@ -18,6 +18,7 @@ from tltlc.resolve.spec import Register
 
 _ANY = range_between(None, None)
 _ATOM = ValueRange(-1.0, 1.0)
+"""The range of atoms and flags."""
 
 
 @record
@@ -50,6 +51,7 @@ def prove_sample(
     computations: Mapping[str, Sequence[Statement]],
     registers: Sequence[RegisterVariables],
     known: Mapping[str, ValueRange],
+    flags: Collection[str] = (),
 ) -> dict[str, ProvedStatements]:
     """Replace ``divide`` by ``/`` where the divisor is never 0, and find the ranges of atoms and registers.
 
@@ -57,11 +59,12 @@ def prove_sample(
 
     ``computations`` maps the variables of atoms and registers to the statements that assign them, in
     the order in which a monitor computes them. ``known`` has the ranges of signals and params. The
-    monitor clamps each atom to [-1, 1], and ends a step in which a register is not finite.
+    monitor clamps each atom to [-1, 1], and ends a step in which a register is not finite. ``flags`` are the
+    variables that are Booleans: they are true where the atom or register is 1, and false where it is -1.
     """
     before = {each.before: _claimed(each.register) for each in registers}
     while True:
-        proved = _one_sample(computations, {each.now for each in registers}, {**known, **before})
+        proved = _one_sample(computations, {each.now for each in registers}, {**known, **before}, flags)
         left = [each.before for each in registers if not _stays(proved[each.now], before[each.before])]
         if not left:
             return proved
@@ -69,7 +72,10 @@ def prove_sample(
 
 
 def _one_sample(
-    computations: Mapping[str, Sequence[Statement]], registers: set[str], known: Mapping[str, ValueRange]
+    computations: Mapping[str, Sequence[Statement]],
+    registers: set[str],
+    known: Mapping[str, ValueRange],
+    flags: Collection[str],
 ) -> dict[str, ProvedStatements]:
     """Return the statements and ranges of one sample, before which the variables are in the ``known`` ranges."""
     ranges = dict(known)
@@ -79,6 +85,10 @@ def _one_sample(
         proved[name] = ProvedStatements(
             *prove_ranges(name, statements, {variable: ranges[variable] for variable in read}, registers)
         )
+        if name in flags:
+            # No number is read from the Boolean itself.
+            proved[name] = ProvedStatements(proved[name].statements, _ATOM)
+            continue
         checked = _ANY if name in registers else _ATOM
         ranges[name] = _common(proved[name].range, checked)
     return proved

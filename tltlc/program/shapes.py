@@ -14,8 +14,9 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.monitor.tables import MonitorTables
+from tltlc.program.compact_states import AtomVariables, CompactStateCode
 from tltlc.program.label_texts import LabelTexts, split_labels
-from tltlc.program.states import edge_shape, shape_edges, shape_statements, state_statements
+from tltlc.program.states import StateCode, edge_shape, shape_edges, state_edges
 from tltlc.program.tree import Statement
 from tltlc.resolve.spec import JudgeMode
 
@@ -80,12 +81,14 @@ class StateTables:
         return {**self.step_tables(judge), **labels}
 
 
-def cases_and_tables(monitor: MonitorTables, atoms: Sequence[str]) -> tuple[tuple[Case, ...], StateTables | None]:
+def cases_and_tables(
+    monitor: MonitorTables, atoms: Sequence[str] | AtomVariables
+) -> tuple[tuple[Case, ...], StateTables | None]:
     """Return a case for each state and None, or a case for each shape of states and their tables.
 
     There are tables if the automaton has at least 64 states, and its shapes have at most half as many
     edges as its states: then tables are smaller. ``atoms`` are the names of the variables with the
-    values of the atoms.
+    values of the atoms, or these variables with what is known about them, for more compact statements.
     """
     states = monitor.fspa.states
     if len(states) >= _LEAST_STATES:
@@ -93,10 +96,11 @@ def cases_and_tables(monitor: MonitorTables, atoms: Sequence[str]) -> tuple[tupl
         shapes, examples = _numbered([tuple(edge_shape(monitor, edge) for edge in leaving) for leaving in edges])
         if sum(len(edges[example]) for example in examples) <= _MOST_CODE * len(monitor.fspa.edges):
             counts = Counter(shapes)
+            shape_code = _state_code(monitor, atoms, reads_tables=True)
             cases = (
                 Case(
                     _shape_comment(str(states[example].label), counts[shape]),
-                    shape_statements(monitor, edges[example], atoms),
+                    shape_code.statements(edges[example]),
                 )
                 for shape, example in enumerate(examples)
             )
@@ -115,7 +119,14 @@ def cases_and_tables(monitor: MonitorTables, atoms: Sequence[str]) -> tuple[tupl
                 kind_states=kind_states,
                 labels=split_labels([str(state.label) for state in states]),
             )
-    return tuple(Case(str(state.label), state_statements(monitor, state.id, atoms)) for state in states), None
+    code = _state_code(monitor, atoms, reads_tables=False)
+    return tuple(Case(str(state.label), code.statements(state_edges(monitor, state.id))) for state in states), None
+
+
+def _state_code(monitor: MonitorTables, atoms: Sequence[str] | AtomVariables, *, reads_tables: bool) -> StateCode:
+    if isinstance(atoms, AtomVariables):
+        return CompactStateCode(monitor, atoms, reads_tables=reads_tables)
+    return StateCode(monitor, atoms, reads_tables=reads_tables)
 
 
 def _shape_comment(label: str, count: int) -> str:

@@ -1,7 +1,7 @@
 """The statements that compute the transition from each state of the automaton.
 
-They find the edge to take, its robustness, and the progress. Begin with `state_statements`. States
-of one shape (:mod:`tltlc.program.shapes`) share their statements, which `shape_statements` returns.
+They find the edge to take, its robustness, and the progress. Begin with `StateCode`. States of one shape
+(:mod:`tltlc.program.shapes`) share their statements.
 """
 
 from __future__ import annotations
@@ -48,24 +48,9 @@ NEAREST, OTHER = "nearest", "other"
 _ZERO: Final = Real(0.0)
 
 
-def state_statements(tables: MonitorTables, state: int, atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """Return the statements that compute the transition from the state with the number ``state``.
-
-    They find the edge to take, its robustness, the progress, and the limiting atom: the atom that
-    determines how robust the most robust edge towards a goal is. ``atoms`` are the names of the
-    variables with the values of the atoms.
-    """
-    edges = sorted(tables.edges[state], key=lambda edge: (_size(edge.guard), edge.target))
-    return _StateCode(tables, atoms, reads_tables=False).statements(edges)
-
-
-def shape_statements(tables: MonitorTables, edges: Sequence[Edge], atoms: Sequence[str]) -> tuple[Statement, ...]:
-    """Return the statements that compute the transition from any state of one shape.
-
-    ``edges`` are the edges of one of these states, ordered by :func:`shape_edges`. The statements
-    read the next state and its progress from tables. ``atoms`` are as in :func:`state_statements`.
-    """
-    return _StateCode(tables, atoms, reads_tables=True).statements(edges)
+def state_edges(tables: MonitorTables, state: int) -> list[Edge]:
+    """Return the edges of a state, ordered by their guards and targets: the longest guard comes last."""
+    return sorted(tables.edges[state], key=lambda edge: (_size(edge.guard), edge.target))
 
 
 def shape_edges(tables: MonitorTables, state: int) -> list[Edge]:
@@ -82,15 +67,25 @@ def edge_shape(tables: MonitorTables, edge: Edge) -> Hashable:
     return edge.guard.primes, tuple(other.guard.primes for other in _improving(tables, edge))
 
 
-class _StateCode:
+class StateCode:
+    """Makes the statements that compute the transition from a state, or from any state of one shape.
+
+    The statements find the edge to take, its robustness, the progress, and the limiting atom: the atom that
+    determines how robust the most robust edge towards a goal is. If the code ``reads_tables``, they read the
+    next state and its progress from tables. ``atoms`` are the names of the variables with the values of the
+    atoms.
+    """
+
     def __init__(self, tables: MonitorTables, atoms: Sequence[str], *, reads_tables: bool) -> None:
         self._tables, self._reads_tables = tables, reads_tables
         # Large automata have millions of literals: equal ones share one expression.
-        self._values, self._tests = _literals(tuple(atoms))
+        self._values, self._literals = _literals(tuple(atoms))
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self, edges: Sequence[Edge]) -> tuple[Statement, ...]:
         """Return an ``if`` with a case for each of the ``edges`` that leave the state.
+
+        Without tables they are ordered by :func:`state_edges`, with tables by :func:`shape_edges`.
 
         Exactly one guard is true, so the last edge, which has the longest guard, is the ``else``,
         without a test. If there is only one edge, return its statements without an ``if``.
@@ -98,8 +93,11 @@ class _StateCode:
         bodies = [self._edge_statements(place, edge) for place, edge in enumerate(edges)]
         if len(edges) == 1:
             return bodies[0]
-        tests = [self._truth(edge.guard) for edge in edges[:-1]]
-        return (If(tuple(zip(tests, bodies[:-1], strict=True)), bodies[-1]),)
+        return (If(tuple(zip(self._tests(edges), bodies[:-1], strict=True)), bodies[-1]),)
+
+    def _tests(self, edges: Sequence[Edge]) -> list[ProgramExpression]:
+        """Return the tests of the guards of all edges but the last."""
+        return [self._truth(edge.guard) for edge in edges[:-1]]
 
     def _edge_statements(self, place: int, edge: Edge) -> tuple[Statement, ...]:
         """Return the statements that run when the automaton takes an edge.
@@ -116,9 +114,10 @@ class _StateCode:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
         # The guards of the edges towards a goal are false, so each of their prime implicants has a literal at or
         # below 0. A literal that the guard of this edge makes positive is therefore never the least one.
-        above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
+        above = [literal for literal in shared_literals(edge.guard.primes) if literal[1]]
         primes = [prime for candidate in improving for prime in candidate.guard.primes]
-        lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
+        primes_left = [[literal for literal in prime if literal not in above] for prime in primes]
+        lines += self._nearest(primes_left, edge.guard.primes)
         # The guards of the edges towards a goal are false, so their robustness is at most 0 without `min(0, …)`.
         share = BinaryNumber(
             "/", BinaryNumber("+", Real(1.0), ProgramVariable(NEAREST)), Real(float(self._tables.fspa.spec_size))
@@ -147,9 +146,12 @@ class _StateCode:
     def _truth(self, guard: Guard) -> ProgramExpression:
         tests: list[ProgramExpression] = []
         for prime in guard.primes:
-            literals = [self._tests[literal] for literal in prime]
+            literals = [self._literal_test(literal) for literal in prime]
             tests.append(Bool(True) if not literals else literals[0] if len(literals) == 1 else All(tuple(literals)))
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
+
+    def _literal_test(self, literal: tuple[int, bool]) -> ProgramExpression:
+        return self._literals[literal]
 
     def _robustness(self, primes: Sequence[Implicant]) -> ProgramExpression:
         """Return the robustness of a guard: the maximum of the robustness of its prime implicants.
@@ -157,7 +159,7 @@ class _StateCode:
         The robustness of a prime implicant is the value of its least literal. If an equivalent
         minimum of maxima has fewer literals, return that instead; only the sign of a 0 may differ.
         """
-        shared = _shared(primes)
+        shared = shared_literals(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
         terms = [self._value(*literal) for literal in shared]
         if not all(rest):
@@ -167,7 +169,7 @@ class _StateCode:
             return _fold("min", [*terms, _fold("max", [self._least(prime) for prime in rest])])
         return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
 
-    def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
+    def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]], _: Sequence[Implicant]) -> list[Statement]:
         """Return statements that find the most robust of the prime implicants, and its least literal.
 
         If several prime implicants or literals have the same value, the first one counts. The
@@ -238,7 +240,7 @@ def _improving(tables: MonitorTables, edge: Edge) -> tuple[Edge, ...]:
     return tables.improving[edge.source] if edge.source == edge.target else ()
 
 
-def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
+def shared_literals(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
     """Return the literals that all prime implicants contain."""
     return [literal for literal in primes[0] if all(literal in prime for prime in primes)]
 

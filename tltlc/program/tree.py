@@ -115,6 +115,15 @@ class Any:
 
 
 @record
+class Choice:
+    """The value of ``value`` if the test is true, else that of ``otherwise``; only this one is computed."""
+
+    test: ProgramExpression
+    value: ProgramExpression
+    otherwise: ProgramExpression
+
+
+@record
 class TableEntry:
     """The entry of a table at an index, which is an integer from 0."""
 
@@ -123,7 +132,7 @@ class TableEntry:
 
 
 ProgramExpression = Union[
-    Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any, TableEntry
+    Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any, Choice, TableEntry
 ]
 
 

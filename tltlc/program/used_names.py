@@ -13,6 +13,7 @@ from tltlc.program.tree import (
     Any,
     Assign,
     BinaryNumber,
+    Choice,
     Compare,
     Declare,
     If,
@@ -34,7 +35,12 @@ def variables_read(statements: Iterable[Statement]) -> frozenset[str]:
 
 def functions_called(statements: Iterable[Statement]) -> frozenset[NumericFunction]:
     """Return the functions that the statements call."""
-    return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, NumericCall))
+    return functions_in(_values(statements))
+
+
+def functions_in(expressions: Iterable[ProgramExpression]) -> frozenset[NumericFunction]:
+    """Return the functions that the expressions call."""
+    return frozenset(node.function for node in parts(expressions) if isinstance(node, NumericCall))
 
 
 def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpression]:
@@ -52,6 +58,8 @@ def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpressio
                 stack += (left, right)
             case NumericCall(_, args) | All(args) | Any(args):
                 stack += args
+            case Choice(test, value, otherwise):
+                stack += (test, value, otherwise)
             case Negate(operand) | Not(operand) | TableEntry(_, operand):
                 stack.append(operand)
 

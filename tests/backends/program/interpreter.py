@@ -14,6 +14,7 @@ from tltlc.program.tree import (
     Assign,
     BinaryNumber,
     Bool,
+    Choice,
     CommentLine,
     Compare,
     Declare,
@@ -84,6 +85,8 @@ class Scope:
                 return not self.value(operand)
             case All(args):
                 return all(self.value(argument) for argument in args)
+            case Choice(test, value, otherwise):
+                return self.value(value if self.value(test) else otherwise)
             case TableEntry(table, index):
                 place = self.value(index)
                 assert isinstance(place, int) and place >= 0

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from random import Random
 
 import pytest
 
-from tests.backends.program.interpreter import Scope
+from tests.backends.program.following import follow
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.expression.tree import Before, Condition, Const, Expression, Op, SignalValue, When
-from tltlc.monitor import Monitor
 from tltlc.program.build import program
 from tltlc.program.used_names import functions_called
-from tltlc.resolve.spec import Register, Signal
+from tltlc.resolve.spec import Register
 from tltlc.tools.conformance import memory
 from tltlc.tools.conformance.draw import Draw
 
@@ -75,44 +73,11 @@ def test_a_maximum_that_a_register_never_exceeds_is_dropped(limit: float, kept: 
 
 
 def test_statements_compute_the_registers_of_the_monitor() -> None:
-    """The interpreter has no language of its own, and the monitor does not know the program."""
     count = 0
     for seed in range(60):
         _, fspa = memory._random_spec("told", Draw(seed))
         if fspa is None or not fspa.registers:
             continue
         count += 1
-        _follow(fspa, Random(seed))
+        follow(fspa, Random(seed), 25, has_bools=seed % 2 == 0)
     assert count > 30
-
-
-def _follow(fspa: Fspa, rng: Random) -> None:
-    found, monitor = program(fspa, ()), Monitor(fspa)
-    kept = tuple(register.initial for register in fspa.registers)
-    for _ in range(25):
-        sample = {signal.name: _value(signal, rng) for signal in fspa.signals}
-        scope = Scope(
-            dict(zip(found.signals, sample.values(), strict=True)) | dict(zip(found.before, kept, strict=True))
-        )
-        lazy = [index for state in fspa.states for index in found.computed_in(state.id)]
-        scope.changing |= {*found.atoms, *found.registers}
-        for step in found.every_step:
-            scope.run(found.values[step.index] if step.kind == "atom" else found.updates[step.index])
-            if step.kind == "atom" and not found.always_in_range[step.index]:
-                name = found.atoms[step.index]
-                scope.values[name] = min(max(scope.values[name], -1.0), 1.0)
-        for index in lazy:
-            scope.run(found.values[index])
-        kept = tuple(float(scope.values[name]) for name in found.registers)
-        monitor.step(sample)
-        assert kept == monitor.registers
-        assert all(map(math.isfinite, kept))
-        for name, value in zip(found.atoms, monitor.values, strict=True):
-            assert scope.values.get(name, value) == value
-
-
-def _value(signal: Signal, rng: Random) -> float:
-    if signal.type == "bool":
-        return float(rng.random() < 0.5)
-    low, high = (-30.0, 30.0) if signal.low is None or signal.high is None else (signal.low, signal.high)
-    return rng.choice((low, high, 0.0, 0.25, low + (high - low) * rng.random()))

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
-from tltlc.program.printer import Printer
+from tltlc.program.printer import CHOICE, OR, Printer
 from tltlc.program.tree import (
     Assign,
     Declare,
@@ -20,8 +20,6 @@ from tltlc.program.tree import (
 )
 
 _BETTER = {"min": "<", "max": ">"}
-_CHOICE = -1
-"""The binding strength of ``a if b else c``, lower than that of all other expressions."""
 
 
 class Gd(Printer):
@@ -34,6 +32,7 @@ class Gd(Printer):
 
     INDENT: ClassVar[str] = "\t"
     COMMENT: ClassVar[str] = "#"
+    TEST: ClassVar[int] = OR
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END: ClassVar[str] = ""
@@ -48,12 +47,12 @@ class Gd(Printer):
 
         A variable without a value gets 0 or false, because GDScript needs one.
         """
-        value = self._START[statement.type] if statement.value is None else self.text(statement.value, _CHOICE)
+        value = self._START[statement.type] if statement.value is None else self.text(statement.value, CHOICE)
         return f"var {self.name(statement.name)}: {self.TYPES[statement.type]} = {value}"
 
     def assignment(self, statement: Assign) -> str:
         """Return the text of an assignment in GDScript."""
-        return f"{self.name(statement.name)} = {self.text(statement.value, _CHOICE)}"
+        return f"{self.name(statement.name)} = {self.text(statement.value, CHOICE)}"
 
     def head(self, test: str, *, first: bool) -> str:
         """Return the first line of a case: ``if`` or ``elif`` with its test."""
@@ -89,8 +88,12 @@ class Gd(Printer):
             case NumericCall("min" | "max" as function, (first, second)) if function not in self._functions:
                 if _is_simple(first) and _is_simple(second):
                     first_text, second_text = self.text(first), self.text(second)
-                    return f"{second_text} if {second_text} {_BETTER[function]} {first_text} else {first_text}", _CHOICE
+                    return f"{second_text} if {second_text} {_BETTER[function]} {first_text} else {first_text}", CHOICE
         return super()._text_and_binding(node)
+
+    def choice(self, test: str, value: str, otherwise: str) -> str:
+        """Return the text of a conditional expression in GDScript."""
+        return f"{value} if {test} else {otherwise}"
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function of Godot or of the script."""

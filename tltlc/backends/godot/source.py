@@ -23,6 +23,7 @@ from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
+from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called
@@ -104,7 +105,7 @@ class _Source:
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
         self._fspa, self._dialect = fspa, dialect
         reserved = RESERVED | ({"registers"} if fspa.registers else set()) | ({DT} if fspa.clock_varies else set())
-        self._program = program(fspa, reserved)
+        self._program = program(fspa, reserved, has_bools=True)
         program_ = self._program
         variables = [*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before]
         renamed = snake_case(variables, reserved)
@@ -267,8 +268,14 @@ class _Source:
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        names = map(self._printer.name, self._program.bools_read_in(case))
-        return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
+        lines = []
+        for variable in self._program.bools_read_in(case):
+            name = self._printer.name(variable)
+            is_bool = variable in self._program.bool_signals
+            lines.append(
+                f"var {name}: {f'bool = sample.{name}' if is_bool else f'float = 1.0 if sample.{name} else 0.0'}"
+            )
+        return lines
 
     def _stop(self) -> list[str]:
         return ["if problem != Problem.NONE:", "\treturn false"]
@@ -369,7 +376,8 @@ class _Source:
 
     def _remember(self) -> list[str]:
         """Return the code that keeps the values of the registers for the next sample."""
-        return [f"registers[{index}] = {name}" for index, name in enumerate(self._registers)]
+        texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
+        return [f"registers[{index}] = {text}" for index, text in enumerate(texts)]
 
     # --- pieces -----------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import ClassVar, Final
 
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.printer import Printer
+from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.tree import Assign, Declare, If, Int, Statement
 
 DEEPEST_BLOCK: Final = 60
@@ -68,7 +68,7 @@ class LuaPrinter(Printer):
     def declaration(self, statement: Declare) -> str:
         """Return the declaration of a local variable; if the variable is a field, return an assignment to it."""
         local = "" if statement.name in self._fields else "local "
-        value = "" if statement.value is None else f" = {self.text(statement.value)}"
+        value = "" if statement.value is None else f" = {self.text(statement.value, CHOICE)}"
         return f"{local}{self.name(statement.name)}{value}"
 
     def assignment(self, statement: Assign) -> str:
@@ -91,6 +91,10 @@ class LuaPrinter(Printer):
         call = f"part[{self._part_count}]({self._tables})"
         self.parts += [head, *super().branches(statement, 1), "end", ""]
         return [f"{self.INDENT * depth}{call}"]
+
+    def choice(self, test: str, value: str, otherwise: str) -> str:
+        """Return the text of an expression that has one of two values, which are never false."""
+        return f"{test} and {value} or {otherwise}"
 
     def head(self, test: str, *, first: bool) -> str:
         """Return the line that begins a case: ``if`` or ``elseif``, with its test."""
