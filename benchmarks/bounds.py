@@ -150,6 +150,9 @@ def compare_monitors(name: str) -> Record:
         "random_traces": RANDOM_TRACES,
         "c_steps_per_s": {author: round(median([rates[author] for rates in rounds])) for author in TIMED},
         "to": {author: quartiles([rates["generated"] / rates[author] for rates in rounds]) for author in TIMED[1:]},
+        "no_registers_to": {
+            author: quartiles([rates["no_registers"] / rates[author] for rates in rounds]) for author in TIMED[2:]
+        },
     }
 
 

@@ -62,6 +62,7 @@ def test_the_report_says_which_goals_are_missed(tmp_path: Path) -> None:
         "python_steps_per_s": {"generated": 300_000, "Reelay": 100_000},
         "c_steps_per_s": dict.fromkeys(TIMED, 5_000_000),
         "to": dict.fromkeys(TIMED[1:], (0.8, 0.85, 0.9)),
+        "no_registers_to": dict.fromkeys(TIMED[2:], (0.8, 0.85, 0.9)),
         "left_out": {"RTAMT": "not installed"},
     }
     store.put(SECTION, "compile", compiled)

@@ -18,6 +18,7 @@ import pytest
 from tests.backends.monitors import trace_of
 from tests.memory.definition import Definition, formula
 from tests.tools.conformance.runner import Runner, build_program, runners
+from tests.tools.conformance.runners.c import WITHOUT_REGISTERS
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
@@ -42,7 +43,11 @@ ENDS: Final = 4
 
 BATCH: Final = 1000
 TARGETS: Final = ("c", "csharp", "gdscript", "gdscript3")
-RUNNERS: Final = {runner.name: runner for runner in runners() if runner.name in TARGETS}
+RUNNERS: Final = {
+    runner.name: runner
+    for runner in (*runners(), WITHOUT_REGISTERS)
+    if runner.target in TARGETS and runner.name != "c++"
+}
 
 Trace = list[dict[str, float]]
 

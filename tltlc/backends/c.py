@@ -109,7 +109,10 @@ class _Source:
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
         with recursion_room():
-            step = _C.block(self._step())
+            steps = self._compute(), self._check(), self._move(), self._judge()
+            # With registers, what a step recalls stands between what it reads and the rest.
+            read, before = (self._read(), []) if fspa.registers else ([], self._read())
+            step = _C.block(snippets.paragraphs(before, *steps))
         places = {
             "p": self._prefix,
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -148,7 +151,11 @@ class _Source:
             "states": "\n".join(self._states()),
             "entered": self._entered,
             "tables": "" if program_.tables is None else tables_text(program_.tables, fspa.judge),
+            "read": _C.block(read),
+            "recall": _C.block(self._recall()),
             "step": step,
+            "remember": _C.block(self._remember()),
+            **self._memory(),
             "give": _C.block(self._give()),
         }
         return fill_template("monitor.h.txt", places, present)
@@ -236,11 +243,6 @@ class _Source:
 
     # --- the step function ------------------------------------------------------------------------
 
-    def _step(self) -> list[str]:
-        return snippets.paragraphs(
-            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
-        )
-
     def _read(self) -> list[str]:
         """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         program_ = self._program
@@ -252,8 +254,39 @@ class _Source:
         lines += [] if program_.reads_sample else ["(void)sample;"]
         used = program_.variables_used
         lines += [f"const double {name} = monitor->params.{name};" for name in program_.params if name in used]
-        before = enumerate(program_.before)
-        return [*lines, *(f"const double {name} = monitor->registers[{at}];" for at, name in before if name in used)]
+        return lines
+
+    def _remembered(self) -> list[tuple[int, str, str]]:
+        """Return the registers that a step reads: the number of each, its variable before the sample, and its type."""
+        used, booleans = self._program.variables_used, self._program.booleans
+        before = enumerate(self._program.before)
+        return [(index, name, "bool" if name in booleans else "double") for index, name in before if name in used]
+
+    def _recall(self) -> list[str]:
+        """Return the code that reads the values of the registers before the sample."""
+        return [
+            f"const {type_} {name} = monitor->registers[{index}]{' > 0.0' if type_ == 'bool' else ''};"
+            for index, name, type_ in self._remembered()
+        ]
+
+    def _memory(self) -> dict[str, str]:
+        """Return the code for monitors that keep nothing but what a step reads: its fields, and how they are used."""
+        remembered, registers = self._remembered(), self._fspa.registers
+        starts = {
+            index: snippets.boolean_literal(registers[index].initial > 0.0)
+            if type_ == "bool"
+            else snippets.number_literal(registers[index].initial)
+            for index, _, type_ in remembered
+        }
+        names = self._program.registers
+        return {
+            "memory_fields": _C.block([f"{type_} {name};" for _, name, type_ in remembered] or ["bool none;"], 2),
+            "memory_starts": _C.block([f"monitor->memory.{name} = {starts[index]};" for index, name, _ in remembered]),
+            "memory_recall": _C.block(
+                [f"const {type_} {name} = monitor->memory.{name};" for _, name, type_ in remembered]
+            ),
+            "memory_keep": _C.block([f"monitor->memory.{name} = {names[index]};" for index, name, _ in remembered]),
+        }
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -261,7 +294,7 @@ class _Source:
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        names, booleans = self._program.bools_read_in(case), self._program.bool_signals
+        names, booleans = self._program.bools_read_in(case), self._program.booleans
         return [
             f"const bool {name} = sample->{name};"
             if name in booleans

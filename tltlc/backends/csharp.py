@@ -238,8 +238,13 @@ class _Source:
             )
         lines += self._bools(None)
         lines += [f"double {name} = _params.{name};" for name in self._program.params if name in used]
-        before = enumerate(self._program.before)
-        return [*lines, *(f"double {name} = _registers[{index}];" for index, name in before if name in used)]
+        for index, name in enumerate(self._program.before):
+            if name in used:
+                is_bool = name in self._program.booleans
+                lines.append(
+                    f"bool {name} = _registers[{index}] > 0.0;" if is_bool else f"double {name} = _registers[{index}];"
+                )
+        return lines
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -247,7 +252,7 @@ class _Source:
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        names, booleans = self._program.bools_read_in(case), self._program.bool_signals
+        names, booleans = self._program.bools_read_in(case), self._program.booleans
         return [
             f"bool {name} = sample.{name};" if name in booleans else f"double {name} = sample.{name} ? 1.0 : 0.0;"
             for name in names

@@ -269,8 +269,10 @@ class _Source:
             lines.append(f"{head}self.read({index}, sample.{name}, {low}, {high})?;")
         lines += self._bools(None)
         lines += [f"let {name} = self.params.{name};" for name in self._program.params if name in used]
-        before = enumerate(self._program.before)
-        return [*lines, *(f"let {name} = self.registers[{index}];" for index, name in before if name in used)]
+        for index, name in enumerate(self._program.before):
+            test = " > 0.0" if name in self._program.booleans else ""
+            lines += [f"let {name} = self.registers[{index}]{test};"] if name in used else []
+        return lines
 
     def _bools(self, case: int | None) -> list[str]:
         """Return the code that converts bool signals to the numbers 0 and 1.
@@ -279,7 +281,7 @@ class _Source:
         step reads.
         """
         names = self._program.bools_read_in(case)
-        booleans = self._program.bool_signals
+        booleans = self._program.booleans
         return [
             f"let {name} = sample.{name};"
             if name in booleans
@@ -359,7 +361,8 @@ class _Source:
         used = variables_read(self._program.reward_statements)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
-        lines += [f"let mut {reward_step.BEST} = self.progress;", f"let mut {reward_step.DONE} = self.done;"]
+        changes = "mut " if reward_step.BEST in used else ""
+        lines += [f"let {changes}{reward_step.BEST} = self.progress;", f"let mut {reward_step.DONE} = self.done;"]
         # The variable is mutable if penalties may be subtracted from the reward.
         lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{reward_step.REWARD};")
         declarations = {

@@ -54,8 +54,8 @@ class Program:
       ``registers`` are those with the values of the registers after the sample, and ``before`` those
       with their values before it. Where an atom or register is only -1 or 1, its variable may be a
       Boolean, which is true for 1. A monitor keeps the values in ``kept``, which are those of the
-      registers after the sample, when the step has succeeded. ``bool_signals`` are the variables of
-      signals that are Booleans, too.
+      registers after the sample, when the step has succeeded. ``booleans`` are the variables of signals,
+      and of registers before the sample, that are Booleans: true where the signal or register is 1.
     - ``values`` has, for each atom, the statements that assign its value; none if no case needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
@@ -86,7 +86,7 @@ class Program:
     registers: tuple[str, ...]
     before: tuple[str, ...]
     kept: tuple[ProgramExpression, ...]
-    bool_signals: frozenset[str]
+    booleans: frozenset[str]
     values: tuple[tuple[Statement, ...], ...]
     always_in_range: tuple[bool, ...]
     updates: tuple[tuple[Statement, ...], ...]
@@ -150,7 +150,8 @@ class Program:
 def program(fspa: Fspa, reserved: Iterable[str], *, has_bools: bool = False) -> Program:
     """Return the program of an automaton's monitor.
 
-    If ``has_bools``, bool signals are Booleans where there are registers (``bool_signals``), not 0 and 1.
+    If ``has_bools``, and there are registers, bool signals are Booleans, not 0 and 1, and so are the registers
+    before the sample that are only -1 or 1.
 
     ``reserved`` are the names that no variable may have: keywords of the language in which the
     program will be printed, and names in the template of its file.
@@ -182,8 +183,7 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
         variables[StepLength()] = DT
     order = schedule(fspa)
     flags = Flags(fspa, order) if registers else None
-    bool_signals = {signal.name for signal in fspa.signals if signal.type == "bool"} if flags and has_bools else set()
-    booleans = _booleans(fspa, flags) | bool_signals if flags else frozenset()
+    booleans = _booleans(fspa, flags, has_bools) if flags else frozenset[VariableKey]()
     prefix = _prefix([*variables.values(), *params.values(), *atoms])
     arithmetic = ExpressionTranslator(variables, params, prefix, flags, booleans)
     computations: dict[str, list[Statement]] = {}
@@ -231,7 +231,9 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
         atoms=atoms,
         registers=now,
         before=before,
-        bool_signals=frozenset(signals[name] for name in bool_signals),
+        booleans=frozenset(
+            variables[key] for key in booleans if isinstance(key, Before) or (isinstance(key, str) and key in signals)
+        ),
         kept=tuple(
             Choice(ProgramVariable(name), Real(1.0), Real(-1.0)) if name in booleans_now else ProgramVariable(name)
             for name in now
@@ -253,15 +255,17 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
     )
 
 
-def _booleans(fspa: Fspa, flags: Flags) -> frozenset[VariableKey]:
-    """Return the keys of the atoms and registers that have Boolean variables.
+def _booleans(fspa: Fspa, flags: Flags, has_bools: bool) -> frozenset[VariableKey]:
+    """Return the keys of the atoms and registers that have Boolean variables; if ``has_bools``, also of what is read.
 
     Monitors test exclusive atoms as numbers.
     """
     exclusive = {fspa.atoms[atom].name for group in fspa.exclusive if len(group) > 1 for atom in group}
     keys: list[VariableKey] = [AtomValue(atom.name) for atom in fspa.atoms if atom.name not in exclusive]
     keys += [register.name for register in fspa.registers]
-    return frozenset(key for key in keys if key in flags)
+    keys += [Before(register.name) for register in fspa.registers if has_bools]
+    bools = [signal.name for signal in fspa.signals if signal.type == "bool" and has_bools]
+    return frozenset((*(key for key in keys if key in flags), *bools))
 
 
 def _only_in(atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Case]) -> tuple[int | None, ...]:

@@ -16,6 +16,7 @@ from tltlc.program.tree import (
     Declare,
     If,
     Int,
+    Not,
     ProgramExpression,
     ProgramVariable,
     Real,
@@ -44,6 +45,10 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
     The statements run after each transition of the automaton.
     """
     limit = fspa.limit_steps
+    if fspa.registers and limit is None and fspa.judge == "limit" and not _may_be_satisfied(fspa):
+        # No step makes progress.
+        ends = (Assign(DONE, ProgramVariable(ENDS)),)
+        return (Assign(REWARD, Real(0.0)), If(((Not(ProgramVariable(DONE)), ends),)))
     steps, zero = ProgramVariable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
     lines.append(Declare(BEFORE, "real", ProgramVariable(BEST)))
@@ -72,6 +77,10 @@ def statements(fspa: Fspa) -> tuple[Statement, ...]:
         )
     lines.append(If(((ProgramVariable(DONE), (Assign(REWARD, zero),)),), going_on))
     return tuple(lines)
+
+
+def _may_be_satisfied(fspa: Fspa) -> bool:
+    return any(state.verdict == "satisfied" for state in fspa.states)
 
 
 def _survived(limit: int | None) -> list[Statement]:

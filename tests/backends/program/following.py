@@ -6,7 +6,7 @@ The interpreter has no language of its own, and the monitor does not know the pr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from random import Random
 
 from tests.backends.program.interpreter import Scope, Value, step
@@ -24,7 +24,7 @@ def follow(fspa: Fspa, rng: Random, samples: int, *, has_bools: bool = False, dr
     kept, state, best, done = tuple(register.initial for register in fspa.registers), 0, 0.0, False
     for number in range(1, samples + 1):
         sample = {signal.name: (draw or any_value)(signal, rng) for signal in fspa.signals}
-        scope = Scope(_read(found, sample) | dict(zip(found.before, kept, strict=True)))
+        scope = Scope(_read(found, found.signals, sample.values()) | _read(found, found.before, kept))
         lazy = [index for case in range(len(found.cases)) for index in found.computed_in(case)]
         scope.changing |= {*found.atoms, *found.registers}
         for computation in found.every_step:
@@ -51,9 +51,9 @@ def follow(fspa: Fspa, rng: Random, samples: int, *, has_bools: bool = False, dr
     return found
 
 
-def _read(found: Program, sample: Mapping[str, float]) -> dict[str, Value]:
-    values = zip(found.signals, sample.values(), strict=True)
-    return {name: value == 1.0 if name in found.bool_signals else value for name, value in values}
+def _read(found: Program, variables: Iterable[str], numbers: Iterable[float]) -> dict[str, Value]:
+    values = zip(variables, numbers, strict=True)
+    return {name: value == 1.0 if name in found.booleans else value for name, value in values}
 
 
 def _as_number(value: Value) -> float:

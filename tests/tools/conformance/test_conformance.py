@@ -20,7 +20,7 @@ from tests.tools.conformance.runner import (
     runners,
     write,
 )
-from tests.tools.conformance.runners.c import OPTIMIZED
+from tests.tools.conformance.runners.c import OPTIMIZED, WITHOUT_REGISTERS
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
 from tltlc.tools.conformance.expected_output import ExpectedOutput, expected_output
@@ -72,6 +72,13 @@ def check_together(runner: Runner, names: Iterable[str], folder: Path) -> None:
 @pytest.mark.parametrize("runner", list(_usable(runners())))
 def test_cases_built_as_one_program_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
     check_together(runner, list(CASES)[:: EVERY.get(runner.name, 1)], tmp_path)
+
+
+@pytest.mark.parametrize("runner", list(_usable([WITHOUT_REGISTERS])))
+def test_monitors_whose_registers_nobody_reads_match_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
+    names = [name for name in CASES if CASES[name]().fspa.registers]
+    assert len(names) >= 5
+    check_together(runner, names, tmp_path)
 
 
 @pytest.mark.slow

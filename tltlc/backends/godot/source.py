@@ -256,7 +256,9 @@ class _Source:
             if variable in used
         ]
         lines += [
-            f"var {self._printer.name(variable)}: float = registers[{index}]"
+            f"var {self._printer.name(variable)}: bool = registers[{index}] > 0.0"
+            if variable in self._program.booleans
+            else f"var {self._printer.name(variable)}: float = registers[{index}]"
             for index, variable in enumerate(self._program.before)
             if variable in used
         ]
@@ -271,7 +273,7 @@ class _Source:
         lines = []
         for variable in self._program.bools_read_in(case):
             name = self._printer.name(variable)
-            is_bool = variable in self._program.bool_signals
+            is_bool = variable in self._program.booleans
             lines.append(
                 f"var {name}: {f'bool = sample.{name}' if is_bool else f'float = 1.0 if sample.{name} else 0.0'}"
             )

@@ -84,4 +84,7 @@ RUNNERS = (
     ),
 )
 
+WITHOUT_REGISTERS = replace(
+    RUNNERS[0], name="c -DTLTL_NO_REGISTERS", build_all=partial(link, (*C, "-DTLTL_NO_REGISTERS", *STRICT))
+)
 OPTIMIZED = replace(RUNNERS[0], name="c -O1", build_all=partial(link, (*C, "-O1", *STRICT)))
