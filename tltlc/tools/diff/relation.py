@@ -105,13 +105,8 @@ def compare(
             unbroken_a, unbroken_b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive
         )
         return replace(beginnings, relation=None, only_a=None, only_b=None, beginnings=beginnings)
-    if a.registers or b.registers:
-        exclusive = tuple(exclusive)
-        exact = _compare_unfolded(a, b, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
-        if exact is not None:
-            return exact
     split_names = () if by_name else different_atoms(a, b)
-    originals = a, b
+    exclusive, originals = tuple(exclusive), (a, b)
     a, b = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
     own_groups = _own_groups(a, b)
     groups = _merge((*own_groups, *exclusive), {atom.name for fspa in (a, b) for atom in fspa.atoms})
@@ -119,6 +114,13 @@ def compare(
     if len(never) > work // _STEPS_OF_A_PAIR:
         raise OutOfWork
     only_a, only_b = separating(a, b, work, never), separating(b, a, work, never)
+    if (a.registers or b.registers) and (only_a or only_b):
+        # The automata take atoms that follow from others for free. So they may differ where the specs do not.
+        exact = _compare_unfolded(
+            *originals, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive
+        )
+        if exact is not None:
+            return exact
     impossible: dict[NamedLiterals, None] = {}
     if feasible_only and (only_a or only_b):
         from tltlc.tools.diff.feasible_letters import FeasibleLetters
