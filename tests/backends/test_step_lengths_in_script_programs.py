@@ -76,8 +76,10 @@ def test_many_registers_and_deep_updates_read_the_length(runner: Runner, tmp_pat
     )
     value: Expression = Op("min", (StepLength(), Const(0.25)))
     for level in range(90):
-        condition = Condition(">", (SignalValue("x0"), Const(level / 100)))
+        condition = Condition(">", (SignalValue("x0"), Const((90 - level) / 100)))
         value = When(((condition, value),), Op("min", (StepLength(), Const(level / 200))))
+        # With a computation after it, the inner value is computed in a block of its own.
+        value = Op("-", (Op("+", (value, Const(0.25))), Const(0.25)))
     registers = [replace(each, update=value) if each.kind == "time_holding" else each for each in deep.registers]
     deep = replace(deep, registers=tuple(registers))
     assert len(many.registers) == 120
