@@ -197,11 +197,11 @@ class Samples:
         set_names = frozenset(numbers)
         if set_names not in self._computed_from:
             self._computed_from[set_names] = computed(set_names, fspa.atoms, fspa.registers, fspa.signals)
-        found = self._computed_from[set_names]
+        computable = self._computed_from[set_names]
         names = {index: fspa.atoms[index].name for index in self.given}
-        given = {index: 1.0 if name in holds else -1.0 for index, name in names.items() if name not in found.atoms}
+        given = {index: 1.0 if name in holds else -1.0 for index, name in names.items() if name not in computable.atoms}
         sample = [numbers.get(name, float(name in holds)) for name in self._names]
-        return self._with_registers(sample, registers, dt_s, when, given, found.registers)
+        return self._with_registers(sample, registers, dt_s, when, given, computable.registers)
 
     def _with_registers(
         self,

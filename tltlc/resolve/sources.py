@@ -18,7 +18,7 @@ def sources(name: str, atoms: Iterable[Atom], registers: Iterable[Register]) -> 
     following = following_atoms(atoms, registers)
     expressions = {atom.name: atom.expression for atom in atoms}
     updates = {register.name: register.update for register in registers}
-    found: dict[str, None] = {}
+    origins: set[str] = set()
     seen: set[Expression] = set()
     pending = [expressions[name]]
     while pending:
@@ -30,10 +30,10 @@ def sources(name: str, atoms: Iterable[Atom], registers: Iterable[Register]) -> 
             if isinstance(node, AtomValue) and node.name in following:
                 pending.append(expressions[node.name])
             elif isinstance(node, AtomValue):
-                found[node.name] = None
+                origins.add(node.name)
             elif isinstance(node, (SignalValue, Before)) and node.name in updates:
                 pending.append(updates[node.name])
-    return tuple(atom.name for atom in atoms if atom.name in found)
+    return tuple(atom.name for atom in atoms if atom.name in origins)
 
 
 def names_read(expression: Expression) -> list[str]:

@@ -144,10 +144,10 @@ def until_time(failure: ParseFailure) -> Diagnostic | None:
     """Return an error for a time after `until`, as in ``hidden until 5 s``, else None."""
     tokens = failure.tokens
     at = next((index for index in (failure.stop.index, failure.stop.index - 1) if tokens[index].type == "NUMBER"), -1)
-    found = time_at(tokens, at)
-    if at < 2 or found is None or tokens[at - 1].type not in ("UNTIL", "WEAK_UNTIL"):
+    written = time_at(tokens, at)
+    if at < 2 or written is None or tokens[at - 1].type not in ("UNTIL", "WEAK_UNTIL"):
         return None
-    time, end = found[0].text, found[1]
+    time, end = written[0].text, written[1]
     word, start, keyword = tokens[at - 1], formula_start(failure), clause_keyword(failure)
     title = f"{quote_token(word)} stands between two formulas, and `{time}` is a time"
     last = last_index_of(failure, INFIX - {word.type}, start)

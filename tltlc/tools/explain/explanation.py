@@ -323,6 +323,6 @@ def _shown(fspa: Fspa, move: SampledEdge) -> Implicant:
     derived = following_atoms(fspa.atoms, fspa.registers)
     names = {fspa.atoms[atom].name for atom, _ in move.prime}
     origins = {origin for name in names & derived for origin in sources(name, fspa.atoms, fspa.registers)}
-    needed = {index for index, each in enumerate(fspa.atoms) if each.name in names | origins}
+    needed = {index for index, item in enumerate(fspa.atoms) if item.name in names | origins}
     literals = ((atom, fspa.atoms[atom].name in move.letter) for atom in given_atoms(fspa))
     return tuple((atom, holds) for atom, holds in literals if holds or atom in needed)
