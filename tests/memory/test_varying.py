@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 
 from tests.fuzzing import SEEDS, times
-from tests.memory.timed_definition import TimedDefinition
+from tests.memory.timed_definition import EndlessDefinition, TimedDefinition
 from tests.memory.timed_runs import TimedCase, check_timed_run, check_timed_seed, timed_case
 from tests.memory.timed_texts import FORMS, TimedTexts, TimedTrace, timed_trace
 from tltlc.automaton.memory import given_atoms
@@ -179,10 +179,33 @@ def test_two_times_that_differ_by_little_are_two_timers() -> None:
     assert run(case, trace_of("11.", "11.", (0, 0, 1000000.0025)))[-1].verdict == "violated"
 
 
-def test_exclusive_atoms_and_infinite_traces_keep_their_deadlines() -> None:
-    trace = trace_of("1...", "..1.", (0, 0.5, 0.5, 9))
-    late = trace_of("1...", "..1.", (0, 0.5, 0.75, 9))
-    for extra in ("", "semantics infinite "):
-        case = case_of(f"{extra}keep within 1 s of p, q")
-        assert run(case, trace)[-1].verdict != "violated"
-        assert [step.verdict == "violated" for step in run(case, late)] == [False, False, True, True]
+@times(60)
+@given(SEEDS)
+def test_exclusive_atoms_keep_their_deadlines(seed: int) -> None:
+    random = Random(seed)
+    case = timed_case(TimedTexts(random).clauses(), "varies exclusive p, q")
+    if case is not None:
+        check_timed_run(case, timed_trace(random, 8, exclusive=True), random, exclusive=True)
+
+
+@times(60)
+@given(SEEDS)
+def test_verdicts_over_infinite_traces_are_never_wrong(seed: int) -> None:
+    random = Random(seed)
+    case = timed_case(f"semantics infinite {TimedTexts(random).clauses()}")
+    if case is None:
+        return
+    clauses = [clause for clause in case.clauses if clause.kind != "semantics"]
+    trace = timed_trace(random, 6)
+    steps = run(case, trace)
+    final = next((i for i, step in enumerate(steps) if step.verdict in ("satisfied", "violated")), None)
+    for _ in range(4):
+        if final is None:
+            break
+        more = timed_trace(random, random.randint(1, 6))
+        samples = [*trace.samples[: final + 1], *more.samples]
+        lengths_s = [*trace.lengths_s[: final + 1], *more.lengths_s]
+        # All windows of the random specs are shorter than this.
+        definition = EndlessDefinition(case.module, samples + samples[-1:] * 6, lengths_s + [25.0] * 6, {})
+        met = all(definition.clause_holds(clause, len(samples) + 6) for clause in clauses)
+        assert steps[final].verdict == ("satisfied" if met else "violated")

@@ -12,7 +12,7 @@ from itertools import accumulate
 from math import inf
 
 from tests.memory.definition import TINY, Definition, exact
-from tests.memory.names import Scope
+from tests.memory.names import NOWHERE, Scope
 from tltlc.grammar import tree
 from tltlc.grammar.tree import BinaryExpr, Expr, TemporalInterval, Unary
 
@@ -98,6 +98,17 @@ class TimedDefinition(Definition):
 
     def _maximum(self, value: Fraction, name: str) -> float:
         return super()._maximum(value, name) if name == "times" else float(value)
+
+
+class EndlessDefinition(TimedDefinition):
+    """The meaning of formulas on an infinite trace whose last sample repeats for ever, with its length.
+
+    The sample is in ``trace`` often enough that the past no longer changes at the last two positions.
+    """
+
+    def holds(self, expr: Expr, i: int = 0, scope: Scope = NOWHERE, end: int | None = None) -> bool:
+        """Whether a formula holds at a position: the last one is like the one before it, which has a next one."""
+        return super().holds(expr, min(i, len(self.trace) - 2), scope, end)
 
 
 @cache

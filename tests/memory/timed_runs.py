@@ -60,11 +60,14 @@ def check_timed_seed(seed: int, traces: int = 1) -> int:
     return traces
 
 
-def check_timed_run(case: TimedCase, trace: TimedTrace, random: Random, monitor: Monitor | None = None) -> None:
+def check_timed_run(
+    case: TimedCase, trace: TimedTrace, random: Random, monitor: Monitor | None = None, *, exclusive: bool = False
+) -> None:
     """Compare each step of a monitor, which is reset, with the definition.
 
     The values of the atoms about the trace so far must be equal, a state must accept exactly the
-    prefixes that meet the spec, and no continuation that is tried contradicts a final verdict.
+    prefixes that meet the spec, and no continuation that is tried contradicts a final verdict. If
+    ``exclusive``, p and q do not hold together.
     """
     definition = TimedDefinition(case.module, *trace, {})
     monitor = monitor or Monitor(case.fspa)
@@ -85,12 +88,12 @@ def check_timed_run(case: TimedCase, trace: TimedTrace, random: Random, monitor:
         assert final in (None, step.verdict), "a final verdict stays"
         if final is None and step.verdict in FINAL:
             final = step.verdict
-            _check_final(case, TimedTrace(trace.samples[: i + 1], trace.lengths_s[: i + 1]), holds, random)
+            _check_final(case, TimedTrace(trace.samples[: i + 1], trace.lengths_s[: i + 1]), holds, random, exclusive)
 
 
-def _check_final(case: TimedCase, trace: TimedTrace, holds: bool, random: Random) -> None:
+def _check_final(case: TimedCase, trace: TimedTrace, holds: bool, random: Random, exclusive: bool) -> None:
     for _ in range(3):
-        more = timed_trace(random, random.randint(1, 8))
+        more = timed_trace(random, random.randint(1, 8), exclusive=exclusive)
         samples, lengths_s = [*trace.samples, *more.samples], [*trace.lengths_s, *more.lengths_s]
         definition = TimedDefinition(case.module, samples, lengths_s, {})
         for end in range(len(trace.samples), len(samples) + 1):

@@ -142,8 +142,11 @@ class TimedTexts:
         )
 
 
-def timed_trace(random: Random, length: int) -> TimedTrace:
-    """Return a trace in which atoms hold seldom, often or in runs, and deadlines are met, missed and jumped over."""
+def timed_trace(random: Random, length: int, *, exclusive: bool = False) -> TimedTrace:
+    """Return a trace in which atoms hold seldom, often or in runs, and deadlines are met, missed and jumped over.
+
+    If ``exclusive``, p and q do not hold together.
+    """
     chances = [random.choice((0.1, 0.3, 0.7, 0.95)) for _ in SIGNALS]
     stays = random.choice((0.0, 0.5, 0.8))
     lengths_s = random.sample(_LENGTHS_S, random.choice((1, 2, 4, len(_LENGTHS_S))))
@@ -153,7 +156,7 @@ def timed_trace(random: Random, length: int) -> TimedTrace:
         sample = {name: float(random.random() < chance) for name, chance in zip(SIGNALS, chances, strict=True)}
         if samples:
             sample = {name: samples[-1][name] if random.random() < stays else sample[name] for name in sample}
-        samples.append(sample)
+        samples.append({**sample, "q": 0.0} if exclusive and sample["p"] else sample)
     return TimedTrace(
         samples,
         [random.uniform(0, 1.5) if random.random() < arbitrary else random.choice(lengths_s) for _ in samples],

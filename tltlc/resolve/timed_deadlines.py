@@ -1,7 +1,7 @@
 """Replace bounded operators by timers in seconds, where each sample brings its own length (``clock varies``).
 
 Each rule replaces a formula by an equivalent one over atoms that read a register. The proofs are in
-``docs/semantics.md``, "Deadlines on a clock that varies". In the rules, T is a time above 0, ``p`` and
+``docs/semantics.md``, "A clock that varies". In the rules, T is a time above 0, ``p`` and
 ``q`` are formulas without temporal operators, and ``f`` is any formula. ``F`` within T includes the
 sample at T, and ``G`` for T ends before it. ``F`` later within T leaves out the first sample.
 
