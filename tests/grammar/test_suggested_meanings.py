@@ -174,6 +174,13 @@ def test_both_readings_of_an_unclear_sentence_are_given(clause: str, first: Mean
     check(readings[1].replace("require previously", "reach previously"), second)
 
 
+@pytest.mark.parametrize("clause", ["keep a twice", "keep twice a", "require a 2 times"])
+def test_a_count_without_a_comparison_gets_both(clause: str) -> None:
+    at_least, at_most = suggestions(clause)
+    check(at_least, counted(lambda n: n >= 2))
+    check(at_most, counted(lambda n: n <= 2))
+
+
 @pytest.mark.parametrize(
     ("clause", "readings"),
     [

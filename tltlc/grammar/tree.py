@@ -337,7 +337,7 @@ class TestStep:
 
     The sample is repeated ``times`` times. ``times_span`` is the place of the number ``3``; None if the
     line has no number, and ``times`` is 1. ``length`` is the time that each takes, None without one.
-    ``atoms`` are the expressions after it; one that sets a number, ``health = 40``, is the operator ``=``.
+    ``atoms`` are the expressions after it, with ``=`` to set a number.
     """
 
     times: int

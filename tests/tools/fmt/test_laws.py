@@ -71,3 +71,12 @@ def test_the_laws_hold_with_comments_between_any_two_words(random: Random, style
     words = [token for token in tokenize(EVERYTHING).tokens if token.text]
     text = "".join((" " if word.type == "UNIT" else random.choice(random_texts.GAPS)) + word.text for word in words)
     check(text, style)
+
+
+@pytest.mark.parametrize("style", [*STYLES])
+@pytest.mark.parametrize(
+    "items",
+    ["a // remark\nis rather_long, b", "12x x // remark\n= 1, b", "b, x = 4 + // remark\n3, a is // remark\nlong"],
+)
+def test_a_comment_in_an_item_that_stays_whole_comes_before_it(items: str, style: str) -> None:
+    check(f'test "t" for s {{ step {items} expect pending }}', style)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -10,7 +11,7 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import formula_start, operand_end, span_of, suggest_rewrite, text_of
 
-_COMPARISONS: Final[dict[tuple[str, ...], str]] = {
+_COMPARISONS: Final[Mapping[tuple[str, ...], str]] = {
     **COMPARISONS,
     **dict.fromkeys((("greater", "than"), ("above",), ("over",), ("exceeds",)), ">"),
     **dict.fromkeys((("below",), ("under",)), "<"),

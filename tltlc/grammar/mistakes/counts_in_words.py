@@ -129,6 +129,9 @@ def _error(
         help_ = f"write `{form.format(p=operand, n=count.number)}`"
     elif sign == "==" and keyword in ("keep", "reach", "require") and is_whole:
         help_ = f"write two clauses: `reach times({operand}) >= {count.number} keep times({operand}) <= {count.number}`"
+    elif not sign and keyword in ("keep", "require") and is_whole:
+        at_least, at_most = (_CLAUSES["keep", sign].format(p=operand, n=count.number) for sign in (">=", "<="))
+        help_ = f"write `{at_least}` if it must be that often at least, `{at_most}` if it must be that often at most"
     elif sign and not keyword:
         return suggest_rewrite(failure, start, end, f"times({operand}) {sign} {count.number}", title)
     else:

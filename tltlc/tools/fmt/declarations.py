@@ -7,7 +7,7 @@ from collections.abc import Sequence, Set
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.tools.fmt.expressions import Expressions, Item, name_item
+from tltlc.tools.fmt.expressions import Expressions, Item, head_end, name_item
 from tltlc.tools.fmt.one_line import OneLinePrinter
 from tltlc.tools.fmt.page import STEP, Page
 
@@ -185,7 +185,7 @@ class DeclarationPrinter:
             page.put(f" {self._expectation(item)}")
         elif isinstance(item, tree.TestStep):
             page.put("step")
-            page.put_comments(item.atoms[0].span.start, indent)
+            page.put_comments(head_end(item.atoms[0]), indent)
             page.put(f"{self._repetitions(item)} ")
             self._expressions.put_list([Item("", atom, atom.span) for atom in item.atoms], indent)
         elif isinstance(item.value, tuple):

@@ -31,6 +31,12 @@ class Item(NamedTuple):
         return self.value is None and ":" not in self.head
 
 
+def head_end(value: Expr) -> int:
+    """Return the offset up to which comments come before an item: its end if it stays whole, else its start."""
+    is_setting = isinstance(value, tree.BinaryExpr) and value.op == "="
+    return value.span.end if is_setting or is_speed(value) or isinstance(value, tree.IsExpr) else value.span.start
+
+
 class Expressions:
     """Writes expressions of a source on a page.
 
@@ -93,9 +99,7 @@ class Expressions:
         """Write items with commas between them, as many on each line as fit."""
         for place, item in enumerate(items):
             comma = "," if place < len(items) - 1 else ""
-            # The comments of an item that stays whole come before it, on the level of the list.
-            is_whole = isinstance(item.value, tree.IsExpr) or (item.value is not None and is_speed(item.value))
-            self._page.put_comments(item.span.end if is_whole else item.span.start, indent)
+            self._page.put_comments(item.span.start if item.value is None else head_end(item.value), indent)
             if place and not self._page.is_at_line_start:
                 text = self._item_text(item)
                 if text is not None and 1 + len(text) + len(comma) <= self._page.room:
@@ -164,7 +168,7 @@ class Expressions:
                 self._page.put(tail)
             case tree.WhenExpr():
                 self._put_when(node, indent)
-            case tree.BinaryExpr() if not is_speed(node) and node.op != "within":
+            case tree.BinaryExpr() if not is_speed(node) and node.op not in ("within", "="):
                 self._put_chain(node, indent, reserved)
             case _:
                 self._page.put_comments(node.span.end, indent)
