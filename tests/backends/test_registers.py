@@ -21,6 +21,7 @@ from tests.backends.monitors import Programs, Sample, expected, trace_of
 from tests.backends.strategies import HOSTILE
 from tests.backends.test_javascript import awkward
 from tests.tools.conformance.runner import Runner, runners
+from tests.tools.conformance.runners.c import WITHOUT_REGISTERS
 from tests.waiting import HANG_S
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
@@ -493,3 +494,13 @@ def test_hostile_names_of_registers_stay_distinct_and_do_not_become_code(runner:
     ((status, _, errors),) = programs.run((0, trace_of(samples, [signal.name for signal in signals])))
     assert status == 1
     assert errors.startswith(f"error: step {len(samples)}: the register `starts` divides by zero\n")
+
+
+def test_a_c_monitor_without_registers_to_read_may_have_one_that_nothing_needs(tmp_path: Path) -> None:
+    if reason := WITHOUT_REGISTERS.missing():
+        pytest.skip(reason)
+    (fspa,) = compile_text("signal p: bool\nsignal q: bool\nspec s { reach p or (p and previously q) }")
+    assert [atom.name for atom in fspa.atoms] == ["p", "previously q", "q"]
+    samples: list[Sample] = [{"p": 0.0, "q": 1.0}, {"p": 1.0, "q": 0.0}]
+    trace = trace_of(samples, [signal.name for signal in fspa.signals])
+    assert Programs(WITHOUT_REGISTERS, tmp_path, [fspa]).run((0, trace)) == [expected(fspa, samples)]

@@ -278,14 +278,18 @@ class _Source:
             else snippets.number_literal(registers[index].initial)
             for index, _, type_ in remembered
         }
-        names = self._program.registers
+        names, kept = self._program.registers, {index for index, _, _ in remembered}
+        keep = [f"monitor->memory.{name} = {names[index]};" for index, name, _ in remembered]
+        # Nothing reads such a register but the game.
+        used = self._program.variables_used
+        keep += [f"(void){name};" for index, name in enumerate(names) if index not in kept and name not in used]
         return {
             "memory_fields": _C.block([f"{type_} {name};" for _, name, type_ in remembered] or ["bool none;"], 2),
             "memory_starts": _C.block([f"monitor->memory.{name} = {starts[index]};" for index, name, _ in remembered]),
             "memory_recall": _C.block(
                 [f"const {type_} {name} = monitor->memory.{name};" for _, name, type_ in remembered]
             ),
-            "memory_keep": _C.block([f"monitor->memory.{name} = {names[index]};" for index, name, _ in remembered]),
+            "memory_keep": _C.block(keep),
         }
 
     def _bools(self, case: int | None) -> list[str]:

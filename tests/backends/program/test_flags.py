@@ -167,3 +167,9 @@ def test_atoms_that_break_a_rule_alone_are_compared_by_their_maximum() -> None:
 def _variables(statements: tuple[Statement, ...]) -> list[ProgramVariable]:
     values = [test for s in statements if isinstance(s, If) for test, _ in s.cases]
     return [node for node in parts(values) if isinstance(node, ProgramVariable)]
+
+
+def test_states_that_share_code_have_flags_too() -> None:
+    text = f"signal p: bool\nsignal q: bool\nspec s {{ require {'next ' * 70}(q and once p) }}"
+    (fspa,) = compile_text(text)
+    assert follow(fspa, Random(4), 100, draw=_drawn(0.5)).tables is not None
