@@ -27,6 +27,7 @@
     ;; Words that may also be names: they have a colour only at the start of a line.
     ("[[:word:])] +\\(is\\) +[A-Za-z_]" 1 font-lock-builtin-face)
     ("^\\s-*\\(step\\|expect\\)\\_>" 1 font-lock-keyword-face)
+    ("\\_<clock\\s-+\\(varies\\)\\_>" 1 font-lock-keyword-face)
     ("[[:alnum:]_)%]\\s-+\\(since\\)\\s-+[[:alnum:]_(!]" 1 font-lock-builtin-face)
     ("\\_<\\(?:spec\\|predicate\\|let\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-function-name-face)
     ("\\_<\\(?:signal\\|param\\)\\s-+\\([A-Za-z_][A-Za-z0-9_.]*\\)" 1 font-lock-variable-name-face)

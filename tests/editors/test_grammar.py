@@ -99,6 +99,7 @@ def test_every_unit_has_its_scope(unit: str) -> None:
         *((f"expect {verdict}", ("expect", verdict)) for verdict in (*VERDICTS, "progress", "state")),
         ("judge at goal", ("at", "goal")),
         ("judge at limit", ("at", "limit")),
+        ("clock varies", ("clock", "varies")),
         ("semantics infinite", ("infinite",)),
         ("import core as c", ("as",)),
         ("F within 3 steps p", ("within",)),
@@ -121,7 +122,7 @@ def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> 
 
 
 def test_all_contextual_keywords_are_tested() -> None:
-    assert {"after", "as", "at", "expect", "for", "in", "is", "of", "since", "step", "x", "within"} == set(load().soft)
+    assert {"after", "as", "at", "expect", "for", "in", "is", "of", "since", "step", "varies", "x", "within"} == set(load().soft)
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ syntax match tltlConstant "\v%(<expect\s+)@20<=%(satisfied|holding|pending|viola
 syntax match tltlConstant "\v%(<judge\s+at\s+)@20<=%(goal|limit)>"
 syntax match tltlConstant "\v%(<semantics\s+)@20<=%(finite|infinite)>"
 syntax match tltlWord "\v%(<judge\s+)@20<=at>"
+syntax match tltlWord "\v%(<clock\s+)@20<=varies>"
 syntax match tltlWord "\v<%(within|for|after)>\ze\s*\d"
 syntax match tltlOperator "\v<since>\ze\s+%(%(and|or|implies|iff|then|until|weak_until|release|strong_release|since|in|[UWRM])>)@!%(\a|[_(!¬◇□○⊤⊥[:digit:]])"
 syntax match tltlWord "\v<in>\ze\s*[\[(]"
