@@ -20,11 +20,12 @@ from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.c_names import RESERVED
 from tltlc.backends.languages.c_tables import tables_text
 from tltlc.backends.languages.c_text import bytes_of, escape, string_literal
-from tltlc.backends.templates import fill_template
+from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
+from tltlc.program.enums import flat_enums
 from tltlc.program.names import printable_line
 from tltlc.program.printer import Printer
 from tltlc.program.tree import FAILING, Assign, Choice, Int
@@ -91,7 +92,9 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
-        self._program = program(fspa, (*_RESERVED, "signs") if fspa.registers else _RESERVED, has_bools=True)
+        self._enums = flat_enums(fspa, names_in("monitor.h.txt", r"@@p@@_(\w+)"))
+        constants = [f"{fspa.name}_{name}" for enum in self._enums for name in enum.constants]
+        self._program = program(fspa, (*_RESERVED, *constants, *(("signs",) if fspa.registers else ())), has_bools=True)
         self._entered = states.TARGET if self._program.tables is None else f"state_kinds[{states.TARGET}]"
         self._printer = _C(fspa.name, fspa.atoms)
 
@@ -124,6 +127,7 @@ class _Source:
             "atom_count": str(len(fspa.atoms)),
             "register_count": str(len(fspa.registers)),
             "text_size": str(self._text_size()),
+            "enums": "\n".join(self._enum_lines()),
             "signal_room": str(max(1, len(signals))),
             "atom_room": str(max(1, len(fspa.atoms))),
             "notice_room": str(max(1, len(signals) + len(fspa.atoms))),
@@ -170,6 +174,14 @@ class _Source:
         params = max((len(bytes_of(param.name)) for param in self._fspa.params), default=0)
         registers = max((len(bytes_of(register.name)) for register in self._fspa.registers), default=0)
         return 200 + max(atoms, signals, params, registers)
+
+    def _enum_lines(self) -> list[str]:
+        """Return the lines of an ``enum`` for each enum of the spec, each after an empty line."""
+        lines: list[str] = []
+        for enum in self._enums:
+            rows = [f"{_INDENT}{self._prefix}_{name} = {number}" for number, name in enumerate(enum.constants)]
+            lines += ["", *self._printer.comment(enum.title), "enum {", ",\n".join(rows), "};"]
+        return lines
 
     # --- records ----------------------------------------------------------------------------------
 

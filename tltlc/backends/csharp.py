@@ -13,11 +13,12 @@ from typing import ClassVar
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.templates import fill_template
+from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
+from tltlc.program.enums import nested_enums, pascal_case
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement, Table
@@ -146,6 +147,7 @@ class _Source:
             "dt_parameter": ", double dt" if fspa.clock_varies else "",
             "row_dt": ", times.Next(trace)" if fspa.clock_varies else "",
             "file": self._file,
+            "enums": _CSharp.block(self._enums(), 2),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
             "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
@@ -169,6 +171,22 @@ class _Source:
             "give": _CSharp.block(self._give(), 3),
         }
         return fill_template("monitor.cs.txt", places, present)
+
+    def _enums(self) -> list[str]:
+        """Return the lines of a static class with constants for each enum of the spec, each before an empty line."""
+        program_ = self._program
+        variables = (*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before)
+        names = names_in("monitor.cs.txt", r"\b([A-Za-z]\w*)")
+        members = ("Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone", "ReferenceEquals", "ToString")
+        types = (*_WORDS, *_TEMPLATE, *names, *variables, f"{self._fspa.name}_monitor")
+        lines: list[str] = []
+        for enum in nested_enums(self._fspa, types, members, pascal_case):
+            constants: list[str] = []
+            for number, (name, value) in enumerate(zip(enum.constants, enum.enum.values, strict=True)):
+                constants += ["", *_summary(f"{value}."), f"public const double {name} = {number}.0;"]
+            lines += [*_summary(enum.title), f"public static class {enum.type}", "{"]
+            lines += [*_CSharp.block(constants[1:], 1).split("\n"), "}", ""]
+        return lines
 
     def _states(self) -> list[str]:
         """Return a row for each state or, if there are tables, for each kind of states."""
@@ -375,14 +393,17 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a class, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        comments = [_in_xml(line) for line in comment_lines(snippets.field_comment(name, declared))]
-        if len(comments) == 1:
-            lines.append(f"/// <summary>{comments[0]}</summary>")
-        else:
-            lines += ["/// <summary>", *(f"/// {line}" for line in comments), "/// </summary>"]
-        lines += [f"public {type_} {name};", ""]
+        lines += [*_summary(snippets.field_comment(name, declared)), f"public {type_} {name};", ""]
     # An empty line follows every field, also the last one.
     return _CSharp.block(lines, 3)
+
+
+def _summary(text: str) -> list[str]:
+    """Return the lines of a documentation comment."""
+    comments = [_in_xml(line) for line in comment_lines(text)]
+    if len(comments) == 1:
+        return [f"/// <summary>{comments[0]}</summary>"]
+    return ["/// <summary>", *(f"/// {line}" for line in comments), "/// </summary>"]
 
 
 def _in_xml(text: str) -> str:

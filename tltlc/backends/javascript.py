@@ -19,6 +19,7 @@ from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
+from tltlc.program.enums import enums_of
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
@@ -37,6 +38,16 @@ _LONGEST = 110
 
 _FEW = 3
 """The largest exclusive group whose atoms are tested in pairs; in a larger one, the atoms that hold are counted."""
+
+_VALUES_DOC = "The values of enums, by the name of a signal without its arguments, and the name of the value."
+
+_NAMED_VALUE = (
+    'if (typeof given === "string") {',
+    "  const place = (VALUE_NAMES.get(name) ?? []).indexOf(given);",
+    "  if (place >= 0) return place;",
+    "}",
+)
+"""The code that takes the name of a value of an enum in place of its number."""
 
 _ENTERED = "entered"
 """The variable with the entry of the next state in the table of states."""
@@ -150,6 +161,9 @@ class _Source:
             "signals": _list(
                 [_row(signal, f"isBool: {snippets.boolean_literal(signal.type == 'bool')}") for signal in fspa.signals]
             ),
+            "enums": self._enums(),
+            # Blocks of a template cannot be nested.
+            "named_value": _JavaScript.block(_NAMED_VALUE if enums_of(fspa) else [], depth=2),
             "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
             "registers": _list([_string(register.name) for register in fspa.registers]),
@@ -172,7 +186,7 @@ class _Source:
         signals = [
             (
                 signal.name,
-                "boolean | 0 | 1" if signal.type == "bool" else "number",
+                _type(signal),
                 snippets.field_comment(signal.name, signal),
             )
             for signal in fspa.signals
@@ -181,10 +195,38 @@ class _Source:
         title = f"// Types of {self._module}, written by tltlc."
         places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         places["dt"] = f"{DT}: number, " if fspa.clock_varies else ""
+        places["enums"] = self._enum_types()
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
         return fill_template("monitor.d.mts.txt", places, present)
+
+    def _enums(self) -> str:
+        """Return the values of enums, and their names by signal; an empty text if there are none."""
+        enums = enums_of(self._fspa)
+        if not enums:
+            return ""
+        lines = ["", f"/** {_VALUES_DOC} */", "export const VALUES = Object.freeze({"]
+        for enum in enums:
+            values = ", ".join(f"{_own_key(value)}: {number}" for number, value in enumerate(enum.values))
+            lines.append(f"  {_own_key(enum.base)}: Object.freeze({{ {values} }}),")
+        lines += ["});", "", "/** @type {ReadonlyMap<string, ReadonlyArray<string>>} */"]
+        lines.append("const VALUE_NAMES = new Map([")
+        for enum in enums:
+            names = ", ".join(map(_string, enum.values))
+            lines += [f"  [{_string(signal)}, [{names}]]," for signal in enum.signals]
+        return "\n".join([*lines, "]);"])
+
+    def _enum_types(self) -> str:
+        """Return the types of the values of enums, and an empty line; an empty text if there are none."""
+        enums = enums_of(self._fspa)
+        if not enums:
+            return ""
+        lines = [f"/** {_VALUES_DOC} */", "export const VALUES: {"]
+        for enum in enums:
+            values = " ".join(f"readonly {_key(value)}: {number};" for number, value in enumerate(enum.values))
+            lines.append(f"  readonly {_key(enum.base)}: {{ {values} }};")
+        return "\n".join([*lines, "};", ""])
 
     def _states(self) -> list[str]:
         """Return a row for each state or, if there are tables, for each kind of states, without labels."""
@@ -231,7 +273,9 @@ class _Source:
             if signal.type == "bool":
                 lines.append(f"const {name} = {given} === true ? 1 : {given} === false ? 0 : {checked};")
             else:
-                lines.append(f"let {name} = {given};")
+                # The names of values fail the test of the range.
+                number = f"/** @type {{number}} */ ({given})" if signal.values else given
+                lines.append(f"let {name} = {number};")
                 lines += _branch([f"!({_in_range(name, signal.low, signal.high)})"], f"{name} = {checked};")
         for index, name in enumerate(self._program.params):
             lines += [f"const {name} = this.#params[{index}];"] if name in used else []
@@ -409,6 +453,17 @@ def _is_plain(name: str) -> bool:
 def _key(name: str) -> str:
     """Return a property's name as it is written in an object or a type: in quotes unless it is an identifier."""
     return name if _is_plain(name) else _string(name)
+
+
+def _own_key(name: str) -> str:
+    """Return a property's name in an object; in brackets if it is ``__proto__``, which would set the prototype."""
+    return f"[{_string(name)}]" if name == "__proto__" else _key(name)
+
+
+def _type(signal: Signal) -> str:
+    if signal.type == "bool":
+        return "boolean | 0 | 1"
+    return " | ".join(["number", *map(_string, signal.values)])
 
 
 def _member(owner: str, name: str) -> str:

@@ -29,6 +29,7 @@ from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
+from tltlc.program.enums import SignalEnum, enums_of
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE
@@ -118,6 +119,7 @@ class _Source:
         """Return the text of ``NAME_monitor.lua``."""
         fspa, program_ = self._fspa, self._program
         parts = (*program_.values, *program_.updates, *(case.statements for case in program_.cases))
+        enums = enums_of(fspa)
         functions = functions_called(statement for part in parts for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
@@ -133,17 +135,19 @@ class _Source:
         present += ["exclusive"] if program_.exclusive else []
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
+        present += ["enums"] if enums else []
         present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {
             "p": fspa.name,
             "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
+            "enums": _enum_tables(enums),
             "example": snippets.example_sample(fspa.signals, table_key, " = "),
             "signal_fields": "\n".join(
                 _field(
                     signal.name,
-                    "boolean | 0 | 1" if signal.type == "bool" else "number",
+                    _type(signal),
                     snippets.field_comment(signal.name, signal),
                 )
                 for signal in fspa.signals
@@ -404,6 +408,27 @@ def _field(name: str, type_: str, doc: str) -> str:
     """Return a comment ``---@field``, from which language servers read the type of a field of a class."""
     description = f" {printable_line(doc)}" if doc else ""
     return f"---@field {printable_line(table_key(name))} {type_}{description}"
+
+
+def _type(signal: Signal) -> str:
+    if signal.type == "bool":
+        return "boolean | 0 | 1"
+    return " | ".join(["number", *map(string_literal, signal.values)])
+
+
+def _enum_tables(enums: Sequence[SignalEnum]) -> str:
+    """Return the tables of the values of enums, and an empty line; an empty text if there are none."""
+    if not enums:
+        return ""
+    lines = ["-- The values of enums, by the name of a signal without its arguments, and the name of the value."]
+    lines.append("local VALUES = {")
+    for enum in enums:
+        values = ", ".join(f"{table_key(value)} = {number}" for number, value in enumerate(enum.values))
+        lines.append(f"  {table_key(enum.base)} = {{ {values} }},")
+    lines += ["}", "", "-- The same by the name of a signal.", "local SIGNAL_VALUES = {"]
+    for enum in enums:
+        lines += [f"  {table_key(signal)} = VALUES{key_access(enum.base)}," for signal in enum.signals]
+    return "\n".join([*lines, "}", ""])
 
 
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:

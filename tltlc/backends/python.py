@@ -17,10 +17,11 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import Computation
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.python_syntax import long_dict, long_tuple, short_tuple, tuple_items
-from tltlc.backends.templates import fill_template
+from tltlc.backends.templates import fill_template, names_in
 from tltlc.program import reward_step, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
+from tltlc.program.enums import enums_of, nested_enums, upper_case
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, OR, Printer
@@ -228,11 +229,32 @@ class _Source:
         used += ["inf"] if any(None in (field.low, field.high) for field in fields) else []
         used += ["inf"] if fspa.clock_varies else []
         pieces |= _STEP_LENGTHS if fspa.clock_varies else {**dict.fromkeys(_STEP_LENGTHS, ""), "sample": _SAMPLE}
-        pieces["imports"] = f"from math import {', '.join(sorted({*used, 'isfinite'}))}"
+        enums = self._enums()
+        pieces["imports"] = "from enum import IntEnum\n" if enums else ""
+        pieces["imports"] += f"from math import {', '.join(sorted({*used, 'isfinite'}))}"
+        pieces["enums"], pieces["given"] = enums, "float | str" if enums else "float"
+        if enums:
+            pieces["value_names"] = long_dict(
+                [
+                    f"{string_literal(signal)}: {short_tuple([*map(string_literal, enum.values)])}"
+                    for enum in enums_of(fspa)
+                    for signal in enum.signals
+                ]
+            )
         present = ["states" if self._program.tables is None else "tables"]
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
+        present += ["enums"] if enums else []
         return fill_template("monitor.py.txt", pieces, present)
+
+    def _enums(self) -> str:
+        """Return a class for each enum of the spec, each after two empty lines; an empty text if there are none."""
+        types = (*keyword.kwlist, *dir(builtins), "IntEnum", *names_in("monitor.py.txt", r"\b([A-Za-z]\w*)"))
+        lines: list[str] = []
+        for enum in nested_enums(self._fspa, types, (), upper_case):
+            lines += ["", "", f"class {enum.type}(IntEnum):", f'{INDENT}"""{docstring_text(enum.title)}"""', ""]
+            lines += [f"{INDENT}{name} = {number}" for number, name in enumerate(enum.constants)]
+        return "\n".join(lines)
 
     def _states(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with rows of states or, if there are tables, of kinds, and the tables."""

@@ -14,10 +14,11 @@ from typing import ClassVar
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.templates import fill_template
+from tltlc.backends.templates import fill_template, names_in
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
+from tltlc.program.enums import flat_enums, upper_case
 from tltlc.program.printer import CHOICE, OR, UNIT, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import (
@@ -127,7 +128,9 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        self._program = program(fspa, _RESERVED, has_bools=True)
+        self._enums = flat_enums(fspa, [*_RESERVED, *names_in("monitor.rs.txt", r"\b([A-Z]\w*)")], upper_case)
+        constants = [name for enum in self._enums for name in enum.constants]
+        self._program = program(fspa, [*_RESERVED, *constants], has_bools=True)
         self._printer = _Rust()
 
     def text(self) -> str:
@@ -151,6 +154,7 @@ class _Source:
             "dt": ", dt" if fspa.clock_varies else "",
             "dt_parameter": ", dt: f64" if fspa.clock_varies else "",
             "file": self._file,
+            "enums": "\n".join(self._enum_lines()),
             "needs": "\n".join(self._needs(program_.functions & _MATH)),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "f64", param) for param, name in params]),
@@ -183,6 +187,16 @@ class _Source:
             "give": _Rust.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
         return fill_template("monitor.rs.txt", places, present)
+
+    def _enum_lines(self) -> list[str]:
+        """Return the lines of the constants for each enum of the spec, each after an empty line."""
+        lines: list[str] = []
+        for enum in self._enums:
+            lines.append("")
+            for number, (name, value) in enumerate(zip(enum.constants, enum.enum.values, strict=True)):
+                about = _markdown(f"The value `{value}` of the signal `{enum.enum.base}`.")
+                lines += [*(f"/// {line}" for line in about), f"pub const {name}: f64 = {number}.0;"]
+        return lines
 
     def _title(self) -> list[str]:
         """Return a list with one text, the comment that begins the file: the spec's name, documentation and formula."""

@@ -17,12 +17,13 @@ from tltlc.backends import Files
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
 from tltlc.backends.godot.printer import Gd
-from tltlc.backends.templates import fill_template
+from tltlc.backends.templates import fill_template, names_in
 from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
+from tltlc.program.enums import nested_enums, upper_case
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import FAILING
@@ -137,6 +138,7 @@ class _Source:
             "engine": self._dialect.title,
             "base": self._dialect.base,
             "file": f"{fspa.name}{ENDINGS[0]}",
+            "enums": "\n".join(self._enums()),
             "signals": self._strings(signal.name for signal in fspa.signals),
             "fields": self._strings(self._signals),
             "atoms": self._strings(atom.name for atom in fspa.atoms),
@@ -168,6 +170,18 @@ class _Source:
             "step": step,
         }
         return fill_template("monitor.gd.txt", places, present)
+
+    def _enums(self) -> list[str]:
+        """Return the lines of an enum for each enum of the spec, each after an empty line.
+
+        The names of types end in ``Value``, since the engine has classes such as ``Timer``.
+        """
+        types = names_in("monitor.gd.txt", r"\b([A-Z]\w*)")
+        lines: list[str] = []
+        for enum in nested_enums(self._fspa, types, ("INF", "NAN", "PI", "TAU"), upper_case, "Value"):
+            comments = [f"#{line}" for line in self._printer.comment(enum.title)]
+            lines += ["", *comments, f"enum {enum.type} {{ {', '.join(enum.constants)} }}"]
+        return lines
 
     def _tables(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with the tables of states; they are empty if there are none.

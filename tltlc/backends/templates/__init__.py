@@ -26,6 +26,13 @@ def fill_template(file: str, pieces: Mapping[str, str], present: Collection[str]
         return fill(template.read(), pieces, present)
 
 
+def names_in(file: str, pattern: str) -> frozenset[str]:
+    """Return all texts in a template that the first group of a regular expression matches, such as its identifiers."""
+    path = os.path.join(os.path.dirname(__file__), file)  # noqa: PTH118, PTH120 (as codes.py)
+    with open(path, encoding="utf-8") as template:  # noqa: PTH123
+        return frozenset(re.findall(pattern, template.read()))
+
+
 def fill(text: str, pieces: Mapping[str, str], present: Collection[str] = ()) -> str:
     """Return a text with its placeholders replaced as in :func:`fill_template`.
 
