@@ -194,6 +194,29 @@ def test_the_corpus_has_every_shape_of_automata() -> None:
     assert all(character in names for character in ",\"'\n\\漢𝒰")
 
 
+@pytest.mark.parametrize(
+    ("name", "signal", "values"),
+    [("integers", "phase", {0.0, 1.0, 3.0, 4.0, 5.0}), ("enums", "mode(g1)", {0.0, 1.0, 2.0})],
+)
+def test_the_corpus_has_integers_and_enums(name: str, signal: str, values: set[float]) -> None:
+    (fspa,) = (fspa for fspa in automata() if fspa.name == name)
+    (declared,) = (each for each in fspa.signals if each.name == signal)
+    assert declared.type == "int"
+    assert declared.high is not None
+    assert [each.values for each in fspa.signals].count(("idle", "alert", "chase")) == (2 if name == "enums" else 0)
+    assert fspa.registers
+    given, states = [], set()
+    for number in (1, 2):
+        trace = corpus()[f"{name}/{name}.{number}.csv"].decode()
+        given += [float(row[signal]) for row in csv.DictReader(io.StringIO(trace))]
+        expected_rows = corpus()[f"{name}/{name}.{number}.expected.csv"].decode()
+        states |= {row["state"] for row in csv.DictReader(io.StringIO(expected_rows))}
+    assert values <= set(given)
+    assert any(not value.is_integer() for value in given), "between two values"
+    assert any(value > declared.high for value in given), "out of range"
+    assert len(states) > 3
+
+
 def test_the_corpus_has_every_kind_of_row() -> None:
     expected_rows = rows()
     assert {row["verdict"] for row in expected_rows} == {"satisfied", "holding", "pending", "violated"}

@@ -28,6 +28,8 @@ _ABOUT: Final = {
     "past": "Past operators.",
     "recurring": "Memory over infinite traces.",
     "deadlines": "Deadlines beside memory of the trace so far.",
+    "integers": "Integers, and values between them.",
+    "enums": "Enums, and values that are none of theirs.",
 }
 _RECORDED: Final = ("cover_and_hide", "navigation", "branching", "counting")
 
@@ -45,6 +47,17 @@ _POOLS: Final[dict[str, Pools]] = {
     "recall": {"health": (50.0, 60.0, 65.0), "height": (-3.0, 0.0, 5.0, 80.0), "speed": (-1.0, 0.0, 0.5, 2.0)},
     "past": {"x": (-1.0, -0.6, -0.0, 0.0, 0.25, 1.0)},
     "recurring": {"x": (0.0, 1.0, 5.0, 9.5)},
+    "integers": {
+        "phase": (0.0, 1.0, 1.0, 2.4, 2.5, 3.0, 4.0, 4.0, 3.9999999, 5.0, 5.5, -1.0),
+        "keys": (-2.0, 0.0, 1.5, 2.0, 3.0, 5.0, 1e6, 1000000.5),
+        "combo": (-3.0, 0.0, 1.0, 2.0, 3.0, 3.49, 3.5, 1e15),
+    },
+    "enums": {
+        "mode(g1)": (0.0, 0.0, 1.0, 2.0, 2.0, 1.4, 1.5, 3.0, -0.0),
+        "mode(g2)": (0.0, 0.0, 1.0, 1.0, 2.0, 1.6, 2.5),
+        "weather": (0.0, 0.0, 1.0, 0.5),
+        "step": (0.0, 1.0, 2.0, 3.0, 3.0, 2.5, 4.0),
+    },
     "deadlines": {"alarm": (0.0, 0.0, 0.0, 1.0), "hidden": (0.0, 1.0), "near": (-1.0, 0.0, 0.25, 1.0)},
 }
 
