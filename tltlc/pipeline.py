@@ -42,13 +42,15 @@ class CompileOptions:
     names of params to values that replace those in the text, written as in the language
     (``{"level_size": "30 m"}``). ``state_budget`` is the most states that the construction of an
     automaton may explore; for a spec over infinite traces, a number of steps proportional to it is
-    the limit instead. ``specs`` has the names of the specs to build; if it is empty, all are built.
+    the limit instead. ``specs`` has the names of the specs to build; if it is empty, all are built. If
+    not ``timers``, each bound becomes states, however many these are.
     """
 
     library_dirs: tuple[Path, ...] = ()
     params: Mapping[str, str] = EMPTY
     state_budget: int = DEFAULT_STATE_BUDGET
     specs: tuple[str, ...] = ()
+    timers: bool = True
 
 
 @record
@@ -98,7 +100,7 @@ class Session:
     def resolution(self) -> Resolution:
         """The names, specs and tests of the declarations in :attr:`module` and in the files that they import."""
         options = self.options
-        return resolve(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs))
+        return resolve(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs, options.timers))
 
     @property
     def source_diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -154,6 +156,15 @@ class Session:
         """Return the result of all stages. Errors: as for :attr:`automata`."""
         automata = self.automata
         return Compiled(self.program, automata, self.diagnostics)
+
+    def without_timers(self, spec: str) -> Fspa:
+        """Return the automaton of the spec with this name, in which states take the place of timers.
+
+        Errors: as for :attr:`automata`; TLT0501 if this needs too many states.
+        """
+        options = replace(self.options, specs=(spec,), timers=False)
+        (fspa,) = Session(self.source, options, proofs=False).automata
+        return fspa
 
     @cached_property
     def _parsed(self) -> tuple[Module, tuple[Diagnostic, ...]]:

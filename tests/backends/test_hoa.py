@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import itertools
+from random import Random
 
 import pytest
 from hypothesis import given, settings
@@ -21,10 +22,13 @@ from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.backends import hoa
 from tltlc.backends.drawing.texts import escape_invisible
 from tltlc.core.record import replace
+from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.io.limits import Limit
 from tltlc.logic import oracle
 from tltlc.logic.formula import FALSE
+from tltlc.monitor.monitor import Monitor
+from tltlc.pipeline import Session
 from tltlc.resolve.spec import Spec
 
 INFINITE = """
@@ -307,15 +311,46 @@ def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pyt
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["TLT0004"]
 
 
-def test_atoms_that_follow_from_others_are_free_and_named_in_a_comment() -> None:
-    """The automaton is one over letters of all atoms: the format cannot say that one atom follows from another."""
-    text = (
-        "signal a: bool\nsignal x in [0, 1]\nspec often { require always eventually (times(a) > 2 or x > previous(x)) }"
+@pytest.mark.parametrize("clause", ["keep times(a) <= 2", "keep a implies once b", "keep x >= previous(x)"])
+def test_a_spec_with_other_memory_is_refused(clause: str) -> None:
+    session = Session(
+        SourceFile("s.tltl", f"signal a: bool\nsignal b: bool\nsignal x in [0, 1]\nspec s {{ {clause} }}")
     )
-    (fspa,) = compile_text(text)
-    written = hoa_text(fspa)
-    automaton = read(written)
-    comment = "These atoms follow from others at this and earlier samples, which the format cannot say: times(a) > 2."
-    assert comment in " ".join(automaton.comments)
-    assert automaton.atoms == [atom.name for atom in fspa.atoms]
-    assert "follow from others" not in hoa_text(cover_and_hide())
+    for options in (backends.Options(), backends.Options(without_timers=session.without_timers)):
+        with pytest.raises(TltlError) as caught:
+            backends.emit("hoa", session.automata[0], options)
+        (diagnostic,) = caught.value.diagnostics
+        assert diagnostic.code == "TLT0713"
+        assert diagnostic.help == "leave out the target `hoa`, or state the rule without this memory"
+
+
+TIMED = "clock 16 Hz\nsignal p: bool\nsignal q: bool\nspec timed { keep p implies eventually within 5 s q }"
+
+
+def test_states_take_the_place_of_timers() -> None:
+    session = Session(SourceFile("timed.tltl", TIMED))
+    (fspa,) = session.automata
+    assert fspa.registers
+    text = backends.emit("hoa", fspa, backends.Options(without_timers=session.without_timers))["timed.hoa"]
+    parsed = read(str(text))
+    assert parsed.atoms == ["p", "q"]
+    assert len(parsed.states) > 80
+    random, accepted = Random(1), set()
+    for _ in range(100):
+        monitor, state, share = Monitor(fspa), 0, random.choice((0.003, 0.02, 0.1))
+        for _ in range(300):
+            letter = (random.random() < 0.05, random.random() < share)
+            ((state, _),) = parsed.edges_taken(state, letter)
+            is_accepted = monitor.step({"p": float(letter[0]), "q": float(letter[1])}).accepting
+            assert (parsed.states[state].sets == {0}) == is_accepted
+            accepted.add(is_accepted)
+    assert accepted == {False, True}
+
+
+def test_an_artefact_with_timers_is_refused() -> None:
+    (fspa,) = compile_text(TIMED)
+    with pytest.raises(TltlError) as caught:
+        backends.emit("hoa", fspa)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0713"
+    assert diagnostic.help == "compile the .tltl file: then states take the place of timers"

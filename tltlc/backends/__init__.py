@@ -49,12 +49,15 @@ class Options:
 
     ``notation`` is the notation of formulas in pictures. ``layout_limit_s`` is the most seconds for
     each attempt to lay out a picture. ``report`` is called with a diagnostic if a target has to leave
-    something out.
+    something out. ``without_timers`` takes the name of an automaton, and returns the automaton of the
+    same spec in which states take the place of timers; it raises TltlError if this is too large. It is
+    None if the source text is not known.
     """
 
     notation: Notation = "unicode"
     layout_limit_s: float = 10.0
     report: Callable[[Diagnostic], None] = _ignore
+    without_timers: Callable[[str], Fspa] | None = None
 
 
 def emit(name: str, fspa: Fspa, options: Options | None = None) -> Files:

@@ -4,9 +4,9 @@ Over infinite traces, the file has a Rabin automaton with acceptance on edges. T
 automata over finite traces. For these, the file has a Büchi automaton with marks on the accepting
 states, and a header that says that a finite trace is accepted if its run ends in one of them.
 
-An automaton with registers is written as an automaton over its atoms. Its atoms are free propositions
-there: the format cannot say that ``times(p) > 2`` follows from ``p``, so the automaton also accepts
-letters that no game can show. A comment in the file says so.
+The format has no registers. If a spec has timers in place of bounds, the file has the automaton in
+which states take their place. A spec that remembers anything else is refused: with its atoms as free
+propositions, the file would have another language.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.infinite.mark_conditions import pair_marks
-from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import escape_invisible
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.logic.formula import FALSE, TRUE
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
@@ -34,24 +34,59 @@ TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model 
 # this header, the tool would read an automaton with another meaning.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted if its run ends in a state of set 0."
-REGISTERS_COMMENT = "These atoms follow from others at this and earlier samples, which the format cannot say: {}."
+OTHER_MEMORY = "leave out the target `hoa`, or state the rule without this memory"
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
     """Return the HOA file ``NAME.hoa``, where NAME is the name of the automaton.
 
-    Formulas are in ASCII notation, and atoms are numbered as in the artefact.
+    Formulas are in ASCII notation, and atoms are numbered as in the artefact; if states take the place
+    of timers, as in the artefact of a spec without timers.
 
     Raises:
-        TltlError: TLT0004 the file would be larger than `tltlc import` reads.
+        TltlError: TLT0004 the file would be larger than `tltlc import` reads, TLT0713 the automaton
+            has registers, and states cannot take their place.
     """
+    if fspa.registers:
+        fspa = _without_registers(fspa, options)
     clashes = sorted({pair for group in fspa.exclusive for pair in combinations(sorted(set(group)), 2)})
     with recursion_room():
         lines = [*_header(fspa, clashes), "--BODY--", *_body(fspa), "--END--", ""]
     text = "\n".join(lines)
     check_size(f"`{fspa.name}.hoa`", len(text.encode()))
     return {f"{fspa.name}.hoa": text}
+
+
+def _without_registers(fspa: Fspa, options: Options) -> Fspa:
+    """Return the automaton of the same spec with states in place of timers; raise TltlError, TLT0713, if that fails."""
+    if not _has_timers(fspa):
+        raise TltlError([_refusal(fspa, OTHER_MEMORY)])
+    if options.without_timers is None:
+        raise TltlError([_refusal(fspa, "compile the .tltl file: then states take the place of timers")])
+    try:
+        unfolded = options.without_timers(fspa.name)
+    except TltlError as error:
+        title = f"`{fspa.name}` has timers, which the Hanoi format cannot express, and is too large without them"
+        labels = tuple(label for diagnostic in error.diagnostics for label in diagnostic.labels)
+        advice = "shorten the bounds, choose a slower `clock`, or raise `--state-budget`"
+        raise TltlError([Diagnostic("TLT0713", title, labels, advice)]) from error
+    if unfolded.registers:
+        raise TltlError([_refusal(unfolded, OTHER_MEMORY)])
+    return unfolded
+
+
+def _has_timers(fspa: Fspa) -> bool:
+    """Whether timers took the place of bounds."""
+    return any(each.kind in ("samples", "age", "waiting", "due", "breach") for each in fspa.registers) or any(
+        each.base in ("passed", "lately", "held") and each.arguments for each in fspa.atoms
+    )
+
+
+def _refusal(fspa: Fspa, advice: str) -> Diagnostic:
+    kept = next((each for each in fspa.registers if each.kind not in ("last", "first")), fspa.registers[0])
+    title = f"`{fspa.name}` remembers `{kept.name}`, which the Hanoi format cannot express"
+    return Diagnostic("TLT0713", title, help=advice)
 
 
 def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
@@ -70,11 +105,6 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
     if clashes:
         yield f"Alias: @allowed {' & '.join(f'!({first}&{second})' for first, second in clashes)}"
         yield _comment(ALLOWED_COMMENT)
-    if fspa.registers:
-        given = given_atoms(fspa)
-        following = [atom.name for index, atom in enumerate(fspa.atoms) if index not in given]
-        if following:
-            yield _comment(REGISTERS_COMMENT.format(", ".join(following)))
     infinite = fspa.semantics == "infinite"
     yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
     marks = "trans-acc" if infinite else "state-acc"

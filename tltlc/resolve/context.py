@@ -94,6 +94,7 @@ class Context:
     - ``bounds`` has the bounds resolved so far, and ``bound_of`` the first bound of each bounded
       operator.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
+    - ``timers`` says whether timers may replace bounds.
 
     The identity of an object is its ``id()``. A key of ``instances`` or ``values`` contains the
     identity of a declaration or expression, and the values of its parameters or local names.
@@ -120,11 +121,13 @@ class Context:
         "registers",
         "signal_infos",
         "signals",
+        "timers",
         "values",
         "values_of_signals",
     )
 
-    def __init__(self) -> None:
+    def __init__(self, *, timers: bool = True) -> None:
+        self.timers = timers
         self.log = Log()
         self.signal_infos: dict[str, SignalInfo] = {}
         self.params: dict[str, Param] = {}

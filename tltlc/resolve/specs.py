@@ -161,10 +161,11 @@ def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
         return _without_time_bounds(parts, context)
     many_rules = sum(rules_from_start(part.formula) for part in parts) > 1
     few = prod(_states(node) for part in parts for node in bounded_parts(part.formula)) <= MOST_UNFOLDED
+    timed = context.timers and not few
     result = []
     for part in parts:
         timers = Timers(context, part.source, part.span)
-        formula = part.formula if few else with_timers(part.formula, timers, many_rules=many_rules)
+        formula = with_timers(part.formula, timers, many_rules=many_rules) if timed else part.formula
         bounds = tuple(dict.fromkeys(context.bound_of[node] for node in bounded_parts(formula)))
         result.append(replace(part, formula=unfold(formula, context), bounds=bounds))
     return result

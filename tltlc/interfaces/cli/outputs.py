@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tltlc.backends import Files
     from tltlc.interfaces.cli.report import Report
     from tltlc.io.project import Project
+    from tltlc.pipeline import Session
 
 output_option = click.option(
     "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), default=".", help="The folder for the files."
@@ -44,17 +45,28 @@ def targets_of(lists: Iterable[str]) -> list[str]:
     return targets
 
 
-def files_of(automata: Iterable[Fspa], requested: Sequence[str], project: Project, report: Report) -> Files:
+def files_of(
+    automata: Iterable[Fspa],
+    requested: Sequence[str],
+    project: Project,
+    report: Report,
+    session: Session | None = None,
+) -> Files:
     """Return the generated files of all automata, by name, for the targets (output formats) ``requested``.
 
     If no targets are requested, use those of the project file, or else the default targets. Notes
-    about what a target leaves out are added to ``report``. Raises click.UsageError if two targets
+    about what a target leaves out are added to ``report``. ``session`` is the compiler's session for the
+    source text of the automata, if they have one. Raises click.UsageError if two targets
     write the same file.
     """
     from tltlc import backends
 
     targets = dict.fromkeys(requested or project.targets or backends.DEFAULT_TARGETS)
-    options = backends.Options(notation=project.notation, report=lambda diagnostic: report.add((diagnostic,)))
+    options = backends.Options(
+        notation=project.notation,
+        report=lambda diagnostic: report.add((diagnostic,)),
+        without_timers=session.without_timers if session else None,
+    )
     files: Files = {}
     for fspa in automata:
         writers: dict[str, str] = {}

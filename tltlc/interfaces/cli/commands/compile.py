@@ -67,7 +67,7 @@ def command(
             for spec_input in _valid_inputs(every_source(specs, report), settings, names, report):
                 if not spec_input.automata and spec_input.name not in files_in_folders(specs):
                     report.say(f"{spec_input.name}: it contains no spec")
-                generated = files_of(spec_input.automata, targets, spec_input.project, report)
+                generated = files_of(spec_input.automata, targets, spec_input.project, report, spec_input.session)
                 _check_distinct(generated, spec_input.name, sources, is_waiting=bool(changed))
                 files |= generated
             if report.status == exits.CLEAN:
