@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from typing import Final
 
 from tltlc import __version__
 from tltlc.artefact.size import check_size
@@ -27,6 +28,7 @@ from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import escape_invisible
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.logic.formula import FALSE, TRUE
+from tltlc.resolve.spec import Register, RegisterKind
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
@@ -34,6 +36,11 @@ TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model 
 # this header, the tool would read an automaton with another meaning.
 FINITE_HEADER = 'Tltlc-semantics: "finite"'
 FINITE_COMMENT = "A finite trace is accepted if its run ends in a state of set 0."
+_KEPT_BY_NAME: Final[tuple[RegisterKind, ...]] = (
+    *("once", "historically", "since", "previously", "times"),
+    *("previous", "initial", "highest", "lowest"),
+)
+"""The kinds of registers that no timer needs: the spec itself asks for them."""
 OTHER_MEMORY = "leave out the target `hoa`, or state the rule without this memory"
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
@@ -60,10 +67,13 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 def _without_registers(fspa: Fspa, options: Options) -> Fspa:
     """Return the automaton of the same spec with states in place of timers; raise TltlError, TLT0713, if that fails."""
-    if not _has_timers(fspa):
-        raise TltlError([_refusal(fspa, OTHER_MEMORY)])
+    kept = [each for each in fspa.registers if each.kind in _KEPT_BY_NAME]
+    if kept or not _has_timers(fspa):
+        raise TltlError([_refusal(fspa, kept or fspa.registers, OTHER_MEMORY)])
     if options.without_timers is None:
-        raise TltlError([_refusal(fspa, "compile the .tltl file: then states take the place of timers")])
+        raise TltlError(
+            [_refusal(fspa, fspa.registers, "compile the .tltl file: then states take the place of timers")]
+        )
     try:
         unfolded = options.without_timers(fspa.name)
     except TltlError as error:
@@ -72,7 +82,7 @@ def _without_registers(fspa: Fspa, options: Options) -> Fspa:
         advice = "shorten the bounds, choose a slower `clock`, or raise `--state-budget`"
         raise TltlError([Diagnostic("TLT0713", title, labels, advice)]) from error
     if unfolded.registers:
-        raise TltlError([_refusal(unfolded, OTHER_MEMORY)])
+        raise TltlError([_refusal(unfolded, unfolded.registers, OTHER_MEMORY)])
     return unfolded
 
 
@@ -83,9 +93,9 @@ def _has_timers(fspa: Fspa) -> bool:
     )
 
 
-def _refusal(fspa: Fspa, advice: str) -> Diagnostic:
-    kept = next((each for each in fspa.registers if each.kind not in ("last", "first")), fspa.registers[0])
-    title = f"`{fspa.name}` remembers `{kept.name}`, which the Hanoi format cannot express"
+def _refusal(fspa: Fspa, registers: Sequence[Register], advice: str) -> Diagnostic:
+    shown = next((each for each in registers if each.kind not in ("last", "first")), registers[0])
+    title = f"`{fspa.name}` remembers `{shown.name}`, which the Hanoi format cannot express"
     return Diagnostic("TLT0713", title, help=advice)
 
 
