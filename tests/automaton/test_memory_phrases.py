@@ -6,9 +6,12 @@ import pytest
 
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.backends import emit
 from tltlc.core.source import SourceFile
+from tltlc.logic.formula import Formula
+from tltlc.logic.text.printer import english_text
 from tltlc.pipeline import read_artefact
 
 NAMES = (
@@ -191,3 +194,22 @@ def test_times_are_in_seconds_where_these_are_whole_or_half_ones() -> None:
         "5 steps.",
         "0.5 s.",
     ]
+
+
+@pytest.mark.parametrize(
+    ("clause", "guard", "words"),
+    [
+        (
+            "keep begins seen implies next always for 20 s (not alarm and not near(e))",
+            (0, 2),
+            "(alarm or near(e)) within the next 20 s after seen begins",
+        ),
+        ("require always for 20 s not alarm  require always for 10 s seen", (0, 1), "alarm in the first 20 s"),
+        ("keep begins seen implies next always for 20 s not alarm", (0, 1), "seen does not begin"),
+    ],
+)
+def test_guards_say_what_breaks_a_rule(clause: str, guard: tuple[int, int], words: str) -> None:
+    fspa = _fspa(clause)
+    (formula,) = (edge.guard.formula for edge in fspa.edges if (edge.source, edge.target) == guard)
+    assert isinstance(formula, Formula)
+    assert words in english_text(spoken(formula, fspa))

@@ -7,7 +7,7 @@ atom without words of its own, such as that of a sum of counts, keeps its name.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Final, cast
+from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import breaches_now
@@ -17,31 +17,24 @@ from tltlc.automaton.remembered_formulas import (
     counted,
     from_robustness,
     kept_rule,
+    names_read,
     opposite,
     remembered,
     waited_for,
+    window_border,
 )
-from tltlc.automaton.value_phrases import VALUES, Phrase, value_phrase
+from tltlc.automaton.value_phrases import COMPARED, TIMES, VALUES, Phrase, value_phrase
 from tltlc.core.names import ComparisonName, SpokenName
-from tltlc.expression.tree import Before, Const, Expression, Op, ParamValue, SignalValue, When, nodes
+from tltlc.expression.tree import Before, Op, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
 
-_COMPARED: Final = {
-    ">": "more than",
-    "<": "less than",
-    ">=": "at least",
-    "<=": "at most",
-    "==": "exactly",
-    "!=": "not exactly",
-}
-_TIMES: Final = {"1": "once", "2": "twice"}
 _TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
     "waiting": {"late": ("{2} later than {0} after {1}", "{2} within {0} after {1}")},
     "due": {"due": ("{1} is due after {0}", "{1} is not due after {0}")},
-    "breach": {"breach": ("not {2} for {0} after {1}", "{2} for {0} after {1}")},
+    "breach": {"breach": ("{3} within {0} after {1}", "{2} for {0} after {1}")},
     "samples": {
         "passed": ("{0} have passed", "less than {0} have passed"),
         "lasted": ("{0} are over", "less than {0} have passed"),
@@ -73,7 +66,7 @@ _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
 """The bases of the names of timers that say until when something must happen, or how long it must last."""
 _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
-_FROM_START: Final = ("not {1} in the first {0}", "{1} for the first {0}")
+_FROM_START: Final = ("{2} in the first {0}", "{1} for the first {0}")
 """The same for a rule that applies from the first sample on."""
 _TIMED: Final = ("passed", "lasted", "lately", "recent", "late", "due", "breach", "held", "over")
 """The bases of the names of timers."""
@@ -84,10 +77,10 @@ def spoken(formula: Formula, fspa: Fspa) -> Formula:
 
     No automaton has atoms with such names, so the result is only good for printing.
     """
-    return _Speaker(fspa).spoken(formula) if fspa.registers else formula
+    return Speaker(fspa).spoken(formula) if fspa.registers else formula
 
 
-class _Speaker:
+class Speaker:
     """Says the formulas of one automaton in words."""
 
     def __init__(self, fspa: Fspa) -> None:
@@ -139,14 +132,17 @@ class _Speaker:
 
     def _turning(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
         """Return ``seen & !previously seen & x`` as "seen begins" and x, and the reverse as "seen ends"; else None."""
+        turn = self._turn(node.args[0]) if node.op == "not" else None
+        if turn is not None:
+            return atom(f"{turn[0]} does not {turn[1]}")
         if node.op != "and":
             return None
         parts = list(node.args)
         edges: list[Formula] = []
-        for operand, word, members in self._edges():
+        for operand, verb, members in self._edges():
             if all(part in parts for part in members):
                 parts = [part for part in parts if part not in members]
-                edges.append(atom(f"{self._object(operand)} {word}"))
+                edges.append(atom(f"{self._object(operand)} {verb}s"))
         if not edges:
             return None
         rest = [done[part] for part in parts]
@@ -179,7 +175,7 @@ class _Speaker:
         """Return ``G !breach`` as "whenever alarm, avoid seen for 5 s", else None."""
         item = self._ruled_out(node, "breach")
         broken = None if item is None else broken_rule(self._register_of(item), self._registers)
-        if item is None or broken is None or self._is_timed(broken[0]):
+        if item is None or broken is None or broken[0] is TRUE or self._is_timed(broken[0]):
             return None
         event, rule = broken
         return always(implies(self.spoken(event), self._lasting(rule, f"for {item.arguments[0]}")))
@@ -236,7 +232,7 @@ class _Speaker:
         """Return the phrase of an atom; None if it has none."""
         if name not in self._phrases:
             item = self._atoms.get(name)
-            read = [] if item is None else [self._registers[part] for part in _read(item) if part in self._registers]
+            read = [] if item is None else self._read(item)
             self._phrases[name] = self._phrase_of(item, read[0]) if item is not None and len(read) == 1 else None
         return self._phrases[name]
 
@@ -248,11 +244,13 @@ class _Speaker:
         if timer is not None and item.arguments:
             return self._timer_phrase(item, register, timer)
         if register.kind == "last":
-            operand = remembered(register.name, self._registers) if len(_read(item)) == 1 else None
-            return None if operand is None else Phrase(phrase(self.spoken(operand)))
+            operand = remembered(register.name, self._registers) if len(names_read(item)) == 1 else None
+            turn = None if operand is None else self._turn(operand)
+            fails = turn and f"{turn[0]} does not {turn[1]}"
+            return None if operand is None else Phrase(phrase(self.spoken(operand)), fails)
         if register.kind in VALUES:
             return value_phrase(item.base, register)
-        if len(_read(item)) > 1:
+        if len(names_read(item)) > 1:
             return None
         if register.kind in ("once", "historically", "since", "previously"):
             return self._past_phrase(item, register)
@@ -268,7 +266,7 @@ class _Speaker:
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             return Phrase(SpokenName(holds), SpokenName(fails))
-        border = _border(item.expression)
+        border = window_border(item.expression)
         if register.kind != "time_since" or border is None:
             return None
         # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
@@ -282,22 +280,30 @@ class _Speaker:
         return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"))
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
-        arguments = self._arguments(item, register)
-        if register.kind == "breach" and len(arguments) == 2:
-            texts = _FROM_START
+        arguments = self.arguments(item, register)
+        if register.kind == "breach":
+            broken = broken_rule(register, self._registers)
+            texts = _FROM_START if len(arguments) == 2 else texts
+            if broken is None or any(map(self._is_timed, broken)):
+                arguments = (*arguments, f"not {arguments[-1]}")
+            else:
+                arguments = (*arguments, self._object(opposite(broken[1])))
         elif register.kind in ("waiting", "due") and len(arguments) < 2 + (item.base == "late"):
             texts = _ALWAYS[item.base]
         return Phrase(*(text.format(*arguments) for text in texts))
 
-    def _arguments(self, item: Atom, register: Register) -> Sequence[str]:
+    def arguments(self, item: Atom, register: Register) -> Sequence[str]:
         """Return the arguments of a timer in words."""
         formulas: tuple[Formula, ...] | None = None
         if register.kind in ("waiting", "due"):
             answer = waited_for(register)
             if answer is not None:
                 formulas = (answer.goal,) if answer.request is TRUE else (answer.request, answer.goal)
-        elif register.kind == "breach":
-            formulas = broken_rule(register, self._registers)
+        elif (broken := broken_rule(register, self._registers)) is not None:
+            event, rule = broken
+            if rule.op == "not" and self._turn(rule.args[0]) is None:
+                rule = negation_normal_form(rule)
+            formulas = (rule,) if event is TRUE else (event, rule)
         elif (operand := counted(register, self._registers)) is not None:
             formulas = (operand,)
         first = item.base != "due"
@@ -329,10 +335,10 @@ class _Speaker:
             return f"{self._object(operand)} at least once"
         if (operator, number) in (("<=", "0"), ("<", "1"), ("==", "0")):
             return f"{self._object(operand)} 0 times so far"
-        return f"{self._object(operand)} {_COMPARED[operator]} {_TIMES.get(number, f'{number} times')}"
+        return f"{self._object(operand)} {COMPARED[operator]} {TIMES.get(number, f'{number} times')}"
 
     def _time(self, register: Register, operand: Formula, operator: str, number: str) -> str:
-        length = f"{_COMPARED[operator]} {number} s"
+        length = f"{COMPARED[operator]} {number} s"
         words = self._object(operand)
         return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
 
@@ -343,23 +349,31 @@ class _Speaker:
 
     def _noun(self, state: Formula) -> str:
         """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""
-        for operand, word, members in self._edges():
-            if state.op == "and" and set(state.args) == set(members):
-                return f"the {'start' if word == 'begins' else 'end'} of {self._object(operand)}"
-        return self._object(state)
+        turn = self._turn(state)
+        return self._object(state) if turn is None else f"the {'start' if turn[1] == 'begin' else 'end'} of {turn[0]}"
+
+    def _turn(self, state: Formula) -> tuple[str, str] | None:
+        """Return what begins or ends in a state, and "begin" or "end"; None for other states."""
+        for operand, verb, members in self._edges() if state.op == "and" else ():
+            if set(state.args) == set(members):
+                return self._object(operand), verb
+        return None
 
     def _edges(self) -> Iterator[tuple[Formula, str, tuple[Formula, ...]]]:
-        """Yield each formula that is remembered, "begins" or "ends", and the parts of a conjunction that say so."""
+        """Yield each formula that is remembered, "begin" or "end", and the parts of a conjunction that say so."""
         for name, operand in self._before.items():
             now = operand.args if operand.op == "and" else (operand,)
-            yield operand, "begins", (*now, not_(atom(name)))
-            yield operand, "ends", (opposite(operand), atom(name))
+            yield operand, "begin", (*now, not_(atom(name)))
+            yield operand, "end", (opposite(operand), atom(name))
 
     # --- registers --------------------------------------------------------------------------------
 
+    def _read(self, item: Atom) -> list[Register]:
+        return [self._registers[name] for name in names_read(item) if name in self._registers]
+
     def _register_of(self, item: Atom) -> Register:
         """Return the register that a timer reads."""
-        return next(self._registers[name] for name in _read(item) if name in self._registers)
+        return self._read(item)[0]
 
     def _answer(self, item: Atom) -> Answer | None:
         return waited_for(self._register_of(item))
@@ -380,21 +394,7 @@ class _Speaker:
         """Return the time of each atom that says that a time has passed, such as "5 s after a"."""
         times: dict[str, str] = {}
         for item in self._atoms.values():
-            kinds = {self._registers[name].kind for name in _read(item) if name in self._registers}
+            kinds = {register.kind for register in self._read(item)}
             if item.base in _UNTIL and item.arguments and kinds & _COUNTING:
-                times[item.name] = " after ".join(self._arguments(item, self._register_of(item)))
+                times[item.name] = " after ".join(self.arguments(item, self._register_of(item)))
         return times
-
-
-def _read(item: Atom) -> set[str]:
-    return {node.name for node in nodes(item.expression) if isinstance(node, (SignalValue, ParamValue))}
-
-
-def _border(expression: Expression) -> float | None:
-    """Return the number of steps by which the margin of a window is divided; None for other expressions."""
-    if isinstance(expression, When):
-        # The margin of a window in seconds is negated, so that its border belongs to it.
-        (margin, _) = expression.cases[0][0].args
-        expression = cast("Expression", margin)
-    is_scaled = isinstance(expression, Op) and expression.op == "/" and isinstance(expression.args[1], Const)
-    return expression.args[1].value if is_scaled else None  # type: ignore[union-attr]

@@ -7,12 +7,23 @@ robustness; this module does the reverse.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
-from tltlc.expression.tree import AtomValue, Before, Condition, Const, Expression, Op, SignalValue, When, nodes
+from tltlc.expression.tree import (
+    AtomValue,
+    Before,
+    Condition,
+    Const,
+    Expression,
+    Op,
+    ParamValue,
+    SignalValue,
+    When,
+    nodes,
+)
 from tltlc.logic.formula import FALSE, TRUE, Formula, and_, atom, iff, implies, not_, or_
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.spec import Register
+from tltlc.resolve.spec import Atom, Register
 
 
 class Answer(NamedTuple):
@@ -21,6 +32,11 @@ class Answer(NamedTuple):
     request: Formula
     goal: Formula
     strict: bool
+
+
+def names_read(item: Atom) -> set[str]:
+    """Return the names of the signals, params and registers that an atom reads."""
+    return {node.name for node in nodes(item.expression) if isinstance(node, (SignalValue, ParamValue))}
 
 
 def counted(register: Register, registers: Mapping[str, Register]) -> Formula | None:
@@ -72,12 +88,18 @@ def waited_for(register: Register) -> Answer | None:
 
 
 def broken_rule(register: Register, registers: Mapping[str, Register]) -> tuple[Formula, Formula] | None:
-    """Return the event and the rule of a register that a rule after an event is broken; None for other registers."""
+    """Return the event and the rule of a register that a rule after an event is broken; None for other registers.
+
+    The event is true if the rule applies from the first sample on.
+    """
     if register.kind != "breach" or not isinstance(register.update, Op) or len(register.update.args) != 2:
         return None
     window, broken = register.update.args
     read = [node.name for node in nodes(window) if isinstance(node, SignalValue)]
-    event = counted(registers[read[0]], registers) if len(read) == 1 and read[0] in registers else None
+    timer = registers.get(read[0]) if len(read) == 1 else None
+    if timer is None:
+        return None
+    event = TRUE if timer.kind in ("samples", "elapsed") else counted(timer, registers)
     formula = from_robustness(broken)
     return None if event is None or formula is None else (event, opposite(formula))
 
@@ -111,6 +133,16 @@ def _begins_negated(value: Expression) -> bool:
 def opposite(formula: Formula) -> Formula:
     """Return the negation of a formula, without a double one."""
     return formula.args[0] if formula.op == "not" else not_(formula)
+
+
+def window_border(expression: Expression) -> float | None:
+    """Return the number of steps by which the margin of a window is divided; None for other expressions."""
+    if isinstance(expression, When):
+        # The margin of a window in seconds is negated, so that its border belongs to it.
+        (margin, _) = expression.cases[0][0].args
+        expression = cast("Expression", margin)
+    is_scaled = isinstance(expression, Op) and expression.op == "/" and isinstance(expression.args[1], Const)
+    return expression.args[1].value if is_scaled else None  # type: ignore[union-attr]
 
 
 # --- from expressions -----------------------------------------------------------------------------

@@ -7,6 +7,15 @@ from typing import Final, NamedTuple
 from tltlc.core.names import ComparisonName, split_name
 from tltlc.resolve.spec import Register
 
+COMPARED: Final = {
+    ">": "more than",
+    "<": "less than",
+    ">=": "at least",
+    "<=": "at most",
+    "==": "exactly",
+    "!=": "not exactly",
+}
+TIMES: Final = {"1": "once", "2": "twice"}
 _MIRRORED: Final = {">": "<", "<": ">", ">=": "<=", "<=": ">=", "==": "==", "!=": "!="}
 VALUES: Final = {
     "previous": "the previous {0}",
