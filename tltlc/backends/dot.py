@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from tltlc.automaton.fspa import Fspa, State, Verdict
-from tltlc.automaton.text import label_range_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import Drawing, distance_range, whole_drawing
 from tltlc.backends.drawing.html_like import BACKED, LEFT, escape_html, literal_text, table
-from tltlc.backends.drawing.picture_content import distance_note, notes
-from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
+from tltlc.backends.drawing.picture_content import MOST_ROWS, PictureContent, distance_note, more_rows, picture_content
+from tltlc.backends.drawing.state_rows import full_label, state_rows
+from tltlc.backends.drawing.texts import escape_invisible, wrap_text
+from tltlc.backends.drawing.timers import MemoryRow
 
 if TYPE_CHECKING:
     from graphviz import Digraph
@@ -40,7 +41,7 @@ Detail = Literal["full", "labels", "sketch"]
 states, for a force-directed layout.
 """
 
-LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 22, 32
+LABEL_WIDTH, WIDE_LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 42, 22, 32
 MOST_GUARDS = 24
 """The most guards on one arrow; if there are more, the arrow says how many more."""
 TITLE_WIDTH = 100
@@ -90,34 +91,51 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     """
     from graphviz import Digraph
 
-    drawing = drawing or whole_drawing(fspa)
+    content = picture_content(fspa, drawing or whole_drawing(fspa), options.notation)
+    drawing = content.drawing
     dense = DENSE if len(drawing.edges) > DENSE_FROM else {}
     sketch = SKETCH if detail == "sketch" else {}
     drawn = Digraph(
-        escape_invisible(fspa.name), graph_attr={**GRAPH, "label": _title(fspa, drawing), **dense, **sketch}
+        escape_invisible(fspa.name), graph_attr={**GRAPH, "label": _title(fspa, content), **dense, **sketch}
     )
     drawn.attr("node", **NODE)
     drawn.attr("edge", **EDGE)
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
     for state in drawing.states:
         run = drawing.folded.get(state.id, (state,))
-        text = label_range_text(fspa, run[0].id, run[-1].id, options.notation)
-        _draw_state(drawn, run, text, detail != "sketch")
+        rows = state_rows(fspa, run, content.timers.get(state.id, {}), options.notation)
+        _draw_state(drawn, run, rows, full_label(fspa, run, options.notation), detail != "sketch")
     drawn.edge("start", "0")
-    for (source, target), guards in guards_by_arrow(drawing.edges, options.notation).items():
+    for (source, target), guards in content.guards.items():
         _draw_arrow(drawn, fspa.states[source], fspa.states[target], guards, detail == "full")
     return str(drawn.source)
 
 
-def _title(fspa: Fspa, drawing: Drawing) -> str:
+def _title(fspa: Fspa, content: PictureContent) -> str:
     """Return the title of the graph, as an HTML-like label: the spec's name, its documentation, and a legend."""
-    legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrap_text(note, TITLE_WIDTH)]
+    texts = (_legend(fspa, content.drawing), *content.notes)
+    legend = [line for note in texts for line in wrap_text(note, TITLE_WIDTH)]
     lines = [f"<B>{escape_html(fspa.name)}</B>"]
     if fspa.doc.strip():
         lines += map(escape_html, wrap_text(fspa.doc, TITLE_WIDTH, 3))
-    lines += (f'<FONT COLOR="#64748b" POINT-SIZE="11">{escape_html(line)}</FONT>' for line in legend)
+    lines += map(_grey, legend)
+    lines += [_memory(content.memory)] if content.memory else []
     lines.append('<FONT POINT-SIZE="6">&#160;</FONT>')  # space above the states
     return f"<{table(lines, LEFT, spacing=2)}>"
+
+
+def _memory(memory: Sequence[MemoryRow]) -> str:
+    """Return the table of the registers: what each is about, its kind, its maximum and its first value."""
+    rows = [("Memory", "kind", "at most", "at the start")]
+    rows += [(row.name, row.kind, row.maximum, row.initial) for row in memory[:MOST_ROWS]]
+    rows += [(text, "", "", "") for text in more_rows(memory)]
+    cells = ("".join(f"{LEFT}{_grey(wrap_text(cell, TITLE_WIDTH)[0])}</TD>" for cell in row) for row in rows)
+    inside = "".join(f"<TR>{row}</TR>" for row in cells)
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="1" CELLSPACING="3">{inside}</TABLE>'
+
+
+def _grey(text: str) -> str:
+    return f'<FONT COLOR="#64748b" POINT-SIZE="11">{escape_html(text)}</FONT>' if text else ""
 
 
 def _legend(fspa: Fspa, drawing: Drawing) -> str:
@@ -125,8 +143,10 @@ def _legend(fspa: Fspa, drawing: Drawing) -> str:
     return distance_note(drawing, "Corner", "double outline") + " Bold arrows come nearer." * nearer
 
 
-def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
-    """Add a state to the graph ``drawn``: with its ``text`` if ``full``, and otherwise only with its number.
+def _draw_state(drawn: Digraph, run: tuple[State, ...], rows: Sequence[str], text: str, full: bool) -> None:
+    """Add a state to the graph ``drawn``: with its ``rows`` if ``full``, and otherwise only with its number.
+
+    ``text`` is its label, for the tooltip.
 
     If ``run`` has several states, they are folded: they become one state with a dashed outline.
     """
@@ -134,7 +154,9 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
     line, fill = LINES[state.verdict], FILLS[state.verdict]
     distance = distance_range(state.distance, last.distance)
     name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
-    body = "<BR/>".join(map(escape_html, wrap_text(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
+    width = LABEL_WIDTH if len(rows) == 1 else WIDE_LABEL_WIDTH
+    lines = [line for row in rows for line in wrap_text(row, width)]
+    body = "<BR/>".join(map(escape_html, lines)) if full else f"<B>{state.id}</B>"
     style = {"peripheries": "2"} if state.accepting else {}
     if state is not last:
         body = table([f"<I>{len(run)} more like these</I>", body]) if full else f"<B>{state.id}…{last.id}</B>"

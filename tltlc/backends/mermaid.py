@@ -7,14 +7,15 @@ another share an arrow, because Mermaid would draw only the last of several loop
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tltlc.automaton.fspa import Fspa, State
-from tltlc.automaton.text import label_range_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import distance_range
-from tltlc.backends.drawing.picture_content import distance_note, folded_drawing, notes
-from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
+from tltlc.backends.drawing.picture_content import distance_note, folded_drawing, memory_texts, picture_content
+from tltlc.backends.drawing.state_rows import state_rows
+from tltlc.backends.drawing.texts import escape_invisible, wrap_text
+from tltlc.backends.drawing.timers import CLOCK, Timer
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
@@ -32,7 +33,7 @@ CLASSES = """\
 DASHED = "    classDef folded stroke-dasharray:6 4"
 LEGEND = "    classDef legend fill:none,stroke:none"
 
-_PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
+_PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰" + CLOCK)
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -43,13 +44,17 @@ def emit(fspa: Fspa, options: Options) -> Files:
     Long runs of states that differ only in a count are folded into one state, which is dashed. A
     legend explains the marks.
     """
-    drawing = folded_drawing(fspa)
+    content = picture_content(fspa, folded_drawing(fspa), options.notation)
+    drawing = content.drawing
     lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escape(fspa.name)}"]
-    lines += [_state(fspa, drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
+    lines += [
+        _state(fspa, drawing.folded.get(state.id, (state,)), content.timers.get(state.id, {}), options)
+        for state in drawing.states
+    ]
     lines.append("    [*] --> s0")
-    for (source, target), guards in guards_by_arrow(drawing.edges, options.notation).items():
+    for (source, target), guards in content.guards.items():
         lines.append(f"    s{source} --> s{target}: {_lines([*(f'{guard};' for guard in guards[:-1]), guards[-1]])}")
-    legend = (distance_note(drawing, "In brackets", "thick outline"), *notes(fspa, drawing))
+    legend = (distance_note(drawing, "In brackets", "thick outline"), *content.notes, *memory_texts(content.memory))
     lines.append(f'    state "{_lines(legend)}" as legend')
     lines += [CLASSES, DASHED, LEGEND] if drawing.folded else [CLASSES, LEGEND]
     lines += [f"    class s{state.id} {state.verdict}" for state in drawing.states]
@@ -58,15 +63,15 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {f"{fspa.name}.mmd": "\n".join([*lines, ""])}
 
 
-def _state(fspa: Fspa, run: tuple[State, ...], options: Options) -> str:
+def _state(fspa: Fspa, run: tuple[State, ...], timers: Mapping[str, Timer], options: Options) -> str:
     """Return the line that declares a drawn state in Mermaid: ``state "…" as s0``.
 
-    ``run`` has this state, or all states that are folded into it.
+    ``run`` has this state, or all states that are folded into it. ``timers`` run in it.
     """
     first, last = run[0], run[-1]
-    label = label_range_text(fspa, first.id, last.id, options.notation)
     heading = [f"{len(run)} more like these:"] if len(run) > 1 else []
-    texts = [*heading, label, f"[{distance_range(first.distance, last.distance)}]"]
+    rows = state_rows(fspa, run, timers, options.notation)
+    texts = [*heading, *rows, f"[{distance_range(first.distance, last.distance)}]"]
     return f'    state "{_lines(texts)}" as s{first.id}'
 
 

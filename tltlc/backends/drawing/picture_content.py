@@ -1,10 +1,80 @@
-"""Choose the states and edges that a picture of an automaton shows, and write the sentences of its legend."""
+"""Choose the states and edges that a picture of an automaton shows, and write its texts and its legend."""
 
 from __future__ import annotations
 
-from tltlc.automaton.fspa import Fspa
+from collections.abc import Mapping, Sequence
+
+from tltlc.automaton.fspa import Fspa, Notation
 from tltlc.backends.drawing.counting_states import fold_parallel_runs
 from tltlc.backends.drawing.folding import Drawing, fold_runs
+from tltlc.backends.drawing.texts import guards_by_arrow
+from tltlc.backends.drawing.timed_guards import OTHERWISE, timed_drawing
+from tltlc.backends.drawing.timers import CLOCK, MemoryRow, Timer, memory_rows
+from tltlc.core.record import EMPTY, record
+
+MOST_ROWS = 10
+"""The most registers in a legend; a further row counts the rest."""
+
+
+@record
+class PictureContent:
+    """What a picture shows.
+
+    ``guards`` has the guards of each arrow, by ``(source, target)``. ``timers`` has the timers that
+    run in a state, by its number and by the names of their atoms. ``notes`` are the sentences of the
+    legend, and ``memory`` its rows of registers.
+    """
+
+    drawing: Drawing
+    guards: Mapping[tuple[int, int], Sequence[str]]
+    timers: Mapping[int, Mapping[str, Timer]]
+    notes: tuple[str, ...]
+    memory: tuple[MemoryRow, ...]
+
+
+def picture_content(fspa: Fspa, drawing: Drawing, notation: Notation) -> PictureContent:
+    """Return the content of a picture of a drawing.
+
+    The guards of an automaton with registers are in words, whatever the notation: its atoms have
+    names that only the compiler knows.
+    """
+    if not fspa.registers:
+        return PictureContent(drawing, guards_by_arrow(drawing.edges, notation), EMPTY, notes(fspa, drawing), ())
+    timed = timed_drawing(fspa, drawing)
+    guards = guards_by_arrow(timed.drawing.edges, "english")
+    return PictureContent(
+        timed.drawing,
+        guards,
+        timed.timers,
+        tuple(filter(None, (_timed_note(timed.timers, guards, timed.final_first), *notes(fspa, drawing)))),
+        memory_rows(fspa),
+    )
+
+
+def _timed_note(
+    timers: Mapping[int, Mapping[str, Timer]], guards: Mapping[tuple[int, int], Sequence[str]], final_first: bool
+) -> str:
+    """Return the sentences that explain the marks and guards of an automaton with registers."""
+    sentences = [f"{CLOCK}: a timer that may run in this state."] if any(timers.values()) else []
+    if final_first:
+        sentences.append("Arrows to final states come first.")
+    if any(OTHERWISE in texts for texts in guards.values()):
+        sentences.append("“otherwise”: no other arrow of the state applies.")
+    return " ".join(sentences)
+
+
+def memory_texts(memory: Sequence[MemoryRow]) -> list[str]:
+    """Return the rows of registers as sentences, for a legend without a table."""
+    texts = [
+        f"{row.name}: {row.kind}, {f'at most {row.maximum}, ' if row.maximum else ''}{row.initial} at the start"
+        for row in memory[:MOST_ROWS]
+    ]
+    return ["Memory:", *texts, *more_rows(memory)] if texts else []
+
+
+def more_rows(memory: Sequence[MemoryRow]) -> list[str]:
+    """Return the text that counts the registers that a legend leaves out; an empty list if it leaves out none."""
+    return [f"and {len(memory) - MOST_ROWS} more"] if len(memory) > MOST_ROWS else []
 
 
 def folded_drawing(fspa: Fspa) -> Drawing:

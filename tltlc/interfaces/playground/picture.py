@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Notation, State
-from tltlc.automaton.text import label_range_text, label_text
+from tltlc.automaton.text import label_text
 from tltlc.backends.drawing.folding import Drawing, distance_range
-from tltlc.backends.drawing.picture_content import folded_drawing, notes
+from tltlc.backends.drawing.picture_content import PictureContent, folded_drawing, memory_texts, picture_content
+from tltlc.backends.drawing.state_rows import state_rows
 from tltlc.backends.drawing.texts import escape_invisible, guards_by_arrow, wrap_text
+from tltlc.backends.drawing.timers import Timer
 from tltlc.diagnostics.formats.text import columns
 from tltlc.interfaces.playground.curves import PicturePoint, add_bend, svg_path
 from tltlc.interfaces.playground.layout import BoxSize, StateBox, layout
@@ -50,20 +52,30 @@ def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str
     drawing = folded_drawing(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
         return None, f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture."
-    return _PictureText(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
+    content = picture_content(fspa, drawing, notation)
+    return _PictureText(fspa, content, notation).svg(), " ".join((*content.notes, *_sentences(content)))
+
+
+def _sentences(content: PictureContent) -> list[str]:
+    """Return the registers of the legend as sentences."""
+    heading, *rows = memory_texts(content.memory) or [""]
+    return [f"{heading} {'; '.join(rows)}."] if rows else []
 
 
 class _PictureText:
     """Computes the SVG text of one picture: first the wrapped texts of states and edges, then the layout."""
 
-    def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
+    def __init__(self, fspa: Fspa, content: PictureContent, notation: Notation) -> None:
+        drawing = content.drawing
         self.fspa, self.drawing = fspa, drawing
         self.trap = _trap(drawing)
-        self.guards = guards_by_arrow(drawing.edges, notation)
+        self.guards = content.guards
         self.titles = guards_by_arrow(drawing.edges, "english")
         self.lines = {ends: self._lines(ends) for ends in self.guards}
         self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
-        self.labels = {state: _label_lines(fspa, run, notation) for state, run in self.runs.items()}
+        self.labels = {
+            state: _label_lines(fspa, run, content.timers.get(state, {}), notation) for state, run in self.runs.items()
+        }
         self.boxes = {state: self._box(state) for state in self.runs}
         sizes = {ends: _size(lines) for ends, lines in self.lines.items()}
         self.places = layout(self.boxes, sizes, (_MARGIN + _START, _MARGIN))
@@ -168,9 +180,10 @@ def _trap(drawing: Drawing) -> int | None:
     return next((state for state in traps if state), None)
 
 
-def _label_lines(fspa: Fspa, run: Sequence[State], notation: Notation) -> list[str]:
+def _label_lines(fspa: Fspa, run: Sequence[State], timers: Mapping[str, Timer], notation: Notation) -> list[str]:
     heading = [f"{len(run)} more like these"] if len(run) > 1 else []
-    return [*heading, *_shorten([label_range_text(fspa, run[0].id, run[-1].id, notation)], _LABEL)]
+    rows = state_rows(fspa, run, timers, notation)
+    return [*heading, *(line for row in rows for line in _shorten([row], _LABEL))]
 
 
 def _shorten(texts: Sequence[str], width: int) -> list[str]:
