@@ -8,10 +8,13 @@ import pytest
 
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory_phrases import Speaker
+from tltlc.backends.drawing import timed_guards
 from tltlc.backends.drawing.folding import whole_drawing
 from tltlc.backends.drawing.picture_content import PictureContent, picture_content
 from tltlc.backends.drawing.state_rows import state_rows
 from tltlc.interfaces.playground.picture import picture
+from tltlc.logic.formula import Formula, atom
 from tltlc.monitor.monitor import Monitor, Step
 
 NAMES = "".join(f"signal {name}: bool\n" for name in ("alarm", "hidden", "a", "b", "seen", "safe"))
@@ -150,6 +153,39 @@ def test_every_step_of_a_trace_has_an_arrow(rule: str, clock: str) -> None:
             state = step.state
     assert taken <= guards.keys()
     assert len(taken) > 1
+
+
+def holds(formula: Formula, atoms: dict[str, bool]) -> bool:
+    if formula.op == "atom":
+        return atoms[formula.name]
+    parts = [holds(part, atoms) for part in formula.args]
+    return not parts[0] if formula.op == "not" else all(parts) if formula.op in ("and", "true") else any(parts)
+
+
+@pytest.mark.parametrize("clock", CLOCKS)
+@pytest.mark.parametrize("rule", RULES)
+def test_the_guards_of_a_picture_tell_the_next_state(rule: str, clock: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the arrows whose guards hold, one to a final state comes first; "otherwise" is the last."""
+    monkeypatch.setattr(Speaker, "spoken", lambda _, formula: formula)
+    fspa, random = fspa_of(rule, clock), Random(rule)
+    drawing = timed_guards.timed_drawing(fspa, whole_drawing(fspa)).drawing
+    final = [state.id for state in fspa.states if state.verdict in ("satisfied", "violated")]
+    for _ in range(10):
+        monitor, state = Monitor(fspa), 0
+        share = random.choice((0.002, 0.01, 0.1, 0.5, 0.98))
+        for _ in range(400):
+            step = next_step(monitor, random, share)
+            atoms = {each.name: value > 0 for each, value in zip(fspa.atoms, monitor.values, strict=True)}
+            atoms |= {timed_guards.ALWAYS: True, timed_guards.OTHERWISE: True}
+            guards = [(edge.target, edge.label.guard.formula) for edge in drawing.edges if edge.source == state]
+            true = [
+                (formula is atom(timed_guards.OTHERWISE), target not in final, target)
+                for target, formula in guards
+                if isinstance(formula, Formula) and holds(formula, atoms)
+            ]
+            assert min(true)[2] == step.state
+            assert len({target for otherwise, _, target in true if not otherwise and target not in final}) <= 1
+            state = step.state
 
 
 def test_the_legend_has_the_registers_with_units() -> None:

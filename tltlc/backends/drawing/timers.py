@@ -171,5 +171,6 @@ def _value(register: Register, value: float, fspa: Fspa) -> str:
     if register.kind in ("elapsed", "waiting") and value < 0:
         return "none"
     if register.unit == "steps" and fspa.clock_s is not None and register.kind != "samples":
-        return f"{value * fspa.clock_s:.3g} s"
+        seconds = value * fspa.clock_s
+        return f"{seconds:.3g} s" if seconds < 100 else f"{seconds:.0f} s"
     return f"{value:g} {register.unit}".strip()
