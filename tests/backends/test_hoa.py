@@ -356,6 +356,27 @@ def test_states_take_the_place_of_timers() -> None:
     assert accepted == {False, True}
 
 
+@pytest.mark.parametrize(
+    ("clause", "help_"),
+    [
+        ("keep a implies eventually within 5 s b", hoa.FIXED_CLOCK),
+        ("reach a then within 5 s b", hoa.FIXED_CLOCK),
+        ("reach always for 3 s b", hoa.FIXED_CLOCK),
+        ("require always for 3 s b", hoa.FIXED_CLOCK),
+        # Without a bound, a fixed clock would not help.
+        ("keep time_holding(b) <= 3 s", hoa.OTHER_MEMORY),
+    ],
+)
+def test_times_on_a_clock_that_varies_are_refused(clause: str, help_: str) -> None:
+    text = f"clock varies\nsignal a: bool\nsignal b: bool\nspec s {{ {clause} }}"
+    session = Session(SourceFile("s.tltl", text))
+    for options in (backends.Options(), backends.Options(without_timers=session.without_timers)):
+        with pytest.raises(TltlError) as caught:
+            backends.emit("hoa", session.automata[0], options)
+        (diagnostic,) = caught.value.diagnostics
+        assert (diagnostic.code, diagnostic.help) == ("TLT0713", help_)
+
+
 def test_an_artefact_with_timers_is_refused() -> None:
     (fspa,) = compile_text(TIMED)
     with pytest.raises(TltlError) as caught:

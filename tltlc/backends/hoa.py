@@ -41,7 +41,10 @@ _KEPT_BY_NAME: Final[tuple[RegisterKind, ...]] = (
     *("previous", "initial", "highest", "lowest"),
 )
 """The kinds of registers that no timer needs: the spec itself asks for them."""
+_TIMED: Final[tuple[RegisterKind, ...]] = ("samples", "elapsed", "age", "run", "waiting", "due", "breach")
+"""The kinds of registers that only timers need."""
 OTHER_MEMORY = "leave out the target `hoa`, or state the rule without this memory"
+FIXED_CLOCK = "write a `clock` with a fixed rate, such as `clock 60 Hz`, or leave out the target `hoa`"
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
 
 
@@ -70,6 +73,10 @@ def _without_registers(fspa: Fspa, options: Options) -> Fspa:
     kept = [each for each in fspa.registers if each.kind in _KEPT_BY_NAME]
     if kept or not _has_timers(fspa):
         raise TltlError([_refusal(fspa, kept or fspa.registers, OTHER_MEMORY)])
+    if fspa.clock_varies:
+        title = f"`{fspa.name}` has timers on a clock that varies, which the Hanoi format cannot express: "
+        title += "a time is no number of steps"
+        raise TltlError([Diagnostic("TLT0713", title, help=FIXED_CLOCK)])
     if options.without_timers is None:
         raise TltlError(
             [_refusal(fspa, fspa.registers, "compile the .tltl file: then states take the place of timers")]
@@ -88,7 +95,7 @@ def _without_registers(fspa: Fspa, options: Options) -> Fspa:
 
 def _has_timers(fspa: Fspa) -> bool:
     """Whether timers took the place of bounds."""
-    return any(each.kind in ("samples", "age", "waiting", "due", "breach") for each in fspa.registers) or any(
+    return any(each.kind in _TIMED for each in fspa.registers) or any(
         each.base in ("passed", "lately", "held") and each.arguments for each in fspa.atoms
     )
 
