@@ -122,7 +122,8 @@ def test_contextual_keywords_have_a_scope(text: str, words: tuple[str, ...]) -> 
 
 
 def test_all_contextual_keywords_are_tested() -> None:
-    assert {"after", "as", "at", "expect", "for", "in", "is", "of", "since", "step", "varies", "x", "within"} == set(load().soft)
+    words = {"after", "as", "at", "expect", "for", "in", "is", "of", "since", "step", "varies", "x", "within"}
+    assert words == set(load().soft)
 
 
 @pytest.mark.slow
