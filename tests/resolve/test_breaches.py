@@ -124,9 +124,9 @@ def test_rules_in_words_are_those_of_the_text(monkeypatch: pytest.MonkeyPatch) -
         assert plain != short
         assert words in formula_text(short), rule
     text = f"{BOOLS}spec s {{ {MEMORY} keep c implies d or not e }}"
-    plain, short = map(explain, both(text, monkeypatch))
-    assert [failure.when for failure in plain.failures] == [failure.when for failure in short.failures]
-    assert plain.memory == short.memory
+    before, after = map(explain, both(text, monkeypatch))
+    assert [failure.when for failure in before.failures] == [failure.when for failure in after.failures]
+    assert before.memory == after.memory
 
 
 def test_a_broken_rule_is_named_with_the_atoms_that_break_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
+from tltlc.automaton.chain_phrases import chain_phrase, chains, in_order
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import breaches_now
 from tltlc.automaton.remembered_formulas import (
@@ -91,6 +92,7 @@ class Speaker:
         self._phrases: dict[str, Phrase | None] = {}
         kept = {name: kept_rule(value) for name, value in breaches_now(fspa).items() if name in self._atoms}
         self._rules = {name: rule for name, rule in kept.items() if rule is not None}
+        self._chains = chains(fspa)
         self._passed = self._passed_times()
 
     def spoken(self, formula: Formula) -> Formula:
@@ -98,7 +100,8 @@ class Speaker:
         done: dict[Formula, Formula] = {}
         for node in self._with_rules(formula).bottom_up():
             done[node] = (
-                self._answers(node, done)
+                in_order(node, self._chains, done)
+                or self._answers(node, done)
                 or self._turning(node, done)
                 or self._rule(node)
                 or self._in_time(node, done)
@@ -230,6 +233,8 @@ class Speaker:
 
     def _phrase(self, name: str) -> Phrase | None:
         """Return the phrase of an atom; None if it has none."""
+        if name in self._chains:
+            return chain_phrase(self._atoms[name])
         if name not in self._phrases:
             item = self._atoms.get(name)
             read = [] if item is None else self._read(item)

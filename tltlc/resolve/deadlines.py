@@ -15,14 +15,16 @@ at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
 at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
 anywhere                  ``F(p & X F[0,n-1] f)`` is ``F(p & X(!passed(n, p) U f))``
 anywhere                  ``F(p & F[0,n] f)`` is ``F(p & (!passed(n, p) U f))``
+at the first sample       a long chain of the last two is ``F chain`` (:mod:`tltlc.resolve.chains`)
 ========================  ==============================================================
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from itertools import pairwise
 
 from tltlc.logic.formula import (
+    FALSE,
     TRUE,
     Formula,
     always,
@@ -40,8 +42,10 @@ from tltlc.logic.formula import (
     until,
     weak_next,
 )
-from tltlc.resolve.timers import TimerAtoms, Timers
+from tltlc.resolve.chains import after, at_a_goal, is_long, segments, timed_goals
+from tltlc.resolve.timers import Reached, TimerAtoms, Timers
 from tltlc.resolve.unfolding import bounded_parts
+from tltlc.resolve.windows import Window, is_present, window_of
 
 
 def with_timers(formula: Formula, timers: Timers, *, many_rules: bool = False) -> Formula:
@@ -60,28 +64,8 @@ def with_timers(formula: Formula, timers: Timers, *, many_rules: bool = False) -
 def rules_from_start(formula: Formula) -> int:
     """Return how many conjuncts of a clause are rules for a time from the first sample, ``G[m,n] f``."""
     conjuncts = formula.args if formula.op == "and" else (formula,)
-    windows = [window for window in map(_window, conjuncts) if window is not None]
+    windows = [window for window in map(window_of, conjuncts) if window is not None]
     return sum(1 for window in windows if window.op == "G") + sum(1 for part in conjuncts if is_timed_rule(part))
-
-
-class _Window(NamedTuple):
-    """``F[low,high] body`` (``op`` is ``F``) or ``G[low,high] body``, after leading ``X`` or ``N`` have become steps.
-
-    ``exists`` says whether the next sample must exist: ``X G[0,n] p`` asks for it.
-    """
-
-    op: str
-    low: int
-    high: int
-    body: Formula
-    exists: bool = False
-
-
-class Reached(NamedTuple):
-    """The condition that a sample of a chain is reached in time, and the words for it: "within 5 s after a"."""
-
-    formula: Formula
-    words: str
 
 
 class Rewriting:
@@ -99,7 +83,7 @@ class Rewriting:
         raise NotImplementedError
 
     def from_start(self, node: Formula) -> Formula | None:
-        """Return a bounded operator whose time counts from the first sample."""
+        """Return a bounded operator, or a chain of them, whose time counts from the first sample."""
         raise NotImplementedError
 
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
@@ -203,22 +187,26 @@ class _StepRewriting(Rewriting):
         self._timers, self._many_rules = timers, many_rules
 
     def stay(self, node: Formula) -> Formula | None:
-        window = _window(node)
+        window = window_of(node)
         if window is None or window.op != "G" or window.low or window.high == 0 or not self.fits(window.body):
             return None
         return stay_for(window.body, self._timers.held(window.high, window.body))
 
     def from_start(self, node: Formula) -> Formula | None:
-        timers, window = self._timers, _window(node)
-        if window is None:
-            return None
+        window = window_of(node)
+        if window is not None:
+            return self._window_from_start(window)
+        return eventually(self._chain(node.args[0])[0]) if self._is_long(node) else None
+
+    def _window_from_start(self, window: Window) -> Formula:
+        timers = self._timers
         if window.high == 0:
             return self.at_start(window.body)
         begun = timers.passed(window.low) if window.low else None
         if window.op == "F":
             first = Reached(timers.between(window.low, window.high), f"within {timers.time(window.high)}")
-            body = self.anchored(window.body, first)
-            return until(not_(timers.passed(window.high)), body if begun is None else and_(begun, body))
+            body, is_over = self._chain(window.body, first, window.high)
+            return until(not_(is_over), body if begun is None else and_(begun, body))
         if self._many_rules and self.fits(window.body):
             rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
             return and_(next_(TRUE), rule) if window.exists else rule
@@ -226,9 +214,43 @@ class _StepRewriting(Rewriting):
         result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
         return and_(next_(TRUE), result) if window.exists else result
 
+    def _is_long(self, node: Formula) -> bool:
+        return node.op == "F" and is_long(segments(node.args[0], self.fits))
+
+    def _chain(self, body: Formula, first: Reached | None = None, high: int = 0) -> tuple[Formula, Formula]:
+        """Return the body of ``F body`` with atoms for its long segments, and the condition that it comes too late.
+
+        ``first`` must hold at its first goal, and can hold up to step ``high``; None if it may come at any sample.
+        """
+        timers, found = self._timers, segments(body, self.fits)
+        is_over = timers.passed(high) if first is not None else FALSE
+        if not is_long(found):
+            return self.anchored(body, first), is_over
+        firsts = [first]
+        for segment, following in pairwise(found):
+            firsts.append(after(segment, following.goals[0].low, timers, firsts[-1]))
+        outside, rest = dict(self._inside), found[-1].rest
+        rest = None if rest is None else self.inside(rest)
+        for segment, before in zip(reversed(found), reversed(firsts), strict=True):
+            if is_long([segment]):
+                goals = timed_goals(segment, timers, before)
+                chain = timers.chain(goals)
+                result = chain if rest is None else and_(chain, rest)
+                if before is not None and before is first:
+                    is_over = timers.lost(goals, high)
+            else:
+                if rest is not None and segment.rest is not None:
+                    self._inside[segment.rest] = rest
+                result = self.anchored(segment.body, before if before is first else None)
+            rest = at_a_goal(result, segment.goals[0].low)
+        self._inside = outside
+        return result, is_over
+
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
         temporal = [part for part in clause if not is_present(part)]
-        window = _window(temporal[0]) if len(temporal) == 1 else None
+        if len(clause) == 1 and clause[0].op == "not" and self._is_long(clause[0].args[0]):
+            return not_(self.at_start(clause[0].args[0]))  # `G !F f` is `!F f`.
+        window = window_of(temporal[0]) if len(temporal) == 1 else None
         if window is None or window.low > 1 or window.high == 0:
             return None
         request = and_(*(negated(part) for part in clause if part is not temporal[0]))
@@ -249,7 +271,7 @@ class _StepRewriting(Rewriting):
     def anchored(self, body: Formula, reached: Reached | None) -> Formula:
         parts = body.args if body.op == "and" else (body,)
         temporal = [part for part in parts if not is_present(part)]
-        window = _window(temporal[0]) if len(temporal) == 1 else None
+        window = window_of(temporal[0]) if len(temporal) == 1 else None
         present = [part for part in parts if part not in temporal]
         if window is None or window.op != "F" or window.low > 1 or window.high == 0 or not present:
             return self.inside(body)
@@ -280,29 +302,5 @@ def negated(formula: Formula) -> Formula:
     return formula.args[0] if formula.op == "not" else not_(formula)
 
 
-def _window(node: Formula) -> _Window | None:
-    """Return ``node`` as a bounded operator; None if it is none, also behind ``X`` or ``N``."""
-    steps = 0
-    op = ""
-    while node.op in ("X", "N"):
-        if op and node.op != op:
-            return None
-        op, steps, node = node.op, steps + 1, node.args[0]
-    bound = bound_of(node)
-    if bound is None:
-        return None
-    if node.op == "F[]":
-        return None if op == "N" else _Window("F", bound.low + steps, bound.high + steps, node.args[0])
-    # `X X G p` asks for two samples: only a single one can be asked for.
-    if op == "X" and steps > 1:
-        return None
-    return _Window("G", bound.low + steps, bound.high + steps, node.args[0], exists=op == "X")
-
-
 def _is_bounded(node: Formula) -> bool:
     return any(True for _ in bounded_parts(node))
-
-
-def is_present(node: Formula) -> bool:
-    """Whether a formula has no temporal operators."""
-    return not any(part.is_temporal for part in node.walk())

@@ -40,8 +40,10 @@ from tltlc.logic.formula import (
     time_bound_of,
     until,
 )
-from tltlc.resolve.deadlines import Reached, Rewriting, is_present, negated, stay_for
+from tltlc.resolve.deadlines import Rewriting, negated, stay_for
 from tltlc.resolve.elapsed import ElapsedTimers
+from tltlc.resolve.timers import Reached
+from tltlc.resolve.windows import is_present
 
 
 def with_elapsed_timers(formula: Formula, timers: ElapsedTimers, *, many_rules: bool = False) -> Formula:

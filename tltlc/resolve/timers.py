@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final, NamedTuple
 
 from tltlc.core.names import full_name
 from tltlc.core.source import SourceFile, Span
-from tltlc.expression.tree import Const, Expression, Op, SignalValue, depth
+from tltlc.expression.tree import Condition, Const, Expression, Op, SignalValue, When, depth
 from tltlc.io.limits import ARITHMETIC
 from tltlc.logic.formula import TRUE, Formula, and_, atom, not_, rebuild
 from tltlc.logic.text.printer import ascii_text, operand_text
@@ -19,6 +21,26 @@ _MOST_PARTS: Final = 1_000
 """The most parts of the formulas that one timer is about; their texts are in its name."""
 _MOST_DEPTH: Final = ARITHMETIC.depth // 2
 """The greatest depth of their robustness, since an update adds operators to it."""
+
+
+class Reached(NamedTuple):
+    """The condition that a sample of a chain is reached in time, and the words for it: "within 5 s after a"."""
+
+    formula: Formula
+    words: str
+
+
+class TimedGoal(NamedTuple):
+    """A goal that came in time: ``event`` holds at its samples, and ``words`` says it.
+
+    ``text`` is the goal alone, which must come from ``low`` to ``high`` steps after the goal before it.
+    """
+
+    event: Formula
+    words: str
+    text: str
+    low: int = 0
+    high: int = 0
 
 
 class TimerAtoms:
@@ -136,6 +158,51 @@ class Timers(TimerAtoms):
             return self._atom("lately", value, self.time(high), event_words)
         return self._atom("recent", value, self.time(high), event_words)
 
+    def earlier(self, low: int, event: Formula) -> Formula:
+        """Return the atom of "``event`` has held", at this sample or before; if ``low`` is 1, before this sample."""
+        once = f"once {operand_text(event)}"
+        self._register(registers.once(once, self._value(event)))
+        has_held = self._atom(once, SignalValue(once))
+        if low == 0:
+            return has_held
+        name = f"previously {operand_text(has_held)}"
+        self._register(registers.previously(name, self.kept(has_held)))
+        return self._atom(name, SignalValue(name))
+
+    def chain(self, goals: Sequence[TimedGoal]) -> Formula:
+        """Return the atom of "this sample is the last of the goals, and all came in time".
+
+        Where it does not hold, its robustness is the share of the chain that is done, less 1: k of n goals
+        have come and may still be followed in time, and the next one is near.
+        """
+        done: list[Expression] = [self._nearness(goals[0])]
+        for number, (goal, following) in enumerate(pairwise(goals), start=1):
+            waits = registers.holds(self.at_most(self._age(following.low, goal.event), following.high))
+            near = When(((waits, self._nearness(following)),), Const(0.0))
+            goals_done = Op("+", (Const(float(number)), near))
+            done.append(When(((self._continues(goal, following), goals_done),), Const(0.0)))
+        share = Op("/", (Op("max", tuple(done)), Const(float(len(goals)))))
+        last = SignalValue(self.kept(goals[-1].event))
+        value = When(((registers.holds(last), last),), Op("-", (share, Const(1.0))))
+        return self._atom("chain", value, *_chain_arguments(goals, self))
+
+    def lost(self, goals: Sequence[TimedGoal], high: int) -> Formula:
+        """Return the atom of "more than ``high`` steps have passed, and no goal may still be followed in time"."""
+        alive = tuple(self._continues(goal, following) for goal, following in pairwise(goals))
+        is_over = self.at_least(self._samples(), high + 1)
+        value = When(((Condition("or", alive), Const(-1.0)),), is_over)
+        return self._atom("lost", value, *_chain_arguments(goals, self))
+
+    def _nearness(self, goal: TimedGoal) -> Expression:
+        """Return how near a goal that may come at this sample is: from 0 to 1."""
+        value = SignalValue(self.kept(goal.event))
+        return Op("+", (Const(1.0), Op("min", (Const(0.0), value))))
+
+    def _continues(self, goal: TimedGoal, following: TimedGoal) -> Condition:
+        """Return the condition that the next sample may be the goal that follows."""
+        in_time = registers.holds(self.at_most(self._age(following.low, goal.event), following.high - 1))
+        return Condition("or", (registers.holds(SignalValue(self.kept(goal.event))), in_time))
+
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
         register = f"time_holding({ascii_text(state)})"
@@ -211,6 +278,12 @@ class Timers(TimerAtoms):
         seconds = round(steps * period, 6)
         # On a fast clock, a rounded time would not tell the steps apart.
         return f"{number_text(seconds)} s" if abs(seconds / period - steps) < 1e-3 else f"{steps} steps"
+
+
+def _chain_arguments(goals: Sequence[TimedGoal], timers: Timers) -> tuple[str, ...]:
+    """Return the goals of a chain and the times between them: ``a``, ``5 s``, ``b``."""
+    first, *others = goals
+    return (first.text, *(text for goal in others for text in (timers.time(goal.high), goal.text)))
 
 
 def _text(formula: Formula) -> str:

@@ -127,3 +127,19 @@ def test_a_deadline_expires_in_small_formats(dtype: torch.dtype) -> None:
         sample = {"a": float(number == 0), "b": 0.0}
         assert batch.step(columns([sample])).state.tolist() == [monitor.step(sample).state]
     assert fspa.states[monitor.state].verdict == "violated"
+
+
+def test_a_batch_follows_chains_and_many_rules_like_scalar_monitors() -> None:
+    signals = "".join(f"signal x{number}: number in [-1, 1]\n" for number in range(6))
+    chain = " then within 4 steps ".join(f"x{number} > 0" for number in range(6))
+    rules = " ".join(f"keep x{number} > 0 implies x{number + 1} < 0.99 or x0 > 0.5" for number in range(1, 5))
+    for spec in (f"reach {chain}", f"reach {chain} {rules}", f"avoid {chain} {rules}"):
+        (fspa,) = compile_text(f"{signals}spec s {{ {spec} }}")
+        assert {"chain"} <= {atom.base for atom in fspa.atoms}
+        rng = random.Random(spec)
+        batch, monitors = BatchMonitor(fspa, COUNT), [Monitor(fspa) for _ in range(COUNT)]
+        for _ in range(60):
+            samples = [{signal.name: rng.uniform(-1, 1) for signal in fspa.signals} for _ in range(COUNT)]
+            taken = batch.step(columns(samples))
+            steps = [monitor.step(sample) for monitor, sample in zip(monitors, samples, strict=True)]
+            assert_equal(taken, steps, [monitor.success for monitor in monitors], fspa, is_exact(fspa))

@@ -16,6 +16,7 @@ from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
+from tltlc.resolve.chains import MOST_GOALS
 from tltlc.resolve.spec import Bound, Conjunct, Spec
 
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
@@ -115,11 +116,15 @@ def error_with_clauses(
         labels = tuple(
             Label(part.source, part.span, f"{measured.words} alone; the parts multiply") for part, measured in worst[:3]
         )
+    times = max((_times_in_sequence(part, spec) for part in alone or sizes), default=0)
     if isinstance(reason, TooManyPrimes):
-        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _guard_advice(spec, reason))])
+        advice = _sequence_advice(times) if times >= MOST_GOALS else _guard_advice(spec, reason)
+        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, advice)])
     title = f"the automaton of `{spec.name}` {too_large}"
     if bound := longest_bound(alone or sizes):
         advice = bound_advice(bound)
+    elif times >= MOST_GOALS:
+        advice = _sequence_advice(times)
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
 
 
@@ -139,6 +144,21 @@ def bound_advice(bound: Bound) -> str:
     else:
         return shorten
     return f"{form} needs no states if `p` and `q` are about one sample; otherwise {shorten}"
+
+
+def _times_in_sequence(part: Conjunct, spec: Spec) -> int:
+    """Return how many goals of a clause wait for another one with a timer (:mod:`tltlc.resolve.deadlines`)."""
+    passed = {atom.name for atom in spec.atoms if atom.base == "passed" and len(atom.arguments) > 1}
+    waits = (node.args[0] for node in part.formula.walk() if node.op == "U")
+    return sum(1 for wait in waits if wait.op == "not" and wait.args[0].name in passed)
+
+
+def _sequence_advice(times: int) -> str:
+    """Return how to write a sequence with many times so that it needs few states."""
+    return (
+        f"a sequence with {times} times has up to {2**times:,} states inside another operator, and two as a `reach` or"
+        " `avoid` clause of its own; otherwise leave out some of the times"
+    )
 
 
 def _guard_advice(spec: Spec, reason: TooManyPrimes) -> str:
