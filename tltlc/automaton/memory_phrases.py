@@ -11,13 +11,12 @@ from typing import Final
 
 from tltlc.automaton.chain_phrases import chain_phrase, chains, in_order
 from tltlc.automaton.fspa import Fspa
-from tltlc.automaton.memory import breaches_now
 from tltlc.automaton.remembered_formulas import (
     Answer,
     broken_rule,
     counted,
     from_robustness,
-    kept_rule,
+    kept_rules,
     names_read,
     opposite,
     remembered,
@@ -90,8 +89,7 @@ class Speaker:
         self._atoms = {item.name: item for item in fspa.atoms}
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
         self._phrases: dict[str, Phrase | None] = {}
-        kept = {name: kept_rule(value) for name, value in breaches_now(fspa).items() if name in self._atoms}
-        self._rules = {name: rule for name, rule in kept.items() if rule is not None}
+        self._rules = kept_rules(fspa)
         self._chains = chains(fspa)
         self._passed = self._passed_times()
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple, cast
 
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import breaches_now
 from tltlc.expression.tree import (
     AtomValue,
     Before,
@@ -104,7 +106,14 @@ def broken_rule(register: Register, registers: Mapping[str, Register]) -> tuple[
     return None if event is None or formula is None else (event, opposite(formula))
 
 
-def kept_rule(value: Expression) -> Formula | None:
+def kept_rules(fspa: Fspa) -> dict[str, Formula]:
+    """Map the name of each atom that says that a rule about this sample is broken to the rule."""
+    names = {item.name for item in fspa.atoms}
+    rules = {name: _kept_rule(value) for name, value in breaches_now(fspa).items() if name in names}
+    return {name: rule for name, rule in rules.items() if rule is not None}
+
+
+def _kept_rule(value: Expression) -> Formula | None:
     """Return the rule that is broken where a formula has this robustness; None for other expressions.
 
     ``!a | b`` becomes ``a -> b``: the two have the same robustness.
@@ -112,7 +121,7 @@ def kept_rule(value: Expression) -> Formula | None:
     if not isinstance(value, Op) or value.op not in ("min", "max"):
         literal = from_robustness(value)
         return None if literal is None else opposite(literal)
-    parts = [part for argument in value.args if (part := kept_rule(argument)) is not None]
+    parts = [part for argument in value.args if (part := _kept_rule(argument)) is not None]
     if len(parts) < len(value.args):
         return None
     if value.op == "max":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import re
 from random import Random
 from unittest.mock import patch
@@ -13,11 +14,14 @@ from tests.unfolded import unfolded
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
+from tltlc.monitor.samples import Samples
 from tltlc.resolve import specs
 from tltlc.tools.diff import relation as relation_module
 from tltlc.tools.diff.breaking import compare_versions
+from tltlc.tools.diff.broken_rules import conflicts
 from tltlc.tools.diff.diff_json import document
 from tltlc.tools.diff.pairs import FileDiff, diff
+from tltlc.tools.diff.relation import compare
 from tltlc.tools.diff.text import text
 from tltlc.tools.witness.blocks import given_values
 
@@ -201,3 +205,42 @@ def test_an_atom_that_follows_from_others_in_one_version_only_is_not_compared_by
     one = _fspa("keep calm", predicate.format("when seen: -1 otherwise: 1"))
     other = _fspa("keep calm  keep times(seen) <= 1", predicate.format("when times(seen, 5) > 2: -1 otherwise: 1"))
     assert compare_versions(one, other, 50_000).comparison.relation == "undecided"
+
+
+def rules_spec(*rules: str) -> Fspa:
+    """Return a spec with a timer and these rules about single samples."""
+    signals = "".join(f"signal {name}{number}: bool\n" for number in range(4) for name in "abc")
+    timer = "keep a0 implies eventually within 90 steps b0"
+    return compile_text(f"{signals}spec s {{ {timer} {' '.join(f'keep {rule}' for rule in rules)} }}")[0]
+
+
+def test_rules_in_guards_and_rules_with_an_atom_are_compared_exactly() -> None:
+    rules = [f"a{number} implies b{number} or c{number}" for number in range(4)]
+    few, many = rules_spec(*rules[:2]), rules_spec(*rules)
+    other_order = rules_spec(*(f"(c{number} or b{number}) or not a{number}" for number in range(4)))
+    assert "breach" not in {register.kind for register in few.registers}
+    assert "breach" in {register.kind for register in many.registers}
+    constants = rules_spec(*(f"a{number} implies (b{number} and true) or c{number}" for number in range(4)))
+    # The work does not allow to unfold the timer.
+    assert compare(few, many, work=50_000).relation == "stricter"
+    assert compare(many, few, work=50_000).relation == "looser"
+    assert compare(many, other_order, work=50_000).relation == "equivalent"
+    assert compare(many, constants, work=50_000).relation == "equivalent"
+
+
+def test_conflicts_of_a_broken_rule_meet_no_sample() -> None:
+    rules = ("a1 implies b1 or not c1", "a2 iff b2 and c2", "not (a3 and (b3 or c3))", "(a0 and b0) or c0")
+    fspa, generator = rules_spec(*rules), random.Random(4)
+    found = list(conflicts(fspa, (), ""))
+    assert len({name for conflict in found for name, _ in conflict if name.startswith("breach")}) == 4
+    samples = Samples(fspa, None, [])
+    for _ in range(200):
+        sample = {signal.name: generator.random() < 0.5 for signal in fspa.signals}
+        (values,) = samples.of_trace([sample])
+        holds = {atom.name: value > 0 for atom, value in zip(fspa.atoms, values.atoms, strict=True)}
+        assert not any(all(holds[name] == truth for name, truth in conflict) for conflict in found)
+        # The conflicts decide each of these atoms.
+        for name in holds:
+            if name.startswith("breach"):
+                flipped = {**holds, name: not holds[name]}
+                assert any(all(flipped[atom] == truth for atom, truth in conflict) for conflict in found)

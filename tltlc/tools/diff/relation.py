@@ -113,6 +113,11 @@ def compare(
     never = tuple(islice(_exclusive_pairs(groups, own_groups), work // _STEPS_OF_A_PAIR + 1))
     if len(never) > work // _STEPS_OF_A_PAIR:
         raise OutOfWork
+    if a.registers or b.registers:
+        from tltlc.tools.diff.broken_rules import conflicts
+
+        sides = zip(originals, (OF_A, OF_B), strict=True)
+        never += tuple(conflict for fspa, suffix in sides for conflict in conflicts(fspa, split_names, suffix))
     only_a, only_b = separating(a, b, work, never), separating(b, a, work, never)
     if (a.registers or b.registers) and (only_a or only_b):
         # The automata take atoms that follow from others for free. So they may differ where the specs do not.
