@@ -231,6 +231,15 @@ def test_each_kind_of_clause_has_its_phrase_in_the_text(clauses: str, phrase: st
     assert phrase in text(explain(fspa))
 
 
+def test_a_search_without_a_result_does_not_say_that_the_spec_cannot_be_met() -> None:
+    chain = "a then within 5 s b then within 5 s c then within 2 s (begins a) then within 5 s (times(b) > 3)"
+    signals = " ".join(f"signal {name}: bool" for name in "abc")
+    (fspa,) = compiler.compile_text(f"clock 60 Hz {signals} spec s {{ reach {chain} }}")
+    said = text(explain(fspa))
+    assert "A way to succeed\n  None was found.\n" in said
+    assert "What breaks it\n  Nothing breaks it for good.\n" in said
+
+
 @pytest.mark.parametrize("name", ["cover_and_hide", "navigation", "branching"])
 def test_explaining_takes_less_than_three_times_the_calls_of_compiling(name: str) -> None:
     source = read_source(ROOT / "examples" / f"{name}.tltl")

@@ -91,7 +91,8 @@ def _memory(explanation: Explanation) -> tuple[Section, ...]:
 
 def _failures(explanation: Explanation) -> tuple[str | SectionList, ...]:
     if not explanation.failures:
-        return ("Nothing breaks it for good." if explanation.succeed else "It cannot be met at all.",)
+        is_broken = explanation.states[0].verdict == "violated"
+        return ("It cannot be met at all." if is_broken else "Nothing breaks it for good.",)
     return (SectionList("", failure_texts(explanation)),)
 
 
