@@ -92,7 +92,6 @@ def test_times_may_stand_still_and_begin_anywhere() -> None:
         ("a,b,dt\n1,0,\n", "TLT0623"),
         ("a,b,dt\n1,0,soon\n", "TLT0623"),
         ("a,b,time\n1,0,nan\n", "TLT0623"),
-        ("a,b,time\n1,0,-1e308\n1,0,1e308\n", "TLT0623"),
         ('{"a":1,"b":0,"dt":null}\n', "TLT0623"),
         ('{"a":1,"b":0,"dt":"0.5"}\n', "TLT0623"),
         ('{"a":1,"b":0,"dt":[0.5]}\n', "TLT0623"),

@@ -316,7 +316,7 @@ class _Source:
         if once.get(states.LIMITING, _NO_LIMITING) != _NO_LIMITING:
             del once[states.LIMITING]
         if states.TARGET in variables_read(body):
-            del once[states.TARGET]
+            once.pop(states.TARGET, None)
         rest = [statement for statement in body if statement not in once.values()]
         results = [self._printer.result(once[name]) if name in once else name for name in self._results]
         return [*self._printer.lines(rest, depth), f"{INDENT * depth}return {', '.join(results)}"]

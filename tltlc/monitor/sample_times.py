@@ -75,7 +75,7 @@ class SampleTimes:
             self._first = time
             return None
         self.length_s = time - last
-        if time < last or (time == last and not self.varies) or (self.length_s == inf and self.varies):
+        if time < last or (time == last and not self.varies):
             return f"the time is {number_text(time)} s, and the sample before is at {number_text(last)} s"
         return None if self._clock_s is None else self._clock_problem(count, last, time, self._clock_s)
 
