@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Notation, State, Text
-from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.memory_phrases import Speaker
 from tltlc.automaton.text import label_range_text, label_text
 from tltlc.backends.drawing.timers import Timer
 from tltlc.expression.tree import SignalValue
@@ -47,16 +47,16 @@ def full_label(fspa: Fspa, run: Sequence[State], notation: Notation) -> str:
 
 
 def _rows(fspa: Fspa, label: Formula, timers: Mapping[str, Timer]) -> tuple[str, ...]:
-    endless = fspa.semantics == "infinite"
+    endless, speaker = fspa.semantics == "infinite", Speaker(fspa)
     parts = label.args if label.op == "and" else (label,)
     goals = [part for part in parts if part.op != "G"]
     rules = [rule for part in parts if part.op == "G" for rule in _conjuncts(part.args[0])]
     due = _due_atoms(fspa)
     rules = [rule for rule in rules if not (_asks_for_next(rule) and rule.args[0].name in due)]
     rules.sort(key=_asks_for_next)
-    rows = [english_text(spoken(and_(*goals), fspa), endless=endless)] if goals else []
+    rows = [english_text(speaker.spoken(and_(*goals)), endless=endless)] if goals else []
     measured = {not_(atom(name)): timer for name, timer in timers.items()}
-    texts = [str(measured[rule]) if rule in measured else _rule(spoken(rule, fspa), endless) for rule in rules]
+    texts = [str(measured[rule]) if rule in measured else _rule(speaker.spoken(rule), endless) for rule in rules]
     others = _distinct(timer for rule, timer in measured.items() if rule not in rules)
     if len(texts) == 1:
         return (*rows, texts[0] if rules[0] in measured else f"Always: {texts[0]}", *others)
