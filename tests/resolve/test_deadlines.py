@@ -50,6 +50,9 @@ RULES = {
         "require eventually (a and next eventually within {n} steps (b and next eventually c))"
     ),
     "a chain by a deadline": "require eventually within {n} steps (a and next eventually within {m} steps b)",
+    "an avoided sequence": "avoid a then within {n} steps b",
+    "an avoided answer": "keep a implies not eventually within {n} steps b",
+    "an avoided sequence of three": "avoid a then within {n} steps b then within {m} steps c",
     "a forbidden chain": "require not eventually (a and next eventually within {n} steps b)",
 }
 """For each form with a rule, a clause. In the text, ``n`` and ``m`` are bounds, ``m`` at most ``n``."""

@@ -13,6 +13,7 @@ at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``, or `
 at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
 at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
 at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
+at the first sample       ``G !F(p & X F[0,n-1] q)`` is ``G !(q & p at most n steps ago)``, also for more goals
 anywhere                  ``F(p & X F[0,n-1] f)`` is ``F(p & X(!passed(n, p) U f))``
 anywhere                  ``F(p & F[0,n] f)`` is ``F(p & (!passed(n, p) U f))``
 at the first sample       a long chain of the last two is ``F chain`` (:mod:`tltlc.resolve.chains`)
@@ -248,8 +249,8 @@ class _StepRewriting(Rewriting):
 
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
         temporal = [part for part in clause if not is_present(part)]
-        if len(clause) == 1 and clause[0].op == "not" and self._is_long(clause[0].args[0]):
-            return not_(self.at_start(clause[0].args[0]))  # `G !F f` is `!F f`.
+        if len(clause) == 1 and clause[0].op == "not" and clause[0].args[0].op == "F":
+            return self._never(clause[0].args[0])
         window = window_of(temporal[0]) if len(temporal) == 1 else None
         if window is None or window.low > 1 or window.high == 0:
             return None
@@ -261,6 +262,15 @@ class _StepRewriting(Rewriting):
             return and_(always(not_(late)), always(implies(due, next_(TRUE))))
         rule = always(not_(self._timers.breach(window.low, window.high, request, window.body)))
         return and_(rule, always(implies(self._timers.now(request), next_(TRUE)))) if window.exists else rule
+
+    def _never(self, node: Formula) -> Formula | None:
+        """Return ``G !node`` for a chain ``node``: that its last goal never comes in time."""
+        found = segments(node.args[0], self.fits)
+        if is_long(found):
+            return not_(self.at_start(node))  # `G !F f` is `!F f`.
+        if len(found) != 1 or found[0].rest is not None or len(found[0].goals) < 2:
+            return None
+        return always(not_(timed_goals(found[0], self._timers, None)[-1].event))
 
     def dual(self, inner: Formula, operand: Formula) -> Formula | None:
         bound = bound_of(inner)

@@ -15,6 +15,7 @@ at the first sample             ``G(p -> F[T] q)`` is ``G !late & G(due -> X tru
 at the first sample             ``G(p -> G[T] q)`` is ``G !breach``
 at the first sample             ``G(p -> X f)``, f as above, is the same of ``previously p``, & ``G(p -> X true)``
 at the first sample             ``G(p -> !F[T] f)`` is ``!F(p & F[T] f)``
+at the first sample             ``G !F(p & F[T] q)`` is ``G !(q & lately)``; ``recent`` for ``F[later, T]``
 anywhere                        ``F(p & F[later, T] f)`` is ``F(p & X(recent U (recent & f)))``
 anywhere                        ``F(p & F[T] f)`` is ``F(p & (lately U (lately & f)))``
 ==============================  ==============================================================
@@ -102,9 +103,10 @@ class _TimedRewriting(Rewriting):
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
         temporal = [part for part in clause if not is_present(part)]
         window = _window(temporal[0]) if len(temporal) == 1 else None
-        event = and_(*(negated(part) for part in clause if part not in temporal))
-        if len(temporal) == 1 and temporal[0].op == "not" and time_bound_of(temporal[0].args[0]) is not None:
-            return not_(eventually(self.anchored(and_(event, temporal[0].args[0]), None)))
+        given = [negated(part) for part in clause if part not in temporal]
+        event = and_(*given)
+        if len(temporal) == 1 and temporal[0].op == "not":
+            return self._never(and_(*given, temporal[0].args[0]))
         if window is None or window.later:
             return None
         if not self.fits(event, window.body):
@@ -133,6 +135,31 @@ class _TimedRewriting(Rewriting):
         in_time = f"within {self._timers.time(window.seconds)} after {event_words}"
         waiting = until(recent, and_(recent, self.anchored(window.body, Reached(recent, in_time))))
         return and_(*present, next_(waiting) if window.later else waiting)
+
+    def _never(self, body: Formula) -> Formula | None:
+        """Return ``G !body`` for a chain ``body`` or ``F body``: that its last goal never comes in time."""
+        chain = body.args[0] if body.op == "F" else body
+        goal = self._last_goal(chain, None)
+        if goal is not None:
+            return always(not_(goal))
+        is_timed = body.op == "and" and any(time_bound_of(part) is not None for part in body.args)
+        return not_(eventually(self.anchored(body, None))) if is_timed else None
+
+    def _last_goal(self, body: Formula, reached: Reached | None) -> Formula | None:
+        """Return what holds where all goals of the chain ``F body`` came in time; None if ``body`` is no chain."""
+        parts = body.args if body.op == "and" else (body,)
+        temporal = [part for part in parts if not is_present(part)]
+        present = [part for part in parts if part not in temporal]
+        goal = and_(*present) if reached is None else and_(*present, reached.formula)
+        if not temporal:
+            return None if reached is None else goal
+        window = _window(temporal[0]) if len(temporal) == 1 else None
+        if window is None or window.op != "F" or window.following or not present or not self.fits(goal):
+            return None
+        words = self._timers.text(and_(*present)) + ("" if reached is None else f" {reached.words}")
+        recent = self._timers.recent(window.seconds, goal, words, before=window.later)
+        in_time = f"within {self._timers.time(window.seconds)} after {words}"
+        return self._last_goal(window.body, Reached(recent, in_time))
 
     def dual(self, inner: Formula, operand: Formula) -> Formula | None:
         # `F` includes the end of its time and `G` does not, so neither is the negation of the other.

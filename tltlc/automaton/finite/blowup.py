@@ -16,7 +16,6 @@ from tltlc.automaton.transitions import TransitionDiagrams
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.io.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.resolve.chains import MOST_GOALS
 from tltlc.resolve.spec import Bound, Conjunct, Spec
 
 ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
@@ -116,6 +115,8 @@ def error_with_clauses(
         labels = tuple(
             Label(part.source, part.span, f"{measured.words} alone; the parts multiply") for part, measured in worst[:3]
         )
+    from tltlc.resolve.chains import MOST_GOALS  # Back ends, which need `recursion_room`, load less without it.
+
     times = max((_times_in_sequence(part, spec) for part in alone or sizes), default=0)
     if isinstance(reason, TooManyPrimes):
         advice = _sequence_advice(times) if times >= MOST_GOALS else _guard_advice(spec, reason)
