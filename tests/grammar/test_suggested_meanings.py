@@ -83,6 +83,11 @@ def is_answered(trace: Trace) -> bool:
     return all(any(a(trace)[i : i + 3]) for i, event in enumerate(b(trace)) if event)
 
 
+def is_absent(trace: Trace) -> bool:
+    """Whether a holds neither at a b, nor at one of the two steps after it."""
+    return not any(any(a(trace)[i : i + 3]) for i, event in enumerate(b(trace)) if event)
+
+
 def begins_twice_in_time(trace: Trace) -> bool:
     """Whether a begins to hold at two steps, the second one of the two steps after the first."""
     begun = starts(trace)
@@ -108,7 +113,15 @@ MEANINGS: Mapping[str, Meaning] = {
     "reach a within 2 s after b": lambda t: any(
         i < j <= i + 2 for i, event in enumerate(b(t)) if event for j, goal in enumerate(a(t)) if goal
     ),
-    "avoid a within 2 s after b": lambda t: not any(any(a(t)[i : i + 3]) for i, event in enumerate(b(t)) if event),
+    "avoid a within 2 s after b": is_absent,
+    "keep not a within 2 s after b": is_absent,
+    "require not a within 2 s of b": is_absent,
+    "not (a) within 2 s of b": is_absent,
+    "after b, not a within 2 s": is_absent,
+    "keep whenever b, not a within 2 s": is_absent,
+    "keep if b, not a within 2 s": is_absent,
+    "keep if b then not a within 2 s": is_absent,
+    "keep within 2 s after b, not a": is_absent,
     "keep after b, a for 2 s": lambda t: all(all(a(t)[i : i + 2]) for i, event in enumerate(b(t)) if event),
     "reach a within 2 seconds": lambda t: any(a(t)[:3]),
     "keep a for 2 seconds": lambda t: all(a(t)[:2]),
@@ -253,3 +266,19 @@ def test_a_count_within_a_time_that_the_language_cannot_say_says_so() -> None:
     assert error.help == (
         "`times(a)` counts from the first step on: let the game count within a time, and supply the number"
     )
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        "keep not a and b within 2 s of b",
+        "keep b and not a within 2 s of b",
+        "keep not not a within 2 s of b",
+        "reach not a within 2 s of b",
+        "avoid not a within 2 s of b",
+    ],
+)
+def test_an_unclear_negation_within_a_time_gets_no_fix(clause: str) -> None:
+    _, error = error_of(clause)
+    assert error.fixes == ()
+    assert not re.search(r"\bb\b", error.help or "")

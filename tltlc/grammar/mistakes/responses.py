@@ -10,18 +10,19 @@ from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL
-from tltlc.grammar.mistakes.parse_failure import UNTILS, ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.parse_failure import INFIX, UNTILS, ParseFailure, outer_indices, quote_token
 from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of
 
 _EVENTS: Final = ("after", "when", "whenever", "if")
 _TIMES: Final = ("within", "in")
 _RULE: Final = "keep within {t} of {a}, {b}"
+_ABSENCE: Final = "keep {a} implies not eventually within {t} {b}"
 _FORMS: Final = {
     "keep": _RULE,
     "require": _RULE,
     "": _RULE,
     "reach": "reach {a} then within {t} {b}",
-    "avoid": "keep {a} implies not eventually within {t} {b}",
+    "avoid": _ABSENCE,
 }
 """How to write that ``b`` answers ``a`` within the time ``t``, by the keyword of the clause."""
 _LASTING: Final = dict.fromkeys(("keep", "require", ""), "keep {a} implies always for {t} {b}")
@@ -52,6 +53,11 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
     if not is_state or tokens[word].text in declared_names(failure.source).names:
         return None
     form = forms[keyword]
+    if forms is _FORMS and any(tokens[index].type == "NOT" for index in outer_indices(tokens, *answer)):
+        # `not b within 5 s` asks that no step of the 5 s has b, and `within 5 s of a, not b` for a step without b.
+        if form != _RULE or not _is_negation(failure, *answer):
+            return None
+        form, answer = _ABSENCE, (answer[0] + 1, answer[1])
     text = text_of if form == _RULE else operand_text
     said = form.format(a=text(failure, *event), b=text(failure, *answer), t=time)
     title = f"{quote_token(tokens[word])} is not an operator"
@@ -101,6 +107,12 @@ def _separator(failure: ParseFailure, start: int, stop: int) -> int | None:
     commas = [index for index in outer if failure.tokens[index].type == "COMMA"]
     separators = commas or [index for index in outer if failure.tokens[index].type == "THEN"]
     return separators[0] if len(separators) == 1 else None
+
+
+def _is_negation(failure: ParseFailure, begin: int, end: int) -> bool:
+    """Whether the tokens from one index to another are `not` and one operand."""
+    rest = [failure.tokens[index].type for index in outer_indices(failure.tokens, begin + 1, end)]
+    return failure.tokens[begin].type == "NOT" and bool(rest) and not any(kind in INFIX | {"NOT"} for kind in rest)
 
 
 def _is_state(failure: ParseFailure, begin: int, end: int) -> bool:
