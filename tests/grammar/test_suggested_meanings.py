@@ -30,6 +30,7 @@ signal coins in [0, 3]
 entity door
 signal has(x: entity): bool
 """
+VARIES = NAMES.replace("clock 1 Hz", "clock varies")
 LONGEST = {1: 7, 2: 4}
 """The greatest length of the traces, by how many of a and b the clauses name."""
 
@@ -48,19 +49,19 @@ def starts(trace: Trace) -> list[int]:
     return [i for i in range(len(holds)) if holds[i] and not (i and holds[i - 1])]
 
 
-def error_of(clause: str) -> tuple[str, Diagnostic]:
-    text = f"{NAMES}spec s {{ {clause} }}"
+def error_of(clause: str, names: str = NAMES) -> tuple[str, Diagnostic]:
+    text = f"{names}spec s {{ {clause} }}"
     with pytest.raises(TltlError) as failure:
         compile_text(text)
     return text, failure.value.diagnostics[0]
 
 
-def suggestions(clause: str) -> Iterator[str]:
+def suggestions(clause: str, names: str = NAMES) -> Iterator[str]:
     """Yield the clauses with which a help replaces a clause: that of its fix, else each one that it quotes."""
-    text, error = error_of(clause)
+    text, error = error_of(clause, names)
     if error.fixes:
         fixed = apply_edits(SourceFile("a.tltl", text), error.fixes[0].edits).text
-        yield fixed.removeprefix(f"{NAMES}spec s {{").removesuffix("}")
+        yield fixed.removeprefix(f"{names}spec s {{").removesuffix("}")
         return
     for quoted in re.findall("`([^`]*)`", error.help or ""):
         yield quoted if quoted.split()[0] in ("keep", "reach", "avoid", "require") else f"require {quoted}"
@@ -163,6 +164,22 @@ MEANINGS: Mapping[str, Meaning] = {
 def test_a_suggestion_has_the_meaning_of_the_sentence(clause: str, meaning: Meaning) -> None:
     (suggestion,) = suggestions(clause)
     check(suggestion, meaning)
+
+
+@pytest.mark.parametrize(
+    "clause", ["never a twice within 2 s", "avoid a twice in 2 s", "keep a no more than once in 2 s"]
+)
+def test_a_count_within_a_time_counts_from_the_first_beginning_where_the_clock_varies(clause: str) -> None:
+    (suggestion,) = suggestions(clause, VARIES)
+    (fspa,) = compile_text(f"{VARIES}spec s {{ {suggestion} }}")
+    for values, lengths in product(product((False, True), repeat=5), product((0.5, 1.0, 2.0), repeat=4)):
+        monitor, time, begun, is_kept = Monitor(fspa), 0.0, [], True
+        for i, (value, dt) in enumerate(zip(values, (1.0, *lengths), strict=True)):
+            time += dt
+            if value and not (i and values[i - 1]):
+                is_kept &= all(time - earlier > 2 for earlier in begun)
+                begun.append(time)
+            assert monitor.step({"a": value}, dt).accepting == is_kept, (values, lengths)
 
 
 @pytest.mark.parametrize(

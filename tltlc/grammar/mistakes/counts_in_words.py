@@ -144,7 +144,7 @@ def _within_time(keyword: str, operand: str, sign: str, count: _Count) -> str:
     """Return the help for a count within a time, such as `never seen twice within 10 s`."""
     key, time = (sign, count.number), count.time
     if (keyword in ("avoid", "never") and key in _TWICE) or (keyword in ("keep", "require") and key in _AT_MOST_ONCE):
-        return f"write `keep begins {operand} implies weak_next always for {time} not begins {operand}`"
+        return f"write `avoid (begins {operand}) then within {time} (begins {operand})`"
     if keyword == "reach" and key in _TWICE:
         return f"write `reach begins {operand} then within {time} begins {operand}`"
     return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
