@@ -299,3 +299,43 @@ def test_an_unclear_negation_within_a_time_gets_no_fix(clause: str) -> None:
     _, error = error_of(clause)
     assert error.fixes == ()
     assert not re.search(r"\bb\b", error.help or "")
+
+
+@pytest.mark.parametrize(
+    "clause",
+    [
+        *(
+            "reach b after 10 s",
+            "reach a then after 5 s b",
+            "keep after 5 s a",
+            "keep a after 5 s",
+            "avoid a after 5 s",
+        ),
+        *("reach a then b for 5 steps", "reach b within 20", "reach b within 20 frames", "keep a until 5 steps"),
+        *("require eventually within 20 a", "require eventually within 20 frames a", "require eventually [20] a"),
+        *("keep a implies once [0, 20] b", "keep a implies b for 3 steps", "keep a implies b in the last 5 steps"),
+        *(
+            "avoid a twice in 10 steps",
+            "keep a within 5 steps of b",
+            "limit: 20 s",
+            "require next[3] a",
+            "a within 1 s",
+        ),
+    ],
+)
+def test_no_help_needs_a_fixed_clock_where_the_clock_varies(clause: str) -> None:
+    _, error = error_of(clause, VARIES)
+    assert error.fixes == ()
+    assert error.help
+    quoted = re.findall("`([^`]*)`", error.help)
+    # A limit may be in steps.
+    texts = [text for text in quoted if text not in ("clock 60 Hz", "clock varies", "limit 400 steps")]
+    assert not any(re.search(r"step|after|\[|^limit", text) for text in texts), error.help
+
+
+@pytest.mark.parametrize("names", [NAMES, VARIES])
+@pytest.mark.parametrize("clause", ["keep a implies (b within 3 s)", "keep not a within 3 s"])
+def test_a_help_shows_the_time_that_was_written(clause: str, names: str) -> None:
+    _, error = error_of(clause, names)
+    assert error.fixes == ()
+    assert error.help == "write `eventually within 3 s a` for `a within 3 s`"

@@ -12,6 +12,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar import tree
 from tltlc.grammar.keywords import JUDGE, SEMANTICS, VERDICTS, closest_word
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.then_rule import check_then
 from tltlc.grammar.tree import Declaration, Expr
 from tltlc.grammar.walk import expressions, parts
@@ -29,6 +30,19 @@ _BOUND_HELP: Final = {
     "begins": "`once within 20 steps begins p`, or `begins p` without a bound",
     "ends": "`once within 20 steps ends p`, or `ends p` without a bound",
 }
+
+_VARYING_BOUND_HELP: Final = {
+    "F": "`eventually within 2 s p`",
+    "G": "`always for 2 s p`",
+    "X": "`next p` without a bound",
+    "N": "`weak_next p` without a bound",
+    "once": "`once within 2 s p`",
+    "historically": "`historically for 2 s p`",
+    "previously": "`once within 2 s p`, or `previously p` without a bound",
+    "begins": "`once within 2 s begins p`, or `begins p` without a bound",
+    "ends": "`once within 2 s ends p`, or `ends p` without a bound",
+}
+"""How to write bounds where the clock varies."""
 
 
 def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
@@ -77,7 +91,8 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalIn
     operator = source.slice(formula.op_span)
     form = f"with `{word}`" if bound.words else "in brackets"
     title = f"`{operator}` takes no bound {form}"
-    yield _error(source, "TLT0111", title, bound.span, f"write {_BOUND_HELP[formula.op]}")
+    help_ = (_VARYING_BOUND_HELP if declared_names(source).clock_varies else _BOUND_HELP)[formula.op]
+    yield _error(source, "TLT0111", title, bound.span, f"write {help_}")
 
 
 def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:

@@ -55,7 +55,7 @@ _BEHIND_THEN: Final = (
 )
 _IN_TIME: Final = (
     "`{limit}` ends every episode at that time; to give a formula a time, write it after the operator: "
-    "`require eventually within {time} a`, `require always for {time} a`, `require next after {time} a`"
+    "`require eventually within {time} a`, `require always for {time} a`"
 )
 _LIMITS: Final = frozenset(
     tuple(phrase.split())
@@ -364,7 +364,11 @@ def _limit_error(failure: ParseFailure, title: str) -> Diagnostic | None:
     first = tokens[0]
     if len(tokens) > _FEW or (first.type == "NAME" and closest_word(first.text, tuple(CLAUSES))):
         return None
-    return failure.error(code, title, _IN_TIME.format(limit=text, time=f"{numbers[0].text} {unit}"))
+    time = f"{numbers[0].text} {unit}"
+    if failure.clock_varies:
+        is_steps = unit in ("step", "steps")
+        text, time = (text, "2 s") if is_steps else ("limit 400 steps", time)
+    return failure.error(code, title, _IN_TIME.format(limit=text, time=time))
 
 
 def _is_own_line(failure: ParseFailure) -> bool:

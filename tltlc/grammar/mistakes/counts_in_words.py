@@ -9,7 +9,7 @@ from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.mistakes.declared_names import declared_names
-from tltlc.grammar.mistakes.english_rewrite import clause_keyword
+from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import (
@@ -122,7 +122,9 @@ def _error(
     has_default = keyword in ("reach", "avoid", "never") and not count.sign
     sign = ">=" if has_default else count.sign
     if count.time:
-        help_ = _within_time(keyword if is_whole else "", operand, sign or ">=", count)
+        help_ = FIXED_CLOCK
+        if not failure.lacks_fixed_clock(count.time):
+            help_ = _within_time(keyword if is_whole else "", operand, sign or ">=", count)
     elif count.number == "1" and (sign or ">=") == ">=" and keyword in ("keep", "reach", "require") and is_whole:
         help_ = f"write `reach {operand}`"
     elif (form := _CLAUSES.get((keyword, sign))) and is_whole:

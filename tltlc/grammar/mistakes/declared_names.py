@@ -35,10 +35,14 @@ class DeclaredName:
 
 @record
 class DeclaredNames:
-    """The names that a text declares, and whether it declares a clock and imports names of other files."""
+    """The names that a text declares, and whether it declares a clock and imports names of other files.
+
+    ``has_clock`` is that of a clock with a rate, ``clock_varies`` that of `clock varies`.
+    """
 
     names: Mapping[str, DeclaredName]
     has_clock: bool
+    clock_varies: bool
     has_imports: bool
 
     def type_of(self, name: str) -> str:
@@ -57,14 +61,15 @@ def declared_names(source: SourceFile) -> DeclaredNames:
 @lru_cache(maxsize=1)
 def _declared_names(text: str) -> DeclaredNames:
     names: dict[str, DeclaredName] = {}
-    has_clock = has_imports = False
+    has_clock = clock_varies = has_imports = False
     for piece in declarations(SourceFile("", text, "text"), tokenize(text).tokens[:-1]):
         kind = piece[0].type
         has_imports |= kind == "IMPORT"
         has_clock |= kind == "CLOCK" and len(piece) > 1 and piece[1].type == "NUMBER"
+        clock_varies |= kind == "CLOCK" and len(piece) > 1 and piece[1].text == "varies"
         for name, declared in _declared_by(piece):
             names.setdefault(name, declared)
-    return DeclaredNames(names, has_clock, has_imports)
+    return DeclaredNames(names, has_clock, clock_varies, has_imports)
 
 
 def _declared_by(piece: Sequence[Token]) -> Iterator[tuple[str, DeclaredName]]:

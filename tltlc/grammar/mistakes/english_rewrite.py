@@ -18,17 +18,20 @@ _REASONS: Final = {
     ("for", "reach"): "; `always for` requires nothing after the end of play, so `next after` requires the last step",
 }
 _WHERE: Final = ": where `{b}` holds, `{a}` must hold, too"
+FIXED_CLOCK: Final = "this needs a fixed clock: declare the rate of the game, e.g. `clock 60 Hz`"
 REAL_TIME: Final = ("s", "ms", "min", "h")
 """The units of times in the language, apart from steps."""
 _ONCE: Final = "; to require it at every step, write a clause `keep {b} implies {a}`"
 
 
-def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: Form, parts: Parts | None) -> Diagnostic:
+def rewrite_error(
+    failure: ParseFailure, at: int, part: tuple[int, int], form: Form, parts: Parts | None, time: Time | None = None
+) -> Diagnostic:
     """Return the error for the English word at index ``at``, which suggests to write ``form`` instead.
 
     ``part`` is the range of token indices to be replaced. ``parts`` are the texts that ``form`` needs;
     None if the phrase may mean several things. Then the error has no fix, and its help shows the form
-    with the letters a, b and c.
+    with the letters a, b and c. ``time`` is the time in the phrase, None if it has no certain unit.
     """
     word, kind = failure.tokens[at], clause_keyword(failure)
     title = f"{quote_token(word)} is not an operator" if at else f"a clause cannot begin with {quote_token(word)}"
@@ -49,7 +52,7 @@ def rewrite_error(failure: ParseFailure, at: int, part: tuple[int, int], form: F
         diagnostic = suggest_rewrite(failure, start, stop, text, title, reason.format(a=parts.a, b=parts.b), code)
         if diagnostic:
             return diagnostic
-    return failure.error(code, title, _general_help(failure, at, form), span=word.span)
+    return failure.error(code, title, _general_help(failure, at, form, time), span=word.span)
 
 
 @record
@@ -102,10 +105,12 @@ class Parts:
         return f"{form.clause} {formula}" if form.clause else formula
 
 
-def _general_help(failure: ParseFailure, at: int, form: Form) -> str:
+def _general_help(failure: ParseFailure, at: int, form: Form, written: Time | None) -> str:
     """Return a help text that shows ``form`` with the letters a, b and c: "write `b implies a` for `a if b`"."""
     word, is_timed, is_prefix = failure.tokens[at].text, form in TIMED, at == 0 or at < failure.stop.index
-    time = Time("3", "s") if form == HOLDING else Time("20", "steps") if is_timed else None
+    time = _example_time(failure, form, written) if is_timed else None
+    if time and failure.lacks_fixed_clock(form.formula):
+        return FIXED_CLOCK
     parts = Parts("a", time.text if time else "b", "c", time)
     infix = "followed by" if word == "followed" else word
     english = f"{word} {parts.b}, a" if is_prefix else f"a {infix} {parts.b}"
@@ -161,6 +166,14 @@ def _is_of_every_step(failure: ParseFailure, at: int) -> bool:
     """
     is_kept = failure.tokens[0].text == "keep" and failure.start == "clause"
     return at == 0 or ((is_kept or has_always_before(failure)) and is_clear_here(failure, failure.tokens[at].text))
+
+
+def _example_time(failure: ParseFailure, form: Form, written: Time | None) -> Time:
+    """Return the time with which a help shows a form: the written one where the form and the clock can have it."""
+    fits_form = written is not None and (written.steps is not None or "{less}" not in form.formula)
+    if written and fits_form and not _is_zero(written) and (written.is_real or not failure.clock_varies):
+        return written
+    return Time("3", "s") if form == HOLDING else Time("2", "s") if failure.clock_varies else Time("20", "steps")
 
 
 def _is_zero(time: Time) -> bool:

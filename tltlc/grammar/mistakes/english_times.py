@@ -10,7 +10,15 @@ from tltlc.grammar.keywords import OPERATORS, UNITS_ELSEWHERE
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_forms import AFTER_TIME, FOR_TIME, HOLDING, IN_TIME, PAST_TIME, Forms
-from tltlc.grammar.mistakes.english_rewrite import REAL_TIME, Parts, Time, clause_keyword, goal_starts, rewrite_error
+from tltlc.grammar.mistakes.english_rewrite import (
+    FIXED_CLOCK,
+    REAL_TIME,
+    Parts,
+    Time,
+    clause_keyword,
+    goal_starts,
+    rewrite_error,
+)
 from tltlc.grammar.mistakes.one_reading import (
     QUANTIFIERS,
     TEMPORAL,
@@ -36,6 +44,7 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     goals, stop = goal_starts(failure, at), formula_stop(failure)
     begin = goals[-1]
     time, end, is_clear_unit = _read_time(failure, at + 1)
+    written = time if is_clear_unit else None
     if len(goals) > 1:
         before = operand_text(failure, goals[-2], begin - 1)
         is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
@@ -57,14 +66,14 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     if past is not None:
         is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator + 1, at)
         parts = Parts(operand_text(failure, operator + 1, at), time.text, "", time)
-        return rewrite_error(failure, at, (operator, stop), past, parts if is_clear else None)
+        return rewrite_error(failure, at, (operator, stop), past, parts if is_clear else None, written)
     if kind == "keep" and forms is FOR_TIME and last is not None and failure.tokens[last].type == "IMPLIES":
         return _holding_error(failure, operand_text(failure, operator, at), time)
     if kind != "keep":
         is_clear = is_clear and failure.tokens[begin].type not in _UNARY
     is_clear = is_clear and is_clear_unit and end == stop and _is_clear_operand(failure, begin, at)
     parts = Parts(operand_text(failure, begin, at), time.text, before, time)
-    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
+    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None, written)
 
 
 def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnostic:
@@ -75,6 +84,7 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     """
     stop, kind, first = formula_stop(failure), clause_keyword(failure), formula_start(failure)
     time, second, is_clear_unit = _read_time(failure, at + 1)
+    written = time if is_clear_unit else None
     before, start = "", at
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if at == first:
@@ -94,11 +104,13 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
         is_clear = is_clear and _is_clear_time(failure, at, forms)
         is_clear = is_clear and not has_token(failure, first, stop, {*TEMPORAL, "AND", "OR"})
     parts = Parts(operand_text(failure, second, stop), time.text, before, time)
-    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None)
+    return rewrite_error(failure, at, (start, stop), form, parts if is_clear else None, written)
 
 
 def _holding_error(failure: ParseFailure, operand: str, time: Time) -> Diagnostic:
     """Return the error for a time for which something holds where a rule asks for it: `keep a implies b for 3 s`."""
+    if failure.lacks_fixed_clock(time.text):
+        return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", FIXED_CLOCK)
     in_steps = f"historically for {time.text} {operand}"
     so_far = f"time_holding({operand}) >= {time.text}" if time.is_real else in_steps
     help_ = (
@@ -148,6 +160,9 @@ def until_time(failure: ParseFailure) -> Diagnostic | None:
     if at < 2 or written is None or tokens[at - 1].type not in ("UNTIL", "WEAK_UNTIL"):
         return None
     time, end = written[0].text, written[1]
+    if failure.lacks_fixed_clock(time):
+        title = f"{quote_token(tokens[at - 1])} stands between two formulas, and `{time}` is a bound in steps"
+        return failure.error("TLT0101", title, "write `always for 2 s a` for `a until 2 s`", span=tokens[at - 1].span)
     word, start, keyword = tokens[at - 1], formula_start(failure), clause_keyword(failure)
     title = f"{quote_token(word)} stands between two formulas, and `{time}` is a time"
     last = last_index_of(failure, INFIX - {word.type}, start)
@@ -173,9 +188,10 @@ def until_time(failure: ParseFailure) -> Diagnostic | None:
 def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:
     """Return the time that begins at index ``at``, the index after the time, and whether its unit is certain.
 
-    A time without a known unit counts in steps. This is certain unless the file declares a clock.
+    A time without a known unit counts in steps. This is certain unless the file declares a clock, or one that varies.
     """
     unit = failure.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
-    is_clear = bool(known) or not declared_names(failure.source).has_clock
+    declared = declared_names(failure.source)
+    is_clear = bool(known) or not (declared.has_clock or declared.clock_varies)
     return Time(failure.tokens[at].text, known or "steps"), at + 1 + bool(known), is_clear

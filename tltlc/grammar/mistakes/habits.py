@@ -103,6 +103,10 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
             f"for a ratio, write `{number.text} %`, which is {number.text}/100; otherwise write `{number.text}` alone"
         )
         return failure.error("TLT0111", title, help_)
+    if known and failure.lacks_fixed_clock(f"{number.text} {known}"):
+        return failure.error(
+            "TLT0111", title, f"with `clock varies`, write a time: `{number.text} s`, `{number.text} ms`"
+        )
     if known:
         text = f"{number.text} {known}"
         return failure.error("TLT0111", title, None, f"write `{text}`", span_of([number, token]), write=text)

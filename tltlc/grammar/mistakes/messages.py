@@ -20,6 +20,7 @@ from tltlc.grammar.mistakes.comparison_words import comparison_in_words
 from tltlc.grammar.mistakes.counts_in_words import never_counted
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english import plain_english
+from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import until_time
 from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
@@ -120,12 +121,16 @@ def _wrong_bound(failure: ParseFailure) -> Diagnostic | None:
     before = failure.previous_token
     if failure.token.type == "NAME" and before and _is_bound(failure):
         example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
+        if failure.clock_varies:
+            example = "eventually within 2 s p"
         title = f"a bound must be a number, but {quote_token(failure.token)} is a name"
         return failure.error("TLT0111", title, f"write the number, e.g. `{example}`")
     if before and before.text in ("[", ",") and "NUMBER" in failure.allowed_terminals and _is_bound(failure):
         return _bound_without_number(failure)
     if failure.allowed_terminals == {"UNIT"} and before:
         help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
+        if failure.clock_varies:
+            help_ = f"with `clock varies`, write a time: `{before.text} s`, `{before.text} ms`"
         title = f"expected a unit after {quote_token(before)}"
         write = None if declared_names(failure.source).has_clock else f"{before.text} steps"
         return failure.error("TLT0111", title, help_, span=before.span, write=write)
@@ -158,6 +163,8 @@ def _bound_with_one_end(failure: ParseFailure) -> Diagnostic:
     """Return the error for a bound in brackets with one number: ``F[20] p``, ``next[20] p``."""
     opening = _opening_index(failure)
     operator, number = failure.tokens[opening - 1], text_of(failure, opening + 1, failure.stop.index)
+    if failure.clock_varies:
+        return failure.error("TLT0111", "a bound in brackets needs two ends", FIXED_CLOCK)
     if operator.type in _NEXTS:
         word = "next" if operator.type == "NEXT" else "weak_next"
         time = f"{number} steps" if number.isdecimal() else number

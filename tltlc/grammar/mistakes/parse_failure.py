@@ -11,7 +11,8 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
 from tltlc.grammar import lalr
 from tltlc.grammar.keywords import CLAUSES, DECLARATIONS, TEST_ITEMS
-from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.lexer import END, Token, tokenize
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.tables import load
 
 KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
@@ -106,15 +107,30 @@ class ParseFailure:
         """Return an error at ``span``, with ``message`` under its caret.
 
         Without ``span``, the error is at :attr:`token`, or at the last token if the piece ends too
-        early. The error has a fix that replaces the span by ``write``, unless ``write`` is None or the
-        span contains a comment.
+        early. The error has a fix that replaces the span by ``write``, unless ``write`` is None or needs
+        a fixed clock that the file does not have, or the span contains a comment.
         """
         if span is None:
             span = self.previous_token.span if self.is_at_end and self.previous_token else self.token.span
-        fixes = (
-            (replacement_fix(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
-        )
+        is_fix = write is not None and not self._has_comment(span) and not self.lacks_fixed_clock(write)
+        fixes = (replacement_fix(self.source, span, write),) if is_fix and write is not None else ()
         return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
+
+    @property
+    def clock_varies(self) -> bool:
+        """Whether the file declares `clock varies`."""
+        return declared_names(self.source).clock_varies
+
+    def lacks_fixed_clock(self, text: str) -> bool:
+        """Whether the clock varies, and a part of the piece, as in ``next after 2 s a``, needs a fixed clock."""
+        if not self.clock_varies or self.start == "test_item":
+            return False
+        tokens = tokenize(text).tokens
+        units = {unit.text for number, unit in pairwise(tokens) if number.type == "NUMBER" and unit.type != END}
+        if "LIMIT" in (self.tokens[0].type, tokens[0].type):
+            return bool(units & {"ms", "s", "min", "h"})
+        delays = any(a.type in ("NEXT", "WEAK_NEXT") and b.text == "after" for a, b in pairwise(tokens))
+        return delays or bool(units & {"step", "steps"})
 
     def _has_comment(self, span: Span) -> bool:
         """Whether a comment lies between the tokens of a span."""

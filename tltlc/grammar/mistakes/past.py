@@ -8,6 +8,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.counts_in_words import count_in_words
 from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.parse_failure import ARITHMETIC, CLOSING, INFIX, ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import (
@@ -48,6 +49,8 @@ def _recent(failure: ParseFailure) -> Diagnostic | None:
     if time is None or start is None:
         return None
     length, end = time
+    if failure.lacks_fixed_clock(length.text):
+        return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", FIXED_CLOCK)
     operand = text_of(failure, start, at)
     text = f"once within {length.text} {operand}"
     if words[0] == "for":

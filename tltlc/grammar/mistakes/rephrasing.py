@@ -29,9 +29,10 @@ def suggest_rewrite(
 ) -> Diagnostic | None:
     """Return an error at the tokens from ``start`` up to ``stop`` that suggests to write ``text`` instead.
 
-    Return None if the text is too long, or if the piece cannot be parsed with it.
+    Return None if the text is too long or needs a fixed clock that the file does not have, or if the piece
+    cannot be parsed with it.
     """
-    if len(text) > _LONGEST or not _can_be_read(failure, start, stop, text):
+    if len(text) > _LONGEST or failure.lacks_fixed_clock(text) or not _can_be_read(failure, start, stop, text):
         return None
     span = span_of(failure.tokens[start:stop])
     return failure.error(code, title, f"write `{text}`{reason}", span=span, write=text)
