@@ -19,6 +19,8 @@ from tltlc.grammar.walk import children, operands
 
 _TEMPORAL: Final = "FGXN"
 _COMPARISONS: Final = ("<", "<=", ">", ">=", "==", "!=")
+_PAST: Final = ("once", "historically", "previously", "begins", "ends")
+"""Operators whose operand cannot be a sequence, which looks at later steps."""
 _SHORT: Final = 60
 _NEXT_STEP: Final = {
     "G": ("next always", "from the next step on"),
@@ -39,33 +41,52 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
         if isinstance(part, tree.BinaryExpr) and part.op == "then":
             sequence = operands(part, "then")
             for position in range(len(sequence)):
-                yield from _check_operand(source, sequence, position, lenient)
+                bound = _bound_beside(part, sequence, position)
+                yield from _check_operand(source, sequence, position, lenient, bound)
             pending += [(operand, False) for operand in reversed(sequence)]
         else:
             pending += [(child, False) for child in reversed([*children(part)])]
 
 
-def _check_operand(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> Iterator[Diagnostic]:
+def _bound_beside(chain: Expr, sequence: list[Expr], position: int) -> tree.TemporalInterval | None:
+    """Return the bound of the ``then`` before the last operand, or after another one; None without a bound."""
+    position = min(position, len(sequence) - 2)
+    start, stop = sequence[position].span.end, sequence[position + 1].span.start
+    pending = [chain]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, tree.BinaryExpr) and part.op == "then":
+            if start <= part.op_span.start < stop:
+                return part.bound
+            pending += (part.left, part.right)
+    return None
+
+
+def _check_operand(
+    source: SourceFile, sequence: list[Expr], position: int, lenient: bool, bound: tree.TemporalInterval | None
+) -> Iterator[Diagnostic]:
     operand = sequence[position]
     leading = _leading_operator(operand)
     if not _lacks_brackets(operand, lenient):
         return
     last = position == len(sequence) - 1
+    then = f"then {_slice(source, bound.span)}" if bound else "then"
     neighbour = sequence[position - 1] if last else sequence[position + 1]
     if leading is None:
         title, span = "this operand of `then` needs brackets", operand.span
-        help_ = _readings_help(source, operand, neighbour, last)
+        help_ = _readings_help(source, operand, neighbour, last, then)
     else:
         word = source.slice(leading.op_span)
         span = leading.op_span
         title = f"a bare `{word}` cannot follow `then`" if last else f"`then` cannot follow a bare `{word}`"
-        help_ = _readings_help(source, operand, neighbour, last)
+        help_ = _readings_help(source, operand, neighbour, last, then)
         if leading is operand and leading.op == "F" and leading.bound is None:
             before, after = (neighbour, leading.operand) if last else (leading.operand, neighbour)
             first, second = _text(source, before), _text(source, after)
             if len(first) + len(second) <= _SHORT:
-                help_ = f"`reach {first} then {second}` means: {second} after {first}\n{help_}"
-        elif leading is operand and leading.op != "F" and leading.bound is None and last:
+                when = f", {_slice(source, bound.span)}" if bound else ""
+                help_ = f"`reach {first} {then} {second}` means: {second} after {first}{when}\n{help_}"
+        elif leading is operand and leading.op != "F" and leading.bound is None and bound is None and last:
             second = _text(source, leading.operand)
             if len(_text(source, neighbour)) + len(second) <= _SHORT:
                 operator, when = _NEXT_STEP[leading.op]
@@ -74,7 +95,9 @@ def _check_operand(source: SourceFile, sequence: list[Expr], position: int, leni
                     # `then` looks for its operands at later steps, too. Without it, only `eventually` does.
                     text = f"eventually ({text})" if len(sequence) == 2 else f"({text})"
                 help_ += f", which begins at some later step; for `{second}` {when}, write `{text}`"
-    yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, position, lenient))
+    yield Diagnostic(
+        "TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, position, lenient, then)
+    )
 
 
 def _leading_operator(operand: Expr) -> tree.Unary | None:
@@ -100,12 +123,12 @@ def _is_plain(operand: Expr) -> bool:
     )
 
 
-def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool) -> str:
+def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: bool, then: str) -> str:
     """Return a help text that shows where brackets can be put.
 
     Brackets can go around ``operand``, or around ``then`` and the two formulas beside it.
     ``neighbour`` is the operand on the other side of ``then``. ``last`` says whether ``operand``
-    comes after ``then``.
+    comes after ``then``. The text ``then`` is the operator, with its bound.
     """
     text, neighbour_text = _text(source, operand), _text(source, neighbour)
     inner: Expr
@@ -122,13 +145,15 @@ def _readings_help(source: SourceFile, operand: Expr, neighbour: Expr, last: boo
     if len(text) + len(neighbour_text) > _SHORT:
         return "put the operand, or the whole sequence, in brackets"
     if last:
-        return f"write `{neighbour_text} then ({text})`" + (
-            f" or `({neighbour_text} then {_text(source, inner)}){tail}`" if tail else ""
+        return f"write `{neighbour_text} {then} ({text})`" + (
+            f" or `({neighbour_text} {then} {_text(source, inner)}){tail}`" if tail else ""
         )
-    return f"write `({text}) then {neighbour_text}` or `{head}({_text(source, inner)} then {neighbour_text})`"
+    if isinstance(operand, tree.Unary) and operand.op in _PAST:
+        return f"write `({text}) {then} {neighbour_text}`"
+    return f"write `({text}) {then} {neighbour_text}` or `{head}({_text(source, inner)} {then} {neighbour_text})`"
 
 
-def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool) -> tuple[Fix, ...]:
+def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: bool, then: str) -> tuple[Fix, ...]:
     """Return fixes for the operand at ``position``, which lacks brackets.
 
     Brackets go around the operand, or around ``then`` and the two formulas beside it: for
@@ -148,7 +173,7 @@ def _fixes(source: SourceFile, sequence: list[Expr], position: int, lenient: boo
     half = _operand_beside_then(operand, last=position == 1)
     if len(sequence) == 2 and bare == [operand] and half and not _lacks_brackets(half, lenient=False):
         first, second = (sequence[0], half) if position else (half, sequence[1])
-        text = f"{_text(source, first)} then {_text(source, second)}"
+        text = f"{_text(source, first)} {then} {_text(source, second)}"
         if len(text) <= _SHORT:
             fixes.append(Fix(f"Write `({text})`", bracket_edits(first.span.to(second.span))))
     # `(F a) then b` loses the order: `b` before `a` satisfies it.
@@ -185,7 +210,7 @@ def _operand_beside_then(operand: Expr, last: bool) -> Expr | None:
     """
     if isinstance(operand, tree.BinaryExpr):
         return operand.left if last else operand.right
-    return operand.operand if isinstance(operand, tree.Unary) and not last else None
+    return operand.operand if isinstance(operand, tree.Unary) and operand.op not in _PAST and not last else None
 
 
 def _conjunct_text(source: SourceFile, part: Expr) -> str:
@@ -196,4 +221,9 @@ def _conjunct_text(source: SourceFile, part: Expr) -> str:
 
 def _text(source: SourceFile, part: Expr) -> str:
     """Return the source text of an expression, on one line."""
-    return " ".join(source.slice(Span(part.span.start, part.span.end)).split())
+    return _slice(source, part.span)
+
+
+def _slice(source: SourceFile, span: Span) -> str:
+    """Return the source text at a span, on one line."""
+    return " ".join(source.slice(span).split())
