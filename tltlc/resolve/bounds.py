@@ -87,7 +87,11 @@ def _timed_operator(expr: Unary, operand: Formula, bound: TemporalInterval, env:
     time = seconds(bound.high, f"{word} 2 s", env)
     if not bound.words:
         high = " ".join(env.scope.source.slice(bound.high.span).split())
-        advice = f"write `{'eventually' if expr.op == 'F' else 'always'} {word} {high}`"
+        # `always for` leaves out the last sample, which `always [0 s, 2 s]` has.
+        is_within = expr.op == "F" and time > 0 and (bound.low is None or bound.low.value == 0)
+        advice = (
+            f"write `eventually within {high}`" if is_within else "declare the rate of the game, e.g. `clock 60 Hz`"
+        )
         raise problem("TLT0323", "a bound in brackets needs a fixed clock", env.scope.source, bound.span, advice=advice)
     if env.unbounded:
         return eventually(operand) if expr.op == "F" else always(operand)
