@@ -149,6 +149,7 @@ MEANINGS: Mapping[str, Meaning] = {
     "avoid a twice": counted(lambda n: n < 2),
     "keep a exactly 2 times": counted(lambda n: n == 2),
     "reach exactly twice a": counted(lambda n: n == 2),
+    "never a within 2 s": lambda t: not any(a(t)[:3]),
     "never a twice within 2 s": lambda t: not begins_twice_in_time(t),
     "never twice within 2 s a": lambda t: not begins_twice_in_time(t),
     "keep never a more than once within 2 seconds": lambda t: not begins_twice_in_time(t),
@@ -173,7 +174,8 @@ def test_a_count_within_a_time_counts_from_the_first_beginning_where_the_clock_v
     (suggestion,) = suggestions(clause, VARIES)
     (fspa,) = compile_text(f"{VARIES}spec s {{ {suggestion} }}")
     for values, lengths in product(product((False, True), repeat=5), product((0.5, 1.0, 2.0), repeat=4)):
-        monitor, time, begun, is_kept = Monitor(fspa), 0.0, [], True
+        monitor, time, is_kept = Monitor(fspa), 0.0, True
+        begun: list[float] = []
         for i, (value, dt) in enumerate(zip(values, (1.0, *lengths), strict=True)):
             time += dt
             if value and not (i and values[i - 1]):
@@ -339,3 +341,29 @@ def test_a_help_shows_the_time_that_was_written(clause: str, names: str) -> None
     _, error = error_of(clause, names)
     assert error.fixes == ()
     assert error.help == "write `eventually within 3 s a` for `a within 3 s`"
+
+
+@pytest.mark.parametrize(
+    "clause", ["keep a until 2 s or b", "keep a until 2 s and b", "keep b implies a until 2 s or b"]
+)
+def test_a_time_after_until_gets_no_fix_where_more_follows(clause: str) -> None:
+    _, error = error_of(clause)
+    assert error.fixes == ()
+    assert error.help == "write `always for 2 s a` for `a until 2 s`"
+
+
+def test_never_for_a_time_gets_both_readings() -> None:
+    _, error = error_of("never a for 2 s")
+    assert error.fixes == ()
+    for_two, never_two = re.findall("`([^`]*)`", error.help or "")
+    check(for_two, lambda t: not any(a(t)[:2]))
+    assert never_two == "keep time_holding(a) < 2 s"
+    compile_text(f"{NAMES}spec s {{ {never_two} }}")
+
+
+@pytest.mark.parametrize("value", ["alert", "not alert"])
+def test_an_error_after_a_value_of_an_enum_does_not_blame_is(value: str) -> None:
+    _, error = error_of(f"avoid mode is {value} for 2 s")
+    assert error.fixes == ()
+    assert error.title == "`for` is not an operator"
+    assert error.help == f"put `mode is {value}` in brackets"

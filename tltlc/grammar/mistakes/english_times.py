@@ -170,6 +170,8 @@ def until_time(failure: ParseFailure) -> Diagnostic | None:
     operand = operand_text(failure, begin, at - 1)
     is_clear = begin == start or tokens[begin - 1].type == "IMPLIES"
     is_clear = is_clear and is_of_one_step(failure, begin, at - 1) and tokens[begin].type != "NOT"
+    # `a until 3 s or b` may mean that b ends the time, too.
+    is_clear = is_clear and end == formula_stop(failure)
     if not is_clear:
         return failure.error("TLT0101", title, f"write `always for {time} a` for `a until {time}`", span=word.span)
     if begin > start or not keyword:
@@ -183,6 +185,29 @@ def until_time(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0101", title, help_, span=word.span)
     text = f"require always for {time} {'not ' * (keyword == 'avoid')}{operand}"
     return suggest_rewrite(failure, 0, end, text, title)
+
+
+def never_for_time(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a clause such as ``never seen for 3 s`` or ``never seen within 3 s``, else None."""
+    tokens, stop = failure.tokens, len(failure.tokens) - 1
+    if failure.start != "clause" or tokens[0].text.lower() != "never":
+        return None
+    at = next((i for i in range(2, stop) if tokens[i].text in ("for", "within", "in")), 0)
+    written = time_at(tokens, at + 1)
+    if not at or written is None or written[1] != stop or not _is_clear_operand(failure, 1, at):
+        return None
+    if has_token(failure, 1, at, {*INFIX, *QUANTIFIERS, "NOT"}):
+        return None
+    time, operand, title = written[0], operand_text(failure, 1, at), "a clause cannot begin with `never`"
+    if failure.lacks_fixed_clock(time.text):
+        return failure.error("TLT0107", title, FIXED_CLOCK, span=tokens[0].span)
+    if tokens[at].text != "for":
+        text = f"require not eventually within {time.text} {operand}"
+        return suggest_rewrite(failure, 0, stop, text, title, code="TLT0107")
+    help_ = f"write `require always for {time.text} not {operand}` if it must not hold from the first step until then"
+    if time.is_real:
+        help_ += f", `keep time_holding({operand}) < {time.text}` if it must never hold that long"
+    return failure.error("TLT0107", title, help_, span=tokens[0].span)
 
 
 def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:

@@ -178,6 +178,10 @@ def verb_is(failure: ParseFailure) -> Diagnostic | None:
     diagnostic: Diagnostic | None = None
     second = at + 1 + (after[0] == "not")
     stop = value_end(failure.tokens, second - 1, 1)
+    if second + 1 < stop and failure.tokens[second].text in _enum_values(failure, (start, at)):
+        unfit, choice = failure.tokens[second + 1], text_of(failure, start, second + 1)
+        title = f"{quote_token(unfit)} is not an operator"
+        return failure.error("TLT0101", title, f"put `{choice}` in brackets", span=unfit.span)
     typed = _typed_equality(failure, (start, at), (second, stop), after[0] == "not", title, "TLT0101")
     if typed is not None:
         return typed

@@ -21,7 +21,7 @@ from tltlc.grammar.mistakes.counts_in_words import never_counted
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english import plain_english
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
-from tltlc.grammar.mistakes.english_times import until_time
+from tltlc.grammar.mistakes.english_times import never_for_time, until_time
 from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
@@ -332,6 +332,7 @@ _RULES: Final = (
     until_time,
     response_in_english,
     never_counted,
+    never_for_time,
     past_in_english,
     plain_english,
     comparison_in_words,
