@@ -10,7 +10,7 @@ from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import formula_text, label_text
 from tltlc.backends import emit
 from tltlc.core.source import SourceFile
-from tltlc.logic.formula import Formula
+from tltlc.logic.formula import Formula, atom, not_
 from tltlc.logic.text.printer import english_text
 from tltlc.pipeline import read_artefact
 
@@ -213,3 +213,53 @@ def test_guards_say_what_breaks_a_rule(clause: str, guard: tuple[int, int], word
     (formula,) = (edge.guard.formula for edge in fspa.edges if (edge.source, edge.target) == guard)
     assert isinstance(formula, Formula)
     assert words in english_text(spoken(formula, fspa))
+
+
+@pytest.mark.parametrize("clock", ["60 Hz", "varies"])
+@pytest.mark.parametrize(
+    ("clause", "english", "breaks"),
+    [
+        ("keep always for 2 s q", "Keep q throughout.", "!q"),
+        ("keep always for 2 s not q", "Avoid q throughout.", "q"),
+        ("keep always for 2 s (p implies q)", "Whenever p, have q at that step.", "p & !q"),
+        ("keep true implies always for 2 s (p or q)", "Keep p or q throughout.", "!p & !q"),
+        ("avoid eventually within 2 s p", "Avoid p throughout.", "p"),
+    ],
+)
+def test_a_time_since_every_step_is_left_out(clock: str, clause: str, english: str, breaks: str) -> None:
+    (fspa,) = compile_text(f"clock {clock}\nsignal p: bool\nsignal q: bool\nspec s {{ {clause} }}")
+    violated = next(state.id for state in fspa.states if state.verdict == "violated")
+    guard = next(edge.guard.formula for edge in fspa.edges if (edge.source, edge.target) == (0, violated))
+    assert isinstance(guard, Formula)
+    assert formula_text(fspa) == label_text(fspa, 0) == english
+    assert str(spoken(guard, fspa)) == breaks
+
+
+@pytest.mark.parametrize(
+    ("clock", "clause", "english"),
+    [
+        ("60 Hz", "reach true then within 2 s q", "At the next step, reach q at that step or later."),
+        ("60 Hz", "avoid (true then within 2 s q)", "At the next step, if there is one, avoid q throughout."),
+        (
+            "varies",
+            "avoid (true then within 2 s q)",
+            "At the next step, if there is one, avoid q within 2 s after any step throughout.",
+        ),
+        (
+            "60 Hz",
+            "keep true implies weak_next always for 2 s q",
+            "Keep q for the next 2 s after any step throughout.",
+        ),
+        ("varies", "keep once within 2 s true implies q", "Whenever any step in the last 2 s, have q at that step."),
+    ],
+)
+def test_an_event_at_every_step_has_words(clock: str, clause: str, english: str) -> None:
+    (fspa,) = compile_text(f"clock {clock}\nsignal p: bool\nsignal q: bool\nspec s {{ {clause} }}")
+    assert formula_text(fspa) == english
+
+
+def test_a_timer_of_the_steps_before_has_words_where_it_fails() -> None:
+    (fspa,) = compile_text("clock varies\nsignal q: bool\nspec s { reach true then within 2 s q }")
+    recent = atom("recent(2 s, true)")
+    assert str(spoken(recent, fspa)) == "any step in the 2 s before"
+    assert str(spoken(not_(recent), fspa)) == "no step in the 2 s before"

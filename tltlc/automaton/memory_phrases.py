@@ -20,8 +20,10 @@ from tltlc.automaton.remembered_formulas import (
     names_read,
     opposite,
     remembered,
+    rules_of_every_sample,
     waited_for,
     window_border,
+    with_rules,
 )
 from tltlc.automaton.value_phrases import COMPARED, TIMES, VALUES, Phrase, value_phrase
 from tltlc.core.names import ComparisonName, SpokenName
@@ -89,14 +91,14 @@ class Speaker:
         self._atoms = {item.name: item for item in fspa.atoms}
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
         self._phrases: dict[str, Phrase | None] = {}
-        self._rules = kept_rules(fspa)
+        self._rules = {**kept_rules(fspa), **rules_of_every_sample(fspa)}
         self._chains = chains(fspa)
         self._passed = self._passed_times()
 
     def spoken(self, formula: Formula) -> Formula:
         """Return a formula with phrases in place of the names of atoms."""
         done: dict[Formula, Formula] = {}
-        for node in self._with_rules(formula).bottom_up():
+        for node in with_rules(formula, self._rules).bottom_up():
             done[node] = (
                 in_order(node, self._chains, done)
                 or self._answers(node, done)
@@ -107,18 +109,6 @@ class Speaker:
                 or rebuild(node, tuple(done[operand] for operand in node.args))
             )
         return done[node]
-
-    def _with_rules(self, formula: Formula) -> Formula:
-        """Return a formula with the rules themselves in place of the atoms that say that they are broken."""
-        done: dict[Formula, Formula] = {}
-        for node in formula.bottom_up():
-            operand = node.args[0] if node.op == "not" else node
-            if operand.op == "atom" and operand.name in self._rules:
-                rule = self._rules[operand.name]
-                done[node] = rule if node is not operand else negation_normal_form(not_(rule))
-            else:
-                done[node] = rebuild(node, tuple(done[argument] for argument in node.args))
-        return done[formula]
 
     # --- formulas ---------------------------------------------------------------------------------
 
@@ -293,6 +283,8 @@ class Speaker:
                 arguments = (*arguments, self._object(opposite(broken[1])))
         elif register.kind in ("waiting", "due") and len(arguments) < 2 + (item.base == "late"):
             texts = _ALWAYS[item.base]
+        elif counted(register, self._registers) is TRUE:
+            texts = (texts[0], texts[1].replace("no {1}", "no step"))
         return Phrase(*(text.format(*arguments) for text in texts))
 
     def arguments(self, item: Atom, register: Register) -> Sequence[str]:
@@ -306,7 +298,7 @@ class Speaker:
             event, rule = broken
             if rule.op == "not" and self._turn(rule.args[0]) is None:
                 rule = negation_normal_form(rule)
-            formulas = (rule,) if event is TRUE else (event, rule)
+            formulas = (rule,) if event is TRUE and len(item.arguments) == 2 else (event, rule)
         elif (operand := counted(register, self._registers)) is not None:
             formulas = (operand,)
         first = item.base != "due"
@@ -347,6 +339,8 @@ class Speaker:
 
     def _object(self, state: Formula) -> str:
         """Return a formula without temporal operators as a phrase, in brackets unless it is short."""
+        if state is TRUE:
+            return "any step"
         said = self.spoken(state)
         return phrase(said) if is_literal(said) else bracketed_phrase(said)
 

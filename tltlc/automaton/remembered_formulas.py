@@ -11,6 +11,7 @@ from typing import NamedTuple, cast
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import breaches_now
+from tltlc.expression.evaluate import evaluate
 from tltlc.expression.tree import (
     AtomValue,
     Before,
@@ -23,7 +24,8 @@ from tltlc.expression.tree import (
     When,
     nodes,
 )
-from tltlc.logic.formula import FALSE, TRUE, Formula, and_, atom, iff, implies, not_, or_
+from tltlc.logic.boolean_rules import drop_constants
+from tltlc.logic.formula import FALSE, TRUE, Formula, always, and_, atom, eventually, iff, implies, not_, or_, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Atom, Register
 
@@ -94,16 +96,20 @@ def broken_rule(register: Register, registers: Mapping[str, Register]) -> tuple[
 
     The event is true if the rule applies from the first sample on.
     """
-    if register.kind != "breach" or not isinstance(register.update, Op) or len(register.update.args) != 2:
-        return None
-    window, broken = register.update.args
-    read = [node.name for node in nodes(window) if isinstance(node, SignalValue)]
-    timer = registers.get(read[0]) if len(read) == 1 else None
+    timer = _timer_of_breach(register, registers)
     if timer is None:
         return None
     event = TRUE if timer.kind in ("samples", "elapsed") else counted(timer, registers)
-    formula = from_robustness(broken)
+    formula = from_robustness(cast("Op", register.update).args[1])
     return None if event is None or formula is None else (event, opposite(formula))
+
+
+def _timer_of_breach(register: Register, registers: Mapping[str, Register]) -> Register | None:
+    """Return the register with the time since the event, after which a rule applies; None for other registers."""
+    if register.kind != "breach" or not isinstance(register.update, Op) or len(register.update.args) != 2:
+        return None
+    read = [node.name for node in nodes(register.update.args[0]) if isinstance(node, SignalValue)]
+    return registers.get(read[0]) if len(read) == 1 else None
 
 
 def kept_rules(fspa: Fspa) -> dict[str, Formula]:
@@ -111,6 +117,73 @@ def kept_rules(fspa: Fspa) -> dict[str, Formula]:
     names = {item.name for item in fspa.atoms}
     rules = {name: _kept_rule(value) for name, value in breaches_now(fspa).items() if name in names}
     return {name: rule for name, rule in rules.items() if rule is not None}
+
+
+def rules_of_every_sample(fspa: Fspa) -> dict[str, Formula]:
+    """Map the name of each timer after the event ``true``, which is at every sample, to the rule that the timer breaks.
+
+    The time since this event is always 0: ``breach(2 s, true, a)`` breaks the rule ``a``, ``lately(2 s, true)`` always
+    holds, and so breaks the rule ``false``, and ``passed(2 s, true)`` never holds.
+    """
+    registers = {register.name: register for register in fspa.registers}
+    rules: dict[str, Formula] = {}
+    for item in fspa.atoms:
+        read = names_read(item)
+        register = registers.get(next(iter(read))) if len(read) == 1 and item.arguments else None
+        if register is None:
+            continue
+        if item.base == "breach":
+            timer = _timer_of_breach(register, registers)
+            if timer is None or timer.kind != "time_since" or counted(timer, registers) is not TRUE:
+                continue
+            rule = _kept_rule(cast("Op", register.update).args[1])
+            if rule is not None:
+                rules[item.name] = rule
+        elif (
+            item.base in ("lately", "passed") and register.kind == "time_since" and counted(register, registers) is TRUE
+        ):
+            rules[item.name] = FALSE if evaluate(item.expression, {register.name: 0.0}, {}) > 0.0 else TRUE
+    return rules
+
+
+def with_rules(formula: Formula, rules: Mapping[str, Formula]) -> Formula:
+    """Return a formula with the rules themselves in place of the atoms that say that they are broken.
+
+    ``rules`` maps the names of these atoms to the rules.
+    """
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        operand = node.args[0] if node.op == "not" else node
+        if operand.op == "atom" and operand.name in rules:
+            rule = rules[operand.name]
+            done[node] = rule if node is not operand else negation_normal_form(not_(rule))
+        else:
+            changed = rebuild(node, tuple(done[argument] for argument in node.args))
+            done[node] = changed if changed is node else _folded(changed)
+    return done[formula]
+
+
+def _folded(node: Formula) -> Formula:
+    """Return an equivalent formula without the constants that rules put in the place of timers.
+
+    ``F F a`` and ``F X F a``, which they leave, become ``F a`` and ``X F a``; ``G !F a`` becomes ``!F a``.
+    """
+    if node.op in ("and", "or"):
+        return drop_constants(node)
+    if node.op == "U" and node.args[0] is TRUE:
+        return eventually(node.args[1])
+    if node.op == "R" and node.args[0] is FALSE:
+        return always(node.args[1])
+    if node.op == "F":
+        return node.args[0] if _is_about_later(node.args[0]) else node
+    if node.op == "G" and node.args[0].op == "not":
+        return node.args[0] if _is_about_later(node.args[0].args[0]) else node
+    return node
+
+
+def _is_about_later(formula: Formula) -> bool:
+    """Whether the formula is ``F a`` or ``X F a``, so that it holds wherever it holds at a later step."""
+    return (formula.args[0] if formula.op == "X" else formula).op == "F"
 
 
 def _kept_rule(value: Expression) -> Formula | None:

@@ -11,7 +11,7 @@ from tltlc.logic.text.notation import Spelling, write
 _PHRASE: Final = Spelling(
     {"not": "not "},
     {"and": " and ", "or": " or ", "implies": " implies ", "iff": " exactly when "},
-    {},
+    {"true": "true", "false": "false"},
     space_before_bracket=True,
     brackets_between_infix=True,
     brackets_around_comparisons=False,
