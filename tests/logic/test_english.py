@@ -43,6 +43,12 @@ EXAMPLES = {
     "G(a -> X b) & b": "Whenever a, have b at the next step; and have b now.",
     "!F a": "Avoid a throughout.",
     "G F a": "At every step, reach a at that step or later.",
+    "G G a": "Keep a throughout.",
+    "G G G(a -> F b)": "Whenever a, reach b at that step or later.",
+    "G !F(a & X F b)": (
+        "At every step, either avoid a at that step or (at the next step, if there is one, avoid b throughout)."
+    ),
+    "G(G a & N G b)": "Keep a throughout; and at every step, at the next step, if there is one, keep b throughout.",
     "F G a": "From some step on keep a throughout.",
     "!G F a": "From some step on avoid a throughout.",
     "F G(a & !b) & c": "From some step on (keep a throughout, and avoid b throughout), and have c now.",
@@ -87,6 +93,7 @@ EXAMPLES = {
 
 ENDLESS = {
     "G F a": "Reach a again and again.",
+    "G G F a": "Reach a again and again.",
     "!F G a": "Reach not a again and again.",
     "G(F a & F !b)": "Reach a again and again, and reach not b again and again.",
     "G F(a | b) & F G c": "Reach a or b again and again, and from some step on keep c throughout.",

@@ -28,6 +28,7 @@ def goals(*texts: str) -> tuple[Goal, ...]:
         ("F a & F b", Outline((goals("a"), goals("b")))),
         ("F(a & F b)", Outline(((Goal("a"), Goal("b", together=True)),))),
         ("G(a & !b)", Outline(throughout=("keep a", "avoid b"))),
+        ("G G(a & G !b)", Outline(throughout=("keep a", "avoid b"))),
         ("G(a -> F b)", Outline(throughout=("whenever a, reach b at that step or later",))),
         # Here "throughout" belongs to the sentence, not to the heading of the list.
         ("G(a -> G b)", Outline(throughout=("whenever a, keep b throughout",))),

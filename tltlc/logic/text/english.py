@@ -245,6 +245,8 @@ def _goal(body: Formula, context: _SentenceContext) -> str:
 
 def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClause:
     """Return the clause of ``G body``, such as ``keep a throughout`` or ``whenever a, reach b``."""
+    while _without_negation(body).op == "G":
+        (body,) = _without_negation(body).args
     if _has_parts(body):
         return _join_clauses([_throughout_clause(part, context) for part in _parts_throughout(body)])
     if body.op == "implies" and is_state(body):

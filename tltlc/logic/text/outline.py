@@ -67,7 +67,7 @@ def outline(formula: Formula, *, endless: bool = False, counts: CountPrinter = N
 def _conjuncts(formula: Formula) -> list[Formula]:
     """Return the distinct operands of the outermost ``and``, with ``G (a & b)`` split into ``G a`` and ``G b``.
 
-    An ``and`` without temporal operators is not split, nor is the expansion of a bounded operator
+    ``G G a`` is ``G a``. An ``and`` without temporal operators is not split, nor is the expansion of a bounded operator
     such as ``G[0,2] p``.
     """
     conjuncts: list[Formula] = []
@@ -76,6 +76,8 @@ def _conjuncts(formula: Formula) -> list[Formula]:
         node = stack.pop()
         if node.op == "and" and bounded_operator(node) is None and not is_state(node):
             stack += reversed(operands_with_bounds(node))
+        elif node.op == "G" and node.args[0].op == "G":
+            stack.append(node.args[0])
         elif node.op == "G" and node.args[0].op == "and" and bounded_operator(node.args[0]) is None:
             stack += [always(part) for part in reversed(operands_with_bounds(node.args[0]))]
         else:
