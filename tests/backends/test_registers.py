@@ -504,3 +504,28 @@ def test_a_c_monitor_without_registers_to_read_may_have_one_that_nothing_needs(t
     samples: list[Sample] = [{"p": 0.0, "q": 1.0}, {"p": 1.0, "q": 0.0}]
     trace = trace_of(samples, [signal.name for signal in fspa.signals])
     assert Programs(WITHOUT_REGISTERS, tmp_path, [fspa]).run((0, trace)) == [expected(fspa, samples)]
+
+
+@pytest.mark.parametrize(
+    ("clause", "kind", "unread"),
+    [
+        ("require always for 0.3 s (previously q implies (q implies q))", "previously", "previously_q_register"),
+        ("keep p implies always for 1 s q\nreach p and not p", "breach", "breach_1_s_p_q_register"),
+        ("keep p implies eventually within 1 s q\nreach p and not p", "due", ""),
+        ("keep p implies always for 1 s q", "breach", ""),
+    ],
+)
+def test_c_monitors_give_no_warnings_where_no_guard_needs_a_register(
+    clause: str, kind: str, unread: str, tmp_path: Path
+) -> None:
+    if reason := WITHOUT_REGISTERS.missing():
+        pytest.skip(reason)
+    (fspa,) = compile_text(f"clock varies\nsignal p: bool\nsignal q: bool\nspec s {{ {clause} }}")
+    ((name, header),) = emit("c", fspa).items()
+    assert kind in {register.kind for register in fspa.registers}
+    assert unread in str(header)
+    (tmp_path / name).write_text(str(header), encoding="utf-8")
+    (tmp_path / "main.c").write_text(f'#include "{name}"\nint main(void) {{ return 0; }}\n', encoding="utf-8")
+    for options in ((), ("-DTLTL_NO_REGISTERS",)):
+        command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", *options, "-fsyntax-only", "main.c"]
+        subprocess.run(command, cwd=tmp_path, check=True, timeout=HANG_S)
