@@ -144,6 +144,35 @@ def test_timers_of_different_clauses_are_unfolded_apart(a: tuple[str, str], b: t
     assert "This is exact: what the clauses remember was unfolded to states" in text(FileDiff("a", "b", (pair,)))
 
 
+THREE_TIMERS = """
+    keep x > 30 implies always for {} steps e
+    keep {} implies always for 300 steps d
+    keep f implies eventually within 300 steps g
+"""
+THREE_NAMES = "clock 60 Hz\nsignal x: number in [0, 100]\n" + "".join(f"signal {name}: bool\n" for name in "defg")
+
+
+@pytest.mark.parametrize(
+    ("second", "rest", "relation", "method"),
+    [
+        # Since `x > 20` never holds, `x > 30` does not.
+        ("x > 20", "avoid d", "equivalent", "clauses"),
+        ("x < 20", "avoid d", "stricter", "clauses"),
+        # At a sample with `x > 30`, both times begin, and each group knows only one.
+        ("x > 20", "avoid g", "undecided", "search"),
+    ],
+)
+def test_atoms_of_different_groups_may_depend_on_the_same_signals(
+    second: str, rest: str, relation: str, method: str
+) -> None:
+    old, new = (_fspa(THREE_TIMERS.format(steps, second) + rest, THREE_NAMES) for steps in (250, 300))
+    comparison = diff(old, new, feasible_only=True).comparison
+    assert (comparison.relation, comparison.method, comparison.only_b) == (relation, method, None)
+    if relation == "stricter":
+        assert comparison.only_a is not None
+        assert "x > 30" in comparison.only_a.prefix[0]
+
+
 def test_groups_of_clauses_relate_as_their_states_do() -> None:
     methods = [check_groups(Random(seed)) for seed in range(40)]
     assert methods.count("clauses") > 10

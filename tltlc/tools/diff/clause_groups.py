@@ -2,7 +2,9 @@
 
 Two timers of 300 steps have 90,000 pairs of values, which is too much to unfold. But most edits change one
 clause. So each spec is split into groups of clauses. A trace that one spec accepts is accepted by the
-other if for each group of the other, some group of the one accepts no further trace.
+other if for each group of the other, some group of the one accepts no further trace. Otherwise, a trace
+that one group accepts and another does not shows a difference, if the whole spec accepts it, too, and a
+game can produce it: the atoms of the other groups may depend on the same signals.
 """
 
 from __future__ import annotations
@@ -42,12 +44,16 @@ class _Undecided(Exception):
 
 
 def compare_groups(
-    a: Fspa, b: Fspa, compare: CompareGroups, own_letters: tuple[Callable[[Letter], Letter], Callable[[Letter], Letter]]
+    a: Fspa,
+    b: Fspa,
+    compare: CompareGroups,
+    own_letters: tuple[Callable[[Letter], Letter], Callable[[Letter], Letter]],
+    is_possible: Callable[[Trace], bool],
 ) -> GroupwiseComparison | None:
     """Compare two specs by their groups of clauses; None if that does not decide how they relate.
 
     ``own_letters`` has two functions, for A and B: they return the part of a letter that belongs to the
-    spec, in its names.
+    spec, in its names. ``is_possible`` says whether a game can produce a trace over the atoms of both specs.
     """
     groups_a, groups_b = _groups(a), _groups(b)
     if max(len(groups_a), len(groups_b)) < 2 or not groups_a or not groups_b:
@@ -62,13 +68,15 @@ def compare_groups(
                 raise _Undecided
         return known[key]
 
+    def is_of_a(trace: Trace) -> bool:
+        return _accepts(a, trace, own_letters[0]) and is_possible(trace)
+
+    def is_of_b(trace: Trace) -> bool:
+        return _accepts(b, trace, own_letters[1]) and is_possible(trace)
+
     try:
-        only_a = _difference(
-            groups_a, groups_b, lambda i, j: compared(i, j).only_a, lambda trace: _accepts(a, trace, own_letters[0])
-        )
-        only_b = _difference(
-            groups_b, groups_a, lambda j, i: compared(i, j).only_b, lambda trace: _accepts(b, trace, own_letters[1])
-        )
+        only_a = _difference(groups_a, groups_b, lambda i, j: compared(i, j).only_a, is_of_a)
+        only_b = _difference(groups_b, groups_a, lambda j, i: compared(i, j).only_b, is_of_b)
     except (OutOfWork, _Undecided):
         return None
     impossible = dict.fromkeys(literals for comparison in known.values() for literals in comparison.impossible)
@@ -84,7 +92,8 @@ def _difference(
     """Return a trace that one spec accepts and another does not; None if there is none.
 
     ``ones`` and ``others`` are the groups of the specs. ``difference`` returns a trace that only one of
-    two groups accepts, by their indices, and ``is_accepted`` says whether the one spec accepts a trace.
+    two groups accepts, by their indices. ``is_accepted`` says whether the one spec accepts a trace, and a game
+    can produce it.
 
     Raises:
         _Undecided: the groups do not decide it.

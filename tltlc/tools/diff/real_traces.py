@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tltlc.automaton.compare import Letter, Trace
-from tltlc.automaton.memory import given_atoms
+from tltlc.automaton.memory import given_atoms, registers_from_atoms
 from tltlc.core.record import replace
 from tltlc.expression.tree import AtomValue, Before, Op, SignalValue, nodes
 from tltlc.resolve.registers import SATURATING, following_atoms
@@ -26,6 +26,7 @@ from tltlc.tools.witness.candidate_samples import (
     without_registers,
 )
 from tltlc.tools.witness.memory_search import MemorySearch
+from tltlc.tools.witness.samples import SampleFinder
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -80,6 +81,21 @@ def confirm(
             break
     is_decided = not missing or (are_all and search.tried_all)
     return Confirmed(found.get(0), found.get(1), is_decided)
+
+
+def is_possible_without_numbers(named: tuple[Fspa, Fspa], trace: Trace) -> bool:
+    """Whether samples are found for a trace over the atoms of A and B that do not follow from others.
+
+    ``named`` are the two automata with the names that atoms have in traces. The result is False if one of
+    them remembers numbers: then samples depend on those before.
+    """
+    if any(len(registers_from_atoms(fspa)) < len(fspa.registers) for fspa in named):
+        return False
+    view = joint_automaton(*map(without_registers, named))
+    if view is None:
+        return False
+    finder = SampleFinder(view)
+    return all(not finder.obstacles(letter) for letter in dict.fromkeys((*trace.prefix, *trace.cycle)))
 
 
 def follows_in_one(named: tuple[Fspa, Fspa]) -> bool:

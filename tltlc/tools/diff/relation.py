@@ -172,7 +172,9 @@ def _compare_unfolded(
                 compared(one, other), method="unfolded", unfolded_states=(len(one.states), len(other.states))
             )
         if share == _QUICK and a.semantics == "finite":
-            by_clauses = _compare_clauses(a, b, compared, by_name=by_name, exclusive=exclusive)
+            by_clauses = _compare_clauses(
+                a, b, compared, by_name=by_name, feasible_only=feasible_only, exclusive=exclusive
+            )
             if by_clauses is not None:
                 return by_clauses
     return None
@@ -184,6 +186,7 @@ def _compare_clauses(
     compared: Callable[[Fspa, Fspa], Comparison],
     *,
     by_name: bool,
+    feasible_only: bool,
     exclusive: tuple[ExclusiveGroup, ...],
 ) -> Comparison | None:
     """Compare two specs by groups of their clauses; None if that does not decide how they relate."""
@@ -194,7 +197,14 @@ def _compare_clauses(
     def own_part(fspa: Fspa, suffix: str) -> Callable[[Letter], Letter]:
         return lambda letter: own_letter(letter, split_names, fspa, suffix)
 
-    result = compare_groups(a, b, compared, (own_part(a, OF_A), own_part(b, OF_B)))
+    named = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
+
+    def is_possible(trace: Trace) -> bool:
+        from tltlc.tools.diff.real_traces import is_possible_without_numbers
+
+        return not feasible_only or is_possible_without_numbers(named, trace)
+
+    result = compare_groups(a, b, compared, (own_part(a, OF_A), own_part(b, OF_B)), is_possible)
     if result is None:
         return None
     groups = _merge((*_own_groups(a, b), *exclusive), {atom.name for fspa in (a, b) for atom in fspa.atoms})
