@@ -68,13 +68,14 @@ def read_evidence(
         vocabulary, left_out=tuple(name for name in (*vocabulary.left_out, *rare) if name not in reported)
     )
     traces, notices = read_traces(good, vocabulary, report_progress)
-    clock_s = vocabulary.reader.clock_s
+    reader = vocabulary.reader
     if not bad:
-        evidence = with_mutants(traces, lambda letters: consistent(letters, vocabulary.reader))
-        return vocabulary, replace(evidence, clock_s=clock_s), (*warnings, *notices)
+        evidence = with_mutants(traces, lambda letters: consistent(letters, reader))
+        evidence = replace(evidence, clock_s=reader.clock_s, clock_varies=reader.clock_varies)
+        return vocabulary, evidence, (*warnings, *notices)
     counterexamples, bad_notices = read_traces(bad, vocabulary, report_progress)
     contradictions = _contradictions(traces, counterexamples)
-    evidence = Evidence(traces, counterexamples, clock_s=clock_s)
+    evidence = Evidence(traces, counterexamples, clock_s=reader.clock_s, clock_varies=reader.clock_varies)
     return vocabulary, evidence, (*warnings, *notices, *bad_notices, *contradictions)
 
 

@@ -15,6 +15,7 @@ from typing import Final
 
 from tltlc.automaton.compare import Letter
 from tltlc.tools.mine.evidence import Evidence, LabelledTrace
+from tltlc.tools.witness.step_lengths import atoms_of
 
 _SEED: Final = 1
 _ROUNDS: Final = 10
@@ -65,7 +66,7 @@ def with_mutants(traces: Sequence[LabelledTrace], consistent: Callable[[Letters]
 
 def _throughout(traces: Sequence[LabelledTrace]) -> list[str]:
     """Return the atoms that hold at every sample of every trace, sorted."""
-    return sorted(frozenset.intersection(*(letter for trace in traces for letter in trace.letters)))
+    return sorted(frozenset.intersection(*(atoms_of(letter) for trace in traces for letter in trace.letters)))
 
 
 def _mutants(
@@ -79,7 +80,7 @@ def _mutants(
         swapped = list(runs)
         swapped[first], swapped[second] = runs[second], runs[first]
         yield "with two stretches swapped", _samples(swapped)
-    passing = sorted({name for letter in letters for name in letter}.difference(throughout))
+    passing = sorted({name for letter in letters for name in atoms_of(letter)}.difference(throughout))
     if passing:
         name = passing[number % len(passing)]
         yield f"without {name}", tuple(letter - {name} for letter in letters)
@@ -101,7 +102,8 @@ def _most_rises(traces: Sequence[LabelledTrace]) -> dict[str, int]:
     """Return the most times that each atom begins to hold in a trace."""
     most: dict[str, int] = {}
     for trace in traces:
-        rises = Counter(name for before, letter in pairwise((frozenset(), *trace.letters)) for name in letter - before)
+        letters = [frozenset(), *map(atoms_of, trace.letters)]
+        rises = Counter(name for before, letter in pairwise(letters) for name in letter - before)
         most |= {name: max(number, most.get(name, 0)) for name, number in rises.items()}
     return most
 
@@ -112,5 +114,5 @@ def _samples(runs: Sequence[Run]) -> Letters:
 
 def _last_rise(letters: Sequence[Letter]) -> int:
     """Return the index of the last sample at which an atom becomes true; 0 if no atom does."""
-    rises = [place for place in range(1, len(letters)) if letters[place] - letters[place - 1]]
+    rises = [place for place in range(1, len(letters)) if atoms_of(letters[place]) - letters[place - 1]]
     return rises[-1] if rises else 0

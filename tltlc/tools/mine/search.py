@@ -70,7 +70,9 @@ class SpecSearch:
         """
         events = self._chosen_events()
         timed = TimedEvidence(self._evidence, self.bits, self._least)
-        times = chain(single_times(timed, events), pair_times(timed, events, self._times_work))
+        times = single_times(timed, events)
+        if not self._evidence.clock_varies:
+            times = chain(times, pair_times(timed, events, self._times_work))
         untimed = clauses(self.bits, self._backwards, events)
         for number, portion in enumerate(chain(untimed, times)):
             self._add_all(clause for clause in portion if clause.atoms <= self._most_atoms)

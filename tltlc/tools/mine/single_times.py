@@ -21,7 +21,10 @@ def single_times(evidence: TimedEvidence, events: Collection[str]) -> Iterator[l
     """Yield the clauses about the counts and times of each atom in ``events``, in portions."""
     events = [name for name in events if name in evidence.good.holds]
     for name in events:
-        portion = [*_count(name, evidence, len(events)), *_shortest(name, evidence, len(events))]
+        portion = [*_count(name, evidence, len(events))]
+        # A clock that varies takes no bounds in steps.
+        if not evidence.clock_varies:
+            portion += _shortest(name, evidence, len(events))
         if evidence.clock_s is not None:
             portion += [*_longest(name, evidence, len(events)), *_goal(name, evidence, len(events))]
         yield portion

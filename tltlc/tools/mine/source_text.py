@@ -7,6 +7,7 @@ from itertools import groupby
 from textwrap import wrap
 from typing import Final
 
+from tltlc.automaton.compare import Letter
 from tltlc.automaton.text import formula_text
 from tltlc.core.record import replace
 from tltlc.tools.mine.bits import Bits
@@ -16,6 +17,7 @@ from tltlc.tools.mine.reasons import reasons
 from tltlc.tools.mine.trace_clock import clock_declaration
 from tltlc.tools.mine.vocabulary import MiningVocabulary, signal_declarations
 from tltlc.tools.witness.blocks import expectations, test_block
+from tltlc.tools.witness.step_lengths import length_names
 
 _WIDTH: Final = 96
 _LONGEST_TEST: Final = 40
@@ -83,10 +85,17 @@ def _sentence(text: str) -> str:
 def _tests(proposal: Proposal) -> Iterator[str]:
     atoms = {atom.name for atom in proposal.fspa.atoms}
 
+    def own_letters(verdict: ProposalVerdict) -> tuple[Letter, ...]:
+        """Return what the spec sees of a trace: lengths of steps only if it remembers something."""
+        letters = verdict.trace.letters
+        if not proposal.fspa.registers:
+            return tuple(letter & atoms for letter in letters)
+        return tuple((letter & atoms) | length_names(letter) for letter in letters)
+
     def lengths(verdict: ProposalVerdict) -> tuple[int, int]:
         """Return how many lines a trace takes in a test, and how many samples it has."""
-        letters = verdict.trace.letters
-        return sum(1 for _ in groupby(letter & atoms for letter in letters)), len(letters)
+        letters = own_letters(verdict)
+        return sum(1 for _ in groupby(letters)), len(letters)
 
     good = [judgement for judgement in proposal.traces if judgement.accepted]
     bad = [judgement for judgement in proposal.counterexamples if not judgement.accepted]
@@ -94,7 +103,7 @@ def _tests(proposal: Proposal) -> Iterator[str]:
         if verdicts:
             simplest = min(verdicts, key=lengths)
             if lengths(simplest)[0] <= _LONGEST_TEST:
-                letters = simplest.trace.letters
+                letters = own_letters(simplest)
                 yield test_block(simplest.trace.name, proposal.fspa, letters, expectations(proposal.fspa, letters))
 
 

@@ -25,6 +25,7 @@ class TimedEvidence:
 
     def __init__(self, evidence: Evidence, bits: Bits, least: int) -> None:
         self.all, self.least, self.clock_s = bits, least, evidence.clock_s
+        self.clock_varies = evidence.clock_varies
         self.good = Bits(replace(evidence, counterexamples=()))
         self.times = RoundTimes(evidence.clock_s)
         self._made_up = evidence.made_up

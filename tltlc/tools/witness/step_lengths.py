@@ -46,6 +46,11 @@ def length_names(given: TraceSample | Letter) -> frozenset[str]:
     return frozenset(name for name in given if isinstance(name, StepLengthName))
 
 
+def atoms_of(letter: Letter) -> Letter:
+    """Return a letter without the names that say how long it comes after the one before."""
+    return letter - length_names(letter)
+
+
 def length_of(letter: Letter, fspa: Fspa) -> float | None:
     """Return how long after the letter before a letter comes, in seconds; None if the clock does not vary.
 
