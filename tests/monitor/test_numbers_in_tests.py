@@ -10,7 +10,7 @@ from hypothesis import given
 from tests.fuzzing import SEEDS, times
 from tltlc import compile_text
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor
 from tltlc.monitor.spec_tests import run_tests
 from tltlc.pipeline import compile_source
@@ -85,3 +85,53 @@ def test_a_step_of_a_test_agrees_with_a_sample_of_the_game(seed: int) -> None:
         bools = {name: name in holds for name in ("seen", "near(door)")}
         assert by_step.step_test(numbers, holds) == by_signals.step({**numbers, **bools})
         assert (by_step.values, by_step.registers) == (by_signals.values, by_signals.registers)
+
+
+LONE = """
+signal hp: number in [0, 10]
+signal hidden: bool
+signal seen: bool
+predicate low in [-1, 1] = when hidden: clamp((5 - hp) / 5, -1, 1) otherwise: clamp((2 - hp) / 5, -1, 1)
+predicate safe in [-1, 1] = when seen: -1 otherwise: 1
+spec s { avoid low  keep safe or seen }
+"""
+
+
+def lone_failures(block: str) -> list[Diagnostic | None]:
+    compiled = compile_source(SourceFile("specs.tltl", f'{LONE}test "t" for s {{ {block} }}'))
+    return [result.failure for result in run_tests(compiled.program, compiled.automata)]
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "step hp = 3, hidden = false, seen expect holding step hidden = true, seen expect violated",
+        "step hp = 3, hidden = true, seen expect violated",
+        "step hidden = false, hp = 3, safe step hp = 1 expect violated",
+        "step low expect violated",
+    ],
+)
+def test_a_bool_that_only_predicates_read_is_set_like_a_number(block: str) -> None:
+    assert lone_failures(block) == [None]
+
+
+@pytest.mark.parametrize(
+    ("block", "code", "advice"),
+    [
+        ("step hp = 3 expect holding", "TLT0217", "set `hidden` in the first step, too, as in `hidden = true`"),
+        ("step hidden = true expect holding", "TLT0217", "set `hp` in the first step, too"),
+        (
+            "step hp = 3, not hidden expect holding",
+            "TLT0217",
+            "set `hidden` in the first step, too, as in `hidden = true`",
+        ),
+        ("step not hidden expect holding", "TLT0209", "predicates read it: write `hidden = false`"),
+        ("step hp = 3, hidden = 1 expect holding", "TLT0201", "it is a `bool`: write `true` or `false`"),
+        ("step hp = 3, hidden = true, seen = true expect holding", "TLT0217", "write `seen` or `not seen`"),
+    ],
+)
+def test_a_bool_that_a_predicate_needs_must_be_set(block: str, code: str, advice: str) -> None:
+    with pytest.raises(TltlError) as error:
+        lone_failures(block)
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, diagnostic.help) == (code, advice)

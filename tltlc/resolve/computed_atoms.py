@@ -24,12 +24,16 @@ class Computed:
 def computed(
     numbers: Collection[str], atoms: Iterable[Atom], registers: Iterable[Register], signals: Iterable[Signal]
 ) -> Computed:
-    """Return what can be computed if the signals ``numbers`` have values; a `bool` signal has its own atom.
+    """Return what can be computed if the signals ``numbers`` have values.
 
-    What an atom remembers of other atoms counts as known, since these have values of their own.
+    A `bool` signal that is an atom itself counts as known, and so does what an atom remembers of other atoms, since
+    these have values of their own. A `bool` signal that only predicates read may be in ``numbers``, like a number;
+    if it is not, it is in ``lacking`` where it is needed beside a number that is set.
     """
+    atoms = tuple(atoms)
     known = frozenset(numbers)
-    all_numbers = {signal.name for signal in signals if signal.type != "bool"}
+    own_atoms = {atom.name for atom in atoms}
+    all_numbers = {signal.name for signal in signals if is_number_in_tests(signal, own_atoms)}
     reads = {register.name: _names_read(register.update) for register in registers}
     reads_of_atoms = {atom.name: _numbers(_names_read(atom.expression), reads, all_numbers) for atom in atoms}
     reads_of_registers = {name: _numbers(names, reads, all_numbers) for name, names in reads.items()}
@@ -40,6 +44,11 @@ def computed(
         frozenset(name for name, needed in reads_of_registers.items() if needed and needed <= known),
         lacking,
     )
+
+
+def is_number_in_tests(signal: Signal, atoms: Collection[str]) -> bool:
+    """Whether a step of a test sets a signal: a number, an enum, or a `bool` that is none of ``atoms`` by itself."""
+    return signal.type != "bool" or signal.name not in atoms
 
 
 def _names_read(expression: Expression) -> frozenset[str]:

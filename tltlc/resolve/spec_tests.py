@@ -82,7 +82,10 @@ def _step(
             known = ", ".join(given) or "no atoms"
             verb = "has" if not given else "has the atoms" if len(given) > 1 else "has only the atom"
             title = f"`{name}` is not an atom of the spec `{spec.name}`"
-            raise problem("TLT0209", title, source, literal_expr.span, advice=f"the spec {verb} {known}")
+            advice = f"the spec {verb} {known}"
+            if any(signal.name == name for signal in spec.signals):
+                advice = f"predicates read it: write `{name} = {str(holds).lower()}`"
+            raise problem("TLT0209", title, source, literal_expr.span, advice=advice)
         if name in computed:
             title = f"`{name}` follows from the numbers of this test: a step cannot choose it"
             raise problem("TLT0218", title, source, literal_expr.span, advice="leave it out")
