@@ -106,6 +106,14 @@ def test_a_trace_without_right_times_is_an_error(text: str, code: str) -> None:
     assert code_of(text) == code
 
 
+def test_a_row_without_its_time_needs_one() -> None:
+    text = '{"dt": 0, "a": 0, "b": 0}\n{"a": 0, "b": 0}\n'
+    with pytest.raises(TltlError) as error:
+        list(read_trace(io.BytesIO(text.encode()), "run.jsonl", FSPA.signals, clock_varies=True))
+    (diagnostic,) = error.value.diagnostics
+    assert (diagnostic.code, diagnostic.help) == ("TLT0622", "give every row its `dt`: the clock of the spec varies")
+
+
 def test_the_samples_before_an_error_are_read() -> None:
     stream = io.BytesIO(b"a,b,time\n1,0,3\n0,1,4\n0,0,2\n")
     samples = read_trace(stream, "trace", FSPA.signals, clock_varies=True)

@@ -243,7 +243,10 @@ def _object_samples(
                 raise _no_time_error(lines)
         if column != first:
             has = "has no time" if column is None else f"has `{column.name}`"
-            raise lines.error(f"this row {has}, unlike the first row", help="give every row its time, or none")
+            help_ = "give every row its time, or none"
+            if times.varies and first is not None:
+                help_ = f"give every row its `{first.name}`: the clock of the spec varies"
+            raise lines.error(f"this row {has}, unlike the first row", help=help_)
         if column is not None:
             time = object_[column.name]
             number_given = float(time) if isinstance(time, (int, float)) else None
