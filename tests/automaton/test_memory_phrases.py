@@ -239,12 +239,8 @@ def test_a_time_since_every_step_is_left_out(clock: str, clause: str, english: s
     ("clock", "clause", "english"),
     [
         ("60 Hz", "reach true then within 2 s q", "At the next step, reach q at that step or later."),
-        ("60 Hz", "avoid (true then within 2 s q)", "At the next step, if there is one, avoid q throughout."),
-        (
-            "varies",
-            "avoid (true then within 2 s q)",
-            "At the next step, if there is one, avoid q within 2 s after any step throughout.",
-        ),
+        ("60 Hz", "avoid (true then within 2 s q)", "Avoid (q and any step in the 2 s before) throughout."),
+        ("varies", "avoid (true then within 2 s q)", "Avoid (q and any step in the 2 s before) throughout."),
         (
             "60 Hz",
             "keep true implies weak_next always for 2 s q",

@@ -138,6 +138,9 @@ class _TimedRewriting(Rewriting):
 
     def _never(self, body: Formula) -> Formula | None:
         """Return ``G !body`` for a chain ``body`` or ``F body``: that its last goal never comes in time."""
+        bound = time_bound_of(body)
+        if bound is not None and body.op == "F[]" and not bound.later:
+            return always(not_(self.inside(body.args[0])))  # `G !F[T] f` is `G !f`.
         chain = body.args[0] if body.op == "F" else body
         goal = self._last_goal(chain, None)
         if goal is not None:
