@@ -40,26 +40,25 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
         part, lenient = pending.pop()
         if isinstance(part, tree.BinaryExpr) and part.op == "then":
             sequence = operands(part, "then")
+            bounds = _bounds(part)
             for position in range(len(sequence)):
-                bound = _bound_beside(part, sequence, position)
-                yield from _check_operand(source, sequence, position, lenient, bound)
+                # The bound of the `then` after an operand, or before the last one.
+                yield from _check_operand(source, sequence, position, lenient, bounds[min(position, len(bounds) - 1)])
             pending += [(operand, False) for operand in reversed(sequence)]
         else:
             pending += [(child, False) for child in reversed([*children(part)])]
 
 
-def _bound_beside(chain: Expr, sequence: list[Expr], position: int) -> tree.TemporalInterval | None:
-    """Return the bound of the ``then`` before the last operand, or after another one; None without a bound."""
-    position = min(position, len(sequence) - 2)
-    start, stop = sequence[position].span.end, sequence[position + 1].span.start
+def _bounds(chain: Expr) -> list[tree.TemporalInterval | None]:
+    """Return the bound of each ``then`` of a sequence, in order; None for one without a bound."""
+    bounds: dict[int, tree.TemporalInterval | None] = {}
     pending = [chain]
     while pending:
         part = pending.pop()
         if isinstance(part, tree.BinaryExpr) and part.op == "then":
-            if start <= part.op_span.start < stop:
-                return part.bound
+            bounds[part.op_span.start] = part.bound
             pending += (part.left, part.right)
-    return None
+    return [bounds[start] for start in sorted(bounds)]
 
 
 def _check_operand(
