@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tltl_runtime.game.episode import RecordedEpisode
-from tltlc.api import Atom
-from tltlc.api.monitors import deciding_atoms
+from tltlc.api import Atom, monitors
 
 
 def broken_atoms(
@@ -26,5 +25,6 @@ def broken_atoms(
     ]
     true_primes = [prime for prime in primes if all(holds[atom] == expected for atom, expected in prime)]
     true_primes.sort(key=lambda prime: not any(preferred(fspa.atoms[atom]) for atom, _ in prime))
-    reasons = deciding_atoms(fspa, [atom for atom, _ in next(iter(true_primes), ())], episode.atoms[-1].tolist())
+    broken = [atom for atom, _ in next(iter(true_primes), ())]
+    reasons = monitors.deciding_atoms(fspa, broken, episode.atoms[-1].tolist())
     return [(fspa.atoms[atom].name, holds[atom]) for atom in reasons]
