@@ -7,13 +7,14 @@ from itertools import chain, repeat
 from typing import Any, Final, Union
 
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
 from tltlc.monitor.samples import MonitorError
 from tltlc.tools.witness.blocks import given_values
 from tltlc.tools.witness.samples import SampleFinder
-from tltlc.tools.witness.step_lengths import shortest_deadline_s
+from tltlc.tools.witness.step_lengths import length_of, shortest_deadline_s
 from tltlc.tools.witness.traces import Witness, accepting_trace, rejecting_trace
 from tltlc.tools.witness.transitions import Moves, SampledEdge
 
@@ -100,9 +101,12 @@ def _idle_letter(fspa: Fspa) -> dict[str, Any]:
 
 
 def _idle_step_with_registers(fspa: Fspa) -> dict[str, Any]:
-    def cost(move: SampledEdge) -> tuple[bool, bool, int]:
+    given = {fspa.atoms[index].name for index in given_atoms(fspa)}
+
+    def cost(move: SampledEdge) -> tuple[bool, int, bool]:
         target = fspa.states[fspa.edges[move.edge].target]
-        return target.id != 0, target.verdict == "violated", len(move.letter)
+        # The initial state may be that in which an answer is due: there, little happens in another one.
+        return target.verdict == "violated", len(given & move.letter), target.id != 0
 
     moves = Moves(fspa).traces.first_moves()
     return _letter(fspa, min(moves, key=cost)) if moves else {"atoms": [], "signals": None}
@@ -130,7 +134,12 @@ def _letters(fspa: Fspa, witness: Witness | None) -> list[dict[str, Any]] | None
 
 
 def _letter(fspa: Fspa, move: SampledEdge) -> dict[str, Any]:
-    return {"atoms": _atom_names(fspa, move.letter), "signals": dict(move.sample)}
+    length = length_of(move.letter, fspa)
+    return {
+        "atoms": _atom_names(fspa, move.letter),
+        "signals": {signal.name: move.sample[signal.name] for signal in fspa.signals},
+        **({} if length is None else {"dt": length}),
+    }
 
 
 def _atom_names(fspa: Fspa, letter: frozenset[str]) -> list[str]:
