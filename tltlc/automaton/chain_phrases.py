@@ -15,7 +15,7 @@ from tltlc.resolve.spec import Atom
 def chains(fspa: Fspa) -> dict[str, list[str]]:
     """Return the goals of each atom about a chain in words: ``a`` and ``b within 5 s after a``."""
     kinds = {register.name: register.kind for register in fspa.registers}
-    found: dict[str, list[str]] = {}
+    goals_of: dict[str, list[str]] = {}
     for item in fspa.atoms:
         read = {node.name for node in nodes(item.expression) if isinstance(node, SignalValue)}
         kept = sum(kinds.get(name) == "last" for name in read)
@@ -23,8 +23,8 @@ def chains(fspa: Fspa) -> dict[str, list[str]]:
         if item.base in ("chain", "lost") and 2 * kept - len(item.arguments) in (1, -1):
             goals, times = item.arguments[::2], item.arguments[1::2]
             timed = zip(pairwise(goals), times, strict=True)
-            found[item.name] = [goals[0], *(f"{goal} within {time} after {last}" for (last, goal), time in timed)]
-    return found
+            goals_of[item.name] = [goals[0], *(f"{goal} within {time} after {last}" for (last, goal), time in timed)]
+    return goals_of
 
 
 def chain_phrase(item: Atom) -> Phrase:

@@ -22,7 +22,7 @@ from tltlc.automaton.remembered_formulas import (
     remembered,
     rules_of_every_sample,
     waited_for,
-    window_border,
+    window_of,
     with_rules,
 )
 from tltlc.automaton.value_phrases import COMPARED, TIMES, VALUES, Phrase, value_phrase
@@ -154,8 +154,8 @@ class Speaker:
             ends = [other for other, owed in due.items() if answer is not None and self._answer(owed) == answer]
             if answer is None or answer.request is TRUE or not ends:
                 continue
-            said = SpokenName(f"{self._noun(answer.goal)} within {item.arguments[0]}", "reach")
-            answers[part] = always(implies(self.spoken(answer.request), atom(said)))
+            answered = SpokenName(f"{self._noun(answer.goal)} within {item.arguments[0]}", "reach")
+            answers[part] = always(implies(self.spoken(answer.request), atom(answered)))
             answers.update(dict.fromkeys(ends, TRUE))
         if not answers:
             return None
@@ -195,8 +195,8 @@ class Speaker:
             if not present:
                 return None
             state = and_(*present)
-            said = self.spoken(state)
-            words = self._noun(state) if said.op == "atom" else object_phrase(said)
+            in_words = self.spoken(state)
+            words = self._noun(state) if in_words.op == "atom" else object_phrase(in_words)
             text = f"{words} within {self._passed[passed]}"
             return eventually(and_(atom(text), *(done[part] for part in parts if part not in present)))
         kept = or_(*(part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer))
@@ -259,16 +259,16 @@ class Speaker:
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             return Phrase(SpokenName(holds), SpokenName(fails))
-        border = window_border(item.expression)
-        if register.kind != "time_since" or border is None:
+        window = window_of(item.expression)
+        if register.kind != "time_since" or window is None:
             return None
         # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
-        holds_lately = item.base.startswith("once")
-        steps = border - 0.5 if holds_lately else border + 0.5
+        border, is_recent = window
+        steps = border - 0.5 if is_recent else border + 0.5
         time = f"{steps:g} steps" if self._clock_s is None else f"{round(steps * self._clock_s, 6):g} s"
         if register.unit == "s":
             time = f"{border:g} s"
-        if holds_lately:
+        if is_recent:
             return Phrase(SpokenName(f"{self._object(operand)} in the last {time}"))
         return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"))
 
@@ -341,8 +341,8 @@ class Speaker:
         """Return a formula without temporal operators as a phrase, in brackets unless it is short."""
         if state is TRUE:
             return "any step"
-        said = self.spoken(state)
-        return phrase(said) if is_literal(said) else bracketed_phrase(said)
+        in_words = self.spoken(state)
+        return phrase(in_words) if is_literal(in_words) else bracketed_phrase(in_words)
 
     def _noun(self, state: Formula) -> str:
         """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""

@@ -217,14 +217,26 @@ def opposite(formula: Formula) -> Formula:
     return formula.args[0] if formula.op == "not" else not_(formula)
 
 
-def window_border(expression: Expression) -> float | None:
-    """Return the number of steps by which the margin of a window is divided; None for other expressions."""
+class Window(NamedTuple):
+    """A comparison of a time with its ``border``: at most this long ago if ``is_recent``, else at least."""
+
+    border: float
+    is_recent: bool
+
+
+def window_of(expression: Expression) -> Window | None:
+    """Return the window of which an expression is the robustness; None for other expressions."""
     if isinstance(expression, When):
         # The margin of a window in seconds is negated, so that its border belongs to it.
         (margin, _) = expression.cases[0][0].args
-        expression = cast("Expression", margin)
-    is_scaled = isinstance(expression, Op) and expression.op == "/" and isinstance(expression.args[1], Const)
-    return expression.args[1].value if is_scaled else None  # type: ignore[union-attr]
+        window = window_of(cast("Expression", margin))
+        return None if window is None else window._replace(is_recent=not window.is_recent)
+    if not isinstance(expression, Op) or expression.op != "/":
+        return None
+    margin, border = expression.args
+    if not isinstance(border, Const) or not isinstance(margin, Op) or margin.op != "-":
+        return None
+    return Window(border.value, isinstance(margin.args[0], Const))
 
 
 # --- from expressions -----------------------------------------------------------------------------

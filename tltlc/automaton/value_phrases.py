@@ -46,8 +46,8 @@ def value_phrase(name: str, register: Register) -> Phrase | None:
         left, operator, right = name.left, name.operator, words
     else:
         return None
-    said = ComparisonName(left, operator, right)
-    return Phrase(said, said.opposite)
+    comparison = ComparisonName(left, operator, right)
+    return Phrase(comparison, comparison.opposite)
 
 
 def _is_number(text: str) -> bool:

@@ -70,7 +70,7 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 def _without_registers(fspa: Fspa, options: Options) -> Fspa:
     """Return the automaton of the same spec with states in place of timers; raise TltlError, TLT0713, if that fails."""
-    kept = [each for each in fspa.registers if each.kind in _KEPT_BY_NAME]
+    kept = [register for register in fspa.registers if register.kind in _KEPT_BY_NAME]
     if kept or not _has_timers(fspa):
         raise TltlError([_refusal(fspa, kept or fspa.registers, OTHER_MEMORY)])
     if fspa.clock_varies:
@@ -95,13 +95,13 @@ def _without_registers(fspa: Fspa, options: Options) -> Fspa:
 
 def _has_timers(fspa: Fspa) -> bool:
     """Whether timers took the place of bounds."""
-    return any(each.kind in _TIMED for each in fspa.registers) or any(
-        each.base in ("passed", "lately", "held") and each.arguments for each in fspa.atoms
+    return any(register.kind in _TIMED for register in fspa.registers) or any(
+        atom.base in ("passed", "lately", "held") and atom.arguments for atom in fspa.atoms
     )
 
 
 def _refusal(fspa: Fspa, registers: Sequence[Register], advice: str) -> Diagnostic:
-    shown = next((each for each in registers if each.kind not in ("last", "first")), registers[0])
+    shown = next((register for register in registers if register.kind not in ("last", "first")), registers[0])
     title = f"`{fspa.name}` remembers `{shown.name}`, which the Hanoi format cannot express"
     return Diagnostic("TLT0713", title, help=advice)
 

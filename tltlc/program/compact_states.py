@@ -89,24 +89,24 @@ class CompactStateCode(StateCode):
         """Return the statements of the ``edges`` that leave the state; the last one is the ``else``."""
         alone = max((self._alone(edge.guard.primes) for edge in edges), key=len) if len(edges) > 1 else ()
         self._worst = frozenset((atom, False) for atom in alone)
-        found = super().statements(edges)
-        if WORST not in variables_read(found):
-            return found
+        statements = super().statements(edges)
+        if WORST not in variables_read(statements):
+            return statements
         return (
             Declare(WORST, "real", _fold("max", [ProgramVariable(self._atoms.names[atom]) for atom in alone])),
-            *found,
+            *statements,
         )
 
     def _alone(self, primes: Sequence[Implicant]) -> tuple[int, ...]:
         """Return the atoms that are no flags and make a guard true by themselves, if there are two or more."""
-        found = tuple(
+        atoms = tuple(
             atom
             for prime in primes
             if len(prime) == 1
             for atom, positive in prime
             if positive and not self._sharp(atom)
         )
-        return found if len(found) > 1 else ()
+        return atoms if len(atoms) > 1 else ()
 
     def _sharp(self, atom: int) -> bool:
         return atom in self._atoms.sharp
@@ -193,11 +193,11 @@ class CompactStateCode(StateCode):
 
     def _numbers(self, literals: Iterable[_Literal]) -> list[ProgramExpression]:
         """Return the values of literals; ``-worst`` for those of which it is the minimum."""
-        found = list(literals)
-        if self._worst and self._worst <= set(found):
-            rest = [literal for literal in found if literal not in self._worst]
+        remaining = list(literals)
+        if self._worst and self._worst <= set(remaining):
+            rest = [literal for literal in remaining if literal not in self._worst]
             return [Negate(ProgramVariable(WORST)), *(self._value(*literal) for literal in rest)]
-        return [self._value(*literal) for literal in found]
+        return [self._value(*literal) for literal in remaining]
 
     def _divided(self, literals: Sequence[_Literal]) -> tuple[list[_Literal], list[_Literal]]:
         """Return the literals of atoms that are no flags, and those of flags."""

@@ -58,7 +58,7 @@ class Flags:
 
     def _one_sample(self, taken: Iterable[str]) -> set[str]:
         """Find the flags after a sample, before which the registers in ``taken`` are flags; return these registers."""
-        found: set[str] = set()
+        flags: set[str] = set()
         for step in self._order:
             if step.kind == "atom":
                 atom = self._fspa.atoms[step.index]
@@ -68,8 +68,8 @@ class Flags:
                 register = self._fspa.registers[step.index]
                 if register.name in taken and self._values.of(register.update) in _WITHIN:
                     self._values.known[register.name] = _FLAG
-                    found.add(register.name)
-        return found
+                    flags.add(register.name)
+        return flags
 
     def __contains__(self, key: VariableKey) -> bool:
         return self._values.known.get(key) == _FLAG
@@ -116,15 +116,15 @@ class _Valuation:
             case When():
                 return self._when(node)
             case Op("+" | "-" | "*" | "neg" | "min" | "max", args):
-                found = self.of(args[0])
+                values = self.of(args[0])
                 if node.op == "neg":
-                    return found and frozenset(-value for value in found)
+                    return values and frozenset(-value for value in values)
                 for part in args[1:]:
                     others = self.of(part)
-                    if found is None or others is None:
+                    if values is None or others is None:
                         return None
-                    found = _few(_result(node.op, left, right) for left in found for right in others)
-                return found
+                    values = _few(_result(node.op, left, right) for left in values for right in others)
+                return values
         return None
 
     def _when(self, node: When) -> _Values:
@@ -135,18 +135,18 @@ class _Valuation:
         # A condition must not fail, since the truth of a `when` may test it twice, or not at all.
         if not all(is_plain(condition) for condition, _ in node.cases):
             return None
-        found: set[float] = set()
+        all_values: set[float] = set()
         for value in (*(value for _, value in node.cases), node.otherwise):
             values = self.of(value)
             if values is None:
                 return None
-            found |= values
-        return _few(found)
+            all_values |= values
+        return _few(all_values)
 
 
 def _few(values: Iterable[float]) -> _Values:
-    found = frozenset(values)
-    return found if len(found) <= _MOST else None
+    distinct = frozenset(values)
+    return distinct if len(distinct) <= _MOST else None
 
 
 def _result(op: str, left: float, right: float) -> float:
@@ -184,8 +184,8 @@ class Truths:
 
     def condition(self, node: Expression) -> Condition:
         """Return the condition for an expression that is a flag."""
-        found = self._of(node)
-        return registers.holds(Const(1.0 if found else -1.0)) if isinstance(found, bool) else found
+        condition = self._of(node)
+        return registers.holds(Const(1.0 if condition else -1.0)) if isinstance(condition, bool) else condition
 
     def splits(self, node: Expression) -> bool:
         """Whether an expression is a flag, and its condition has none of its arithmetic."""
@@ -218,12 +218,12 @@ class Truths:
         return registers.holds(node)
 
     def _when(self, node: When) -> _Truth:
-        found = self._of(node.otherwise)
+        result = self._of(node.otherwise)
         for condition, value in reversed(node.cases):
             inside = _joined("and", [condition, self._of(value)])
-            outside = _joined("and", [_not(condition), found]) if inside is not condition else found
-            found = _joined("or", [inside, outside])
-        return found
+            outside = _joined("and", [_not(condition), result]) if inside is not condition else result
+            result = _joined("or", [inside, outside])
+        return result
 
 
 def _not(truth: _Truth) -> _Truth:

@@ -46,7 +46,7 @@ def segments(body: Formula, fits: Callable[[Formula], bool]) -> list[Segment]:
 
     ``fits`` says whether a timer can be about a state. The list is empty if the first goal has none.
     """
-    found: list[Segment] = []
+    complete: list[Segment] = []
     goals: list[Goal] = []
     start, low, high, rest = body, 0, None, None
     node: Formula | None = body
@@ -57,12 +57,12 @@ def segments(body: Formula, fits: Callable[[Formula], bool]) -> list[Segment]:
         if not present or len(temporal) > 1 or not fits(and_(*present)):
             break
         if goals and high is None:
-            found.append(Segment(start, tuple(goals), rest))
+            complete.append(Segment(start, tuple(goals), rest))
             start, goals = node, []
         goals.append(Goal(and_(*present), low, high))
         rest = temporal[0] if temporal else None
         low, high, node = (0, None, None) if rest is None else _next_goal(rest)
-    return [*found, Segment(start, tuple(goals), rest)] if goals else []
+    return [*complete, Segment(start, tuple(goals), rest)] if goals else []
 
 
 def _next_goal(rest: Formula) -> tuple[int, int | None, Formula | None]:
@@ -103,9 +103,9 @@ def after(segment: Segment, low: int, timers: Timers, first: Reached | None) -> 
     return Reached(timers.earlier(low, last.event), f"after {last.words}")
 
 
-def is_long(found: Sequence[Segment]) -> bool:
+def is_long(chain: Sequence[Segment]) -> bool:
     """Whether some segment of a chain would need many states."""
-    return any(len(segment.goals) > MOST_GOALS for segment in found)
+    return any(len(segment.goals) > MOST_GOALS for segment in chain)
 
 
 def at_a_goal(body: Formula, low: int) -> Formula:

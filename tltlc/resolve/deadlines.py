@@ -223,16 +223,16 @@ class _StepRewriting(Rewriting):
 
         ``first`` must hold at its first goal, and can hold up to step ``high``; None if it may come at any sample.
         """
-        timers, found = self._timers, segments(body, self.fits)
+        timers, parts = self._timers, segments(body, self.fits)
         is_over = timers.passed(high) if first is not None else FALSE
-        if not is_long(found):
+        if not is_long(parts):
             return self.anchored(body, first), is_over
         firsts = [first]
-        for segment, following in pairwise(found):
+        for segment, following in pairwise(parts):
             firsts.append(after(segment, following.goals[0].low, timers, firsts[-1]))
-        outside, rest = dict(self._inside), found[-1].rest
+        outside, rest = dict(self._inside), parts[-1].rest
         rest = None if rest is None else self.inside(rest)
-        for segment, before in zip(reversed(found), reversed(firsts), strict=True):
+        for segment, before in zip(reversed(parts), reversed(firsts), strict=True):
             if is_long([segment]):
                 goals = timed_goals(segment, timers, before)
                 chain = timers.chain(goals)
@@ -265,12 +265,12 @@ class _StepRewriting(Rewriting):
 
     def _never(self, node: Formula) -> Formula | None:
         """Return ``G !node`` for a chain ``node``: that its last goal never comes in time."""
-        found = segments(node.args[0], self.fits)
-        if is_long(found):
+        parts = segments(node.args[0], self.fits)
+        if is_long(parts):
             return not_(self.at_start(node))  # `G !F f` is `!F f`.
-        if len(found) != 1 or found[0].rest is not None or len(found[0].goals) < 2:
+        if len(parts) != 1 or parts[0].rest is not None or len(parts[0].goals) < 2:
             return None
-        return always(not_(timed_goals(found[0], self._timers, None)[-1].event))
+        return always(not_(timed_goals(parts[0], self._timers, None)[-1].event))
 
     def dual(self, inner: Formula, operand: Formula) -> Formula | None:
         bound = bound_of(inner)

@@ -136,8 +136,8 @@ def elapsed() -> RegisterDraft:
 def run(name: str, kept: str) -> RegisterDraft:
     """Return the register with the time from the start of the last run of samples with p to this sample.
 
-    The run is that which includes the sample before. If p did not hold there, the time is 0. ``kept`` is
-    the register that keeps the robustness of p.
+    This run includes the sample before. If p did not hold there, the time is 0. ``kept`` is the register
+    that keeps the robustness of p.
     """
     update = When(((holds(Before(kept)), Op("+", (Before(name), StepLength()))),), Const(0.0))
     return RegisterDraft(name, "run", "s", 0.0, None, 0.0, update)

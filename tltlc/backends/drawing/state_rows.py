@@ -91,5 +91,5 @@ def _due_atoms(fspa: Fspa) -> frozenset[str]:
     """
     due = {register.name for register in fspa.registers if register.kind == "due"}
     return frozenset(
-        each.name for each in fspa.atoms if isinstance(each.expression, SignalValue) and each.expression.name in due
+        atom.name for atom in fspa.atoms if isinstance(atom.expression, SignalValue) and atom.expression.name in due
     )

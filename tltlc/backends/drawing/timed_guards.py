@@ -96,7 +96,7 @@ class _TimedGuards:
         self._fspa, self._speaker = fspa, Speaker(fspa)
         self._timers = timers_of(fspa, self._speaker)
         self._diagrams = TransitionDiagrams()
-        self._names = [each.name for each in fspa.atoms]
+        self._names = [atom.name for atom in fspa.atoms]
         self._responses = _responses(fspa)
         self._laws = self._diagrams.allowed_letters(fspa.exclusive)
         for response in () if fspa.clock_varies else self._responses:
@@ -115,9 +115,9 @@ class _TimedGuards:
             leaving.setdefault(edge.source, []).append(edge)
         shown = {state: self._leaving(state, edges) for state, edges in leaving.items()}
         return TimedDrawing(
-            replace(drawing, edges=tuple(edge for each in shown.values() for edge in each.edges)),
-            {state: each.timers for state, each in shown.items()},
-            any(each.final_first for each in shown.values()),
+            replace(drawing, edges=tuple(edge for drawn in shown.values() for edge in drawn.edges)),
+            {state: drawn.timers for state, drawn in shown.items()},
+            any(drawn.final_first for drawn in shown.values()),
         )
 
     def _leaving(self, state: int, edges: Sequence[DrawnEdge]) -> _Leaving:
@@ -130,20 +130,20 @@ class _TimedGuards:
         final = [edge for edge in possible if edge.target != state and _is_final(states[edge.target])]
         rest = conjoin(facts, self._none_of(final))
         shown = [
-            each if each.edge in final or each.size[0] <= 1 else _Shown(each.edge, self._formula(each.edge, rest))
-            for each in plain
+            line if line.edge in final or line.size[0] <= 1 else _Shown(line.edge, self._formula(line.edge, rest))
+            for line in plain
         ]
-        others = [each for each in shown if each.edge not in final]
-        longest = max(others, key=lambda each: each.size, default=None)
+        others = [guarded for guarded in shown if guarded.edge not in final]
+        longest = max(others, key=lambda guarded: guarded.size, default=None)
         if longest is not None and (longest.size[0] > _MOST_LITERALS or longest.formula is TRUE):
             shown[shown.index(longest)] = _Shown(longest.edge, atom(OTHERWISE))
-        read = dict.fromkeys(name for each in plain for name in each.formula.atoms())
+        read = dict.fromkeys(name for guarded in plain for name in guarded.formula.atoms())
         label = states[state].label
         timers = {
             name: with_goal(timer, name, label, self._speaker) for name, timer in self._timers.items() if name in read
         }
         return _Leaving(
-            [line for each in shown for line in self._lines(each)],
+            [line for guarded in shown for line in self._lines(guarded)],
             timers,
             any(before.formula is not after.formula for before, after in zip(plain, shown, strict=True)),
         )

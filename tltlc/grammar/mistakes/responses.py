@@ -59,9 +59,9 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
             return None
         form, answer = _ABSENCE, (answer[0] + 1, answer[1])
     text = text_of if form == _RULE else operand_text
-    said = form.format(a=text(failure, *event), b=text(failure, *answer), t=time)
+    clause = form.format(a=text(failure, *event), b=text(failure, *answer), t=time)
     title = f"{quote_token(tokens[word])} is not an operator"
-    return suggest_rewrite(failure, 0, stop, said, title)
+    return suggest_rewrite(failure, 0, stop, clause, title)
 
 
 def _event_first(failure: ParseFailure, start: int, stop: int) -> tuple[_Range, str, _Range, int] | None:

@@ -41,22 +41,22 @@ class RoundTimes:
     def above(self, steps: int) -> RoundTime:
         """Return the least round time that leaves room above ``steps``, which is at least 1."""
         need = steps + steps // _ROOM
-        found = [
+        candidates = [
             times[index]
             for times in (self._in_seconds, self._in_steps)
             if (index := bisect_left(times, need, key=_steps)) < len(times)
         ]
-        return next((time for time in found if time.steps <= _FAR * need), found[-1])
+        return next((time for time in candidates if time.steps <= _FAR * need), candidates[-1])
 
     def below(self, steps: int) -> RoundTime:
         """Return the greatest round time that leaves room below ``steps``, which is at least 1."""
         most = steps - steps // _ROOM
-        found = [
+        candidates = [
             times[index - 1]
             for times in (self._in_seconds, self._in_steps)
             if (index := bisect_right(times, most, key=_steps)) > 0
         ]
-        return next((time for time in found if most <= _FAR * time.steps), found[-1])
+        return next((time for time in candidates if most <= _FAR * time.steps), candidates[-1])
 
 
 def _steps(time: RoundTime) -> int:
