@@ -177,6 +177,9 @@ class Definition(Names):
             )
         if isinstance(expr, BinaryExpr) and expr.op in _COMPARISONS:
             return self._comparison(expr, i, scope)
+        if isinstance(expr, CallExpr) and expr.name == "breach":
+            # What the compiler makes of ``always p`` beside other such rules: the rule is broken where p is false.
+            return self.robustness(expr.arguments[0].value, i, scope, positive=False)
         if self.is_bool(expr, scope):
             return 1.0 if self.number(expr, i, scope) else -1.0
         return min(max(self.number(expr, i, scope), -1.0), 1.0)
