@@ -13,6 +13,8 @@ FORMS: Final = {
     "a rule from the start": "require always for {s} {f}",
     "two rules from the start": "require always for {s} {p} require always for {t} {q}",
     "a rule in the end": "reach always for {s} {p}",
+    "a rule in the end, after a goal": "reach {p} then (always for {s} {q})",
+    "a rule in the end, after two goals": "reach {p} then {q} then (always for {s} {r})",
     "a response": "keep {p} implies eventually within {s} {q}",
     "a response in words": "keep within {s} of {p}, {q}",
     "a response once": "require within {s} of {p}, {f}",

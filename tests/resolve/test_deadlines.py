@@ -38,6 +38,9 @@ RULES = {
     "not twice within, at the end": "keep a implies weak_next always for {n} steps not a",
     "an avoided lapse": "avoid a and always for {n} steps not b",
     "staying": "reach always for {n} steps a",
+    "staying after a goal": "reach a then (always for {n} steps b)",
+    "staying after two goals": "reach a then b then (always for {n} steps (a or c))",
+    "staying from a goal on": "require eventually (a and eventually always for {n} steps b)",
     "a chain": "require eventually (a and next eventually within {n} steps b)",
     "a chain at the same step": "require eventually (a and eventually within {n} steps b)",
     "a chain of three": (

@@ -313,7 +313,10 @@ class Speaker:
     def _past_phrase(self, item: Atom, register: Register) -> Phrase | None:
         """Return the phrase of ``once p``, ``historically p``, ``p since q`` or ``previously p``."""
         if item.name in self._before:
-            return Phrase(SpokenName(f"{self._object(self._before[item.name])} at the step before"))
+            operand = self._before[item.name]
+            occurred = self._occurred(operand)
+            when = "at the step before" if occurred is None else "at an earlier step"
+            return Phrase(SpokenName(f"{self._object(operand if occurred is None else occurred)} {when}"))
         if not isinstance(register.update, Op):
             return None
         parts = register.update.args
@@ -324,6 +327,14 @@ class Speaker:
             return None
         form = {"once": "{0} now or before", "historically": "{0} all along", "since": "{0} since {1}"}[register.kind]
         return Phrase(SpokenName(form.format(*words)))
+
+    def _occurred(self, state: Formula) -> Formula | None:
+        """Return the formula p of an atom ``once p``; None for any other formula."""
+        register = self._registers.get(state.name) if state.op == "atom" else None
+        if register is None or register.kind != "once" or not isinstance(register.update, Op):
+            return None
+        formulas = [from_robustness(part) for part in register.update.args if not isinstance(part, Before)]
+        return formulas[0] if len(formulas) == 1 else None
 
     def _count(self, _: Register, operand: Formula, operator: str, number: str) -> str:
         if (operator, number) in ((">", "0"), (">=", "1")):

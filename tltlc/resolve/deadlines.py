@@ -11,6 +11,7 @@ where it stands           rule
 at the first sample       ``F[m,n] f`` is ``!passed(n) U (passed(m) & f)``
 at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``, or ``G !breach`` if there are more
 at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
+at the first sample       ``F(p & X F G[0,n] q)`` is ``F(p & X F G[0,n] (q & previously once p))``
 at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
 at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
 at the first sample       ``G !F(p & X F[0,n-1] q)`` is ``G !(q & p at most n steps ago)``, also for more goals
@@ -79,8 +80,8 @@ class Rewriting:
         self._atoms = timers
         self._inside: dict[Formula, Formula] = {}
 
-    def stay(self, node: Formula) -> Formula | None:
-        """Return ``F node``, where ``node`` asks to stay in a state for a time."""
+    def stay(self, node: Formula, before: Formula) -> Formula | None:
+        """Return ``F node``, where ``node`` asks to stay in a state for a time; ``before`` must hold all this time."""
         raise NotImplementedError
 
     def from_start(self, node: Formula) -> Formula | None:
@@ -116,8 +117,29 @@ class Rewriting:
             return self._invariant(node)
         known = self.from_start(node)
         if known is None and node.op == "F":
-            known = self.stay(node.args[0])
+            known = self._stay_after(node.args[0], TRUE)
         return self.inside(node) if known is None else known
+
+    def _stay_after(self, body: Formula, before: Formula) -> Formula | None:
+        """Return ``F body``, where the last goal of a sequence asks to stay in a state for a time.
+
+        ``before`` holds where the goals in front of ``body`` have come.
+        """
+        stay = self.stay(body, before)
+        if stay is not None:
+            return stay
+        parts = body.args if body.op == "and" else (body,)
+        temporal = [part for part in parts if not is_present(part)]
+        present = and_(*(part for part in parts if part not in temporal))
+        if len(temporal) != 1 or present is TRUE:
+            return None
+        later = temporal[0].op == "X"
+        following = temporal[0].args[0] if later else temporal[0]
+        goal = and_both(present, before)
+        if following.op != "F" or not self.fits(goal):
+            return None
+        rest = self._stay_after(following.args[0], self._atoms.earlier(int(later), goal))
+        return None if rest is None else eventually(and_(present, next_(rest) if later else rest))
 
     def _invariant(self, node: Formula) -> Formula:
         """Return ``G body`` with timers: a response or a rule for some time after an event, or several of them."""
@@ -187,11 +209,12 @@ class _StepRewriting(Rewriting):
         super().__init__(timers)
         self._timers, self._many_rules = timers, many_rules
 
-    def stay(self, node: Formula) -> Formula | None:
+    def stay(self, node: Formula, before: Formula) -> Formula | None:
         window = window_of(node)
-        if window is None or window.op != "G" or window.low or window.high == 0 or not self.fits(window.body):
+        if window is None or window.op != "G" or window.low or window.high == 0:
             return None
-        return stay_for(window.body, self._timers.held(window.high, window.body))
+        state = and_both(window.body, before)
+        return stay_for(state, self._timers.held(window.high, state)) if self.fits(state) else None
 
     def from_start(self, node: Formula) -> Formula | None:
         window = window_of(node)
@@ -300,6 +323,11 @@ class _StepRewriting(Rewriting):
 def stay_for(state: Formula, held: Formula) -> Formula:
     """Return that ``state`` has held for a time, which ``held`` says, or holds at the last sample."""
     return eventually(or_(held, and_(state, not_(next_(TRUE)))))
+
+
+def and_both(formula: Formula, condition: Formula) -> Formula:
+    """Return ``formula & condition``; the formula alone where the condition is TRUE."""
+    return formula if condition is TRUE else and_(formula, condition)
 
 
 def is_timed_rule(formula: Formula) -> bool:

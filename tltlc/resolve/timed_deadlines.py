@@ -11,6 +11,7 @@ where it stands                 rule
 at the first sample             ``F[T] f`` is ``!over U (!over & f)``
 at the first sample             ``G[T] f`` is ``lasted R (lasted | f)``, or ``G !breach`` if there are more
 at the first sample             ``F G[T] p`` is ``F(p has held for T | p & !X true)``
+at the first sample             ``F(p & X F G[T] q)`` is ``F(p & X F G[T] (q & previously once p))``
 at the first sample             ``G(p -> F[T] q)`` is ``G !late & G(due -> X true)``
 at the first sample             ``G(p -> G[T] q)`` is ``G !breach``
 at the first sample             ``G(p -> X f)``, f as above, is the same of ``previously p``, & ``G(p -> X true)``
@@ -41,7 +42,7 @@ from tltlc.logic.formula import (
     time_bound_of,
     until,
 )
-from tltlc.resolve.deadlines import Rewriting, negated, stay_for
+from tltlc.resolve.deadlines import Rewriting, and_both, negated, stay_for
 from tltlc.resolve.elapsed import ElapsedTimers
 from tltlc.resolve.timers import Reached
 from tltlc.resolve.windows import is_present
@@ -79,13 +80,14 @@ class _TimedRewriting(Rewriting):
         super().__init__(timers)
         self._timers, self._many_rules = timers, many_rules
 
-    def stay(self, node: Formula) -> Formula | None:
+    def stay(self, node: Formula, before: Formula) -> Formula | None:
         window = _window(node)
-        if window is not None and window.op == "F" and not (window.following or window.later):
+        if window is not None and window.op == "F" and not (window.following or window.later) and before is TRUE:
             return eventually(self.inside(window.body))  # The bound has no effect.
-        if window is None or window.op != "G" or window.following or not self.fits(window.body):
+        if window is None or window.op != "G" or window.following:
             return None
-        return stay_for(window.body, self._timers.held(window.seconds, window.body))
+        state = and_both(window.body, before)
+        return stay_for(state, self._timers.held(window.seconds, state)) if self.fits(state) else None
 
     def from_start(self, node: Formula) -> Formula | None:
         timers, window = self._timers, _window(node)

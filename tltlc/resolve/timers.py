@@ -82,6 +82,17 @@ class TimerAtoms:
         """Return the text of a formula in the names of timers, in brackets if it needs them as an operand."""
         return _operand_text(formula)
 
+    def earlier(self, low: int, event: Formula) -> Formula:
+        """Return the atom of "``event`` has held", at this sample or before; if ``low`` is 1, before this sample."""
+        once = f"once {operand_text(event)}"
+        self._register(registers.once(once, self._value(event)))
+        has_held = self._atom(once, SignalValue(once))
+        if low == 0:
+            return has_held
+        name = f"previously {operand_text(has_held)}"
+        self._register(registers.previously(name, self.kept(has_held)))
+        return self._atom(name, SignalValue(name))
+
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
         self.context.bound_of.setdefault(new, self.context.bound_of[old])
@@ -157,17 +168,6 @@ class Timers(TimerAtoms):
         if low == 0:
             return self._atom("lately", value, self.time(high), event_words)
         return self._atom("recent", value, self.time(high), event_words)
-
-    def earlier(self, low: int, event: Formula) -> Formula:
-        """Return the atom of "``event`` has held", at this sample or before; if ``low`` is 1, before this sample."""
-        once = f"once {operand_text(event)}"
-        self._register(registers.once(once, self._value(event)))
-        has_held = self._atom(once, SignalValue(once))
-        if low == 0:
-            return has_held
-        name = f"previously {operand_text(has_held)}"
-        self._register(registers.previously(name, self.kept(has_held)))
-        return self._atom(name, SignalValue(name))
 
     def chain(self, goals: Sequence[TimedGoal]) -> Formula:
         """Return the atom of "this sample is the last of the goals, and all came in time".
