@@ -42,15 +42,15 @@ class CompileOptions:
     names of params to values that replace those in the text, written as in the language
     (``{"level_size": "30 m"}``). ``state_budget`` is the most states that the construction of an
     automaton may explore; for a spec over infinite traces, a number of steps proportional to it is
-    the limit instead. ``specs`` has the names of the specs to build; if it is empty, all are built. If
-    not ``timers``, each bound becomes states, however many these are.
+    the limit instead. ``specs`` has the names of the specs to build; if it is empty, all are built.
+    ``unfolded`` has the names of specs in which each bound becomes states, however many these are.
     """
 
     library_dirs: tuple[Path, ...] = ()
     params: Mapping[str, str] = EMPTY
     state_budget: int = DEFAULT_STATE_BUDGET
     specs: tuple[str, ...] = ()
-    timers: bool = True
+    unfolded: tuple[str, ...] = ()
 
 
 @record
@@ -100,7 +100,8 @@ class Session:
     def resolution(self) -> Resolution:
         """The names, specs and tests of the declarations in :attr:`module` and in the files that they import."""
         options = self.options
-        return resolve(self.module, ResolveOptions(options.library_dirs, options.params, self._proofs, options.timers))
+        settings = ResolveOptions(options.library_dirs, options.params, self._proofs, options.unfolded)
+        return resolve(self.module, settings)
 
     @property
     def source_diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -162,7 +163,7 @@ class Session:
 
         Errors: as for :attr:`automata`; TLT0501 if this needs too many states.
         """
-        options = replace(self.options, specs=(spec,), timers=False)
+        options = replace(self.options, specs=(spec,), unfolded=(spec,))
         (fspa,) = Session(self.source, options, proofs=False).automata
         return fspa
 

@@ -356,6 +356,14 @@ def test_states_take_the_place_of_timers() -> None:
     assert accepted == {False, True}
 
 
+def test_timers_of_other_specs_stay() -> None:
+    session = Session(SourceFile("timed.tltl", f"{TIMED}\nspec huge {{ keep p implies eventually within 3 h q }}"))
+    fspa, _ = session.automata
+    assert not session.without_timers("timed").registers
+    text = backends.emit("hoa", fspa, backends.Options(without_timers=session.without_timers))["timed.hoa"]
+    assert len(read(str(text)).states) > 80
+
+
 @pytest.mark.parametrize(
     ("clause", "help_"),
     [

@@ -121,13 +121,13 @@ class Context:
         "registers",
         "signal_infos",
         "signals",
-        "timers",
+        "unfolded",
         "values",
         "values_of_signals",
     )
 
-    def __init__(self, *, timers: bool = True) -> None:
-        self.timers = timers
+    def __init__(self, *, unfolded: tuple[str, ...] = ()) -> None:
+        self.unfolded = unfolded
         self.log = Log()
         self.signal_infos: dict[str, SignalInfo] = {}
         self.params: dict[str, Param] = {}

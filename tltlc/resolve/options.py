@@ -15,11 +15,11 @@ class ResolveOptions:
     ``library_dirs`` are searched for imports after the file's own folder. ``params`` maps names of
     params to values that replace the declared ones. A value is written as in a source text,
     ``"25 m"``; without a unit, it is in SI units. ``proofs`` turns on the proofs that predicates stay
-    in their ranges. The proofs take longer than everything else. If not ``timers``, each bound becomes
-    states, however many these are.
+    in their ranges. The proofs take longer than everything else. ``unfolded`` has the names of specs in
+    which each bound becomes states, however many these are.
     """
 
     library_dirs: tuple[Path, ...] = ()
     params: Mapping[str, str] = EMPTY
     proofs: bool = True
-    timers: bool = True
+    unfolded: tuple[str, ...] = ()

@@ -144,7 +144,7 @@ def _declare_names(
     Return the environment of the module, the groups of atoms that it and its imports declare
     ``exclusive``, and all loaded modules. The context of the environment has the diagnostics.
     """
-    context = Context(timers=options.timers)
+    context = Context(unfolded=options.unfolded)
     modules = load(module, options, context.log)
     scopes = build_scopes(modules, context.log)
     declare(scopes, options, context)

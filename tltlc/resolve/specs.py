@@ -66,7 +66,7 @@ def resolve_spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env
     if not complete or not parts:
         return None
     try:
-        parts = _without_bounds(parts, env)
+        parts = _without_bounds(parts, env, unfolds=declaration.name in env.context.unfolded)
     except ResolutionError as failure:
         log.add(failure.diagnostic)
         return None
@@ -149,19 +149,19 @@ MOST_UNFOLDED: Final = 64
 """Bounds are unfolded to states if all bounds of a spec together need at most about this many."""
 
 
-def _without_bounds(parts: list[Conjunct], env: Env) -> list[Conjunct]:
+def _without_bounds(parts: list[Conjunct], env: Env, *, unfolds: bool) -> list[Conjunct]:
     """Return the conjuncts without bounded operators.
 
     A spec whose bounds need few states gets these states: then it needs no memory, and its verdicts
     come as early as possible. In all other specs, timers replace the bounds that have a rule
-    (:mod:`tltlc.resolve.deadlines`), and the others become states.
+    (:mod:`tltlc.resolve.deadlines`), and the others become states. If ``unfolds``, all become states.
     """
     context = env.context
     if context.clock_varies:
         return _without_time_bounds(parts, context)
     many_rules = sum(rules_from_start(part.formula) for part in parts) > 1
     few = prod(_states(node) for part in parts for node in bounded_parts(part.formula)) <= MOST_UNFOLDED
-    timed = context.timers and not few
+    timed = not (few or unfolds)
     result = []
     for part in parts:
         timers = Timers(context, part.source, part.span)
