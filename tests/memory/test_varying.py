@@ -17,6 +17,7 @@ from tests.memory.timed_texts import FORMS, TimedTexts, TimedTrace, timed_trace
 from tltlc.automaton.memory import given_atoms
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.pipeline import decode_artefact, encode_artefact
+from tltlc.resolve import chains
 
 
 def case_of(clauses: str) -> TimedCase:
@@ -107,6 +108,31 @@ def test_each_form_agrees_with_the_definition(form: str) -> None:
             if case is None:
                 break
             check_timed_run(case, timed_trace(random, random.randint(1, 12)), random)
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if "chain" in form])
+def test_chains_as_atoms_agree_with_the_definition(form: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(chains, "MOST_GOALS", 1)
+    random = Random(form)
+    for number in range(8):
+        texts = TimedTexts(random)
+        case = timed_case(texts.form(form, plain=number < 4))
+        for _ in range(0 if case is None else 12):
+            check_timed_run(case, timed_trace(random, random.randint(1, 12)), random)
+
+
+def test_long_chains_agree_with_the_definition(monkeypatch: pytest.MonkeyPatch) -> None:
+    random, met = Random("chains"), 0
+    for number in range(40):
+        # Long ones have two states, and short ones, with an atom for some of them, have states for their attempts.
+        monkeypatch.setattr(chains, "MOST_GOALS", 4 if number % 2 else 1)
+        texts = TimedTexts(random)
+        case = case_of(f"{random.choice(('reach', 'avoid', 'require'))} {texts.chain(random.randint(2, 8))}")
+        for _ in range(12):
+            trace = timed_trace(random, random.randint(8, 30))
+            check_timed_run(case, trace, random)
+            met += run(case, trace)[-1].verdict in ("satisfied", "violated")
+    assert met > 60
 
 
 @times(150)

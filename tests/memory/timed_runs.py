@@ -30,6 +30,10 @@ class TimedCase(NamedTuple):
     fspa: Fspa
 
 
+DEADLINES: Final = ("over", "lasted", "held", "late", "due", "breach", "lately", "recent", "chain", "lost")
+"""The names of atoms that take the place of operators about the future."""
+
+
 def timed_case(clauses: str, clock: str = "varies") -> TimedCase | None:
     """Return the spec of some clauses; None if it has one of the errors that random specs may have."""
     text = f"clock {clock}\n{DECLARATIONS}spec s {{ {clauses} }}\n"
@@ -103,8 +107,8 @@ def _check_final(case: TimedCase, trace: TimedTrace, holds: bool, random: Random
 
 @cache
 def past_formula(name: str) -> tree.Expr | None:
-    """Return the formula that an atom about the trace so far stands for; None for the atom of a deadline."""
-    if name.partition("(")[0] in ("over", "lasted", "held", "late", "due", "breach", "lately", "recent"):
+    """Return the formula that an atom about the trace so far stands for; None if a deadline is in it."""
+    if any(f"{word}(" in name for word in DEADLINES):
         return None
     expr, diagnostics = parse_formula(SourceFile("<formula>", name))
     assert expr is not None and not diagnostics, name

@@ -82,6 +82,14 @@ class TimedTexts:
             for _ in range(random.choice((1, 1, 2)))
         )
 
+    def chain(self, goals: int) -> str:
+        """Return a sequence of signals, most with a time, some of them by a deadline."""
+        random, text = self._random, self._random.choice(SIGNALS)
+        for _ in range(goals - 1):
+            within = f"within {self.time()} " if random.random() < 0.85 else ""
+            text += f" then {within}{random.choice(SIGNALS)}"
+        return f"(eventually within {self.time()} ({text}))" if random.random() < 0.3 else f"({text})"
+
     def time(self) -> str:
         """Return a time above 0 s."""
         return self._random.choice(self._times)

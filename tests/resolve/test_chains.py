@@ -123,12 +123,12 @@ def test_long_chains_agree_with_the_definition(monkeypatch: pytest.MonkeyPatch) 
     assert reached > 60
 
 
-def progress_of(fspa: Fspa, trace: Sequence[Sequence[bool]]) -> list[float]:
+def progress_of(fspa: Fspa, trace: Sequence[Sequence[bool]], lengths_s: Sequence[float | None]) -> list[float]:
     """Return the progress at each sample alone: of the state that is reached, and of the nearest edge from it."""
     progress, state, monitor = [], 0, Monitor(fspa)
     number = next((index for index, atom in enumerate(fspa.atoms) if atom.base == "chain"), None)
-    for sample in trace:
-        step = monitor.step(dict(zip("abc", sample, strict=True)))
+    for sample, length_s in zip(trace, lengths_s, strict=True):
+        step = monitor.step(dict(zip("abc", sample, strict=True)), length_s)
         distance = fspa.states[step.state].distance
         assert distance is not None
         share = (fspa.spec_size - distance) / fspa.spec_size
@@ -139,21 +139,28 @@ def progress_of(fspa: Fspa, trace: Sequence[Sequence[bool]]) -> list[float]:
     return progress
 
 
-def test_progress_is_that_of_an_automaton_that_knows_the_attempts(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("varies", [False, True], ids=["fixed", "varies"])
+def test_progress_is_that_of_an_automaton_that_knows_the_attempts(
+    varies: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     generator = random.Random(5)
     for _ in range(12):
         names, bounds, clause = long_chain(generator, generator.randint(2, 4))
         if None in bounds:
             continue
+        clause = clause.replace(" steps", " s") if varies else clause
+        clock = "clock varies " if varies else ""
         monkeypatch.setattr(chains, "MOST_GOALS", 4)
-        states = compiled(clause, monkeypatch, 0)
+        states = compiled(clause, monkeypatch, 0, clock)
         monkeypatch.setattr(chains, "MOST_GOALS", 1)
-        atom = compiled(clause, monkeypatch, 0)
+        atom = compiled(clause, monkeypatch, 0, clock)
         for _ in range(60):
             trace = random_trace(generator, 20)
-            done = [round(share * len(names)) for share in progress_of(states, trace)]
+            lengths_s = [generator.choice((0.0, 0.5, 1.0, 1.0, 2.5)) if varies else None for _ in trace]
+            done = [round(share * len(names)) for share in progress_of(states, trace, lengths_s)]
             # The values of the atoms are -1 and 1, so the nearness of the next goal adds nothing.
-            assert [round(share * len(names)) for share in progress_of(atom, trace)] == done, (clause, trace)
+            found = [round(share * len(names)) for share in progress_of(atom, trace, lengths_s)]
+            assert found == done, (clause, trace, lengths_s)
 
 
 def test_the_next_goal_of_a_chain_adds_its_nearness() -> None:
@@ -188,8 +195,8 @@ def test_long_chains_need_two_states_and_short_ones_know_their_goals() -> None:
     for goals, count in ((2, 3), (4, 9), (5, 2), (12, 2), (40, 2)):
         (fspa,) = compile_text(chain_text(goals))
         assert len(fspa.states) == count
-    (varying,) = compile_text(chain_text(5).replace("clock 60 Hz", "clock varies"))
-    assert len(varying.states) == 17
+        (varying,) = compile_text(chain_text(goals).replace("clock 60 Hz", "clock varies"))
+        assert len(varying.states) == count
     (fspa,) = compile_text(chain_text(12))
     assert len("".join(map(str, emit("c", fspa).values()))) < 80_000
 
@@ -224,8 +231,9 @@ def test_a_chain_by_a_deadline_is_violated_when_no_attempt_is_left(monkeypatch: 
     assert [step.verdict for step in steps(timed, trace)] == ["pending"] * 7 + ["violated"] * 2
 
 
-def test_the_error_for_a_long_chain_inside_another_operator_says_how_to_write_it() -> None:
-    text = chain_text(9).replace("reach a0", "keep a0 implies (a0").replace("a8 }", "a8) }")
+@pytest.mark.parametrize("clock", ["60 Hz", "varies"])
+def test_the_error_for_a_long_chain_inside_another_operator_says_how_to_write_it(clock: str) -> None:
+    text = chain_text(9).replace("reach a0", "keep a0 implies (a0").replace("a8 }", "a8) }").replace("60 Hz", clock)
     with pytest.raises(TltlError) as caught:
         build(only_spec(text), state_budget=50)
     (problem,) = caught.value.diagnostics

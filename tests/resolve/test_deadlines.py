@@ -61,9 +61,9 @@ RULES = {
 """For each form with a rule, a clause. In the text, ``n`` and ``m`` are bounds, ``m`` at most ``n``."""
 
 
-def compiled(clauses: str, monkeypatch: pytest.MonkeyPatch, most_unfolded: int) -> Fspa:
+def compiled(clauses: str, monkeypatch: pytest.MonkeyPatch, most_unfolded: int, clock: str = "") -> Fspa:
     monkeypatch.setattr(specs, "MOST_UNFOLDED", most_unfolded)
-    (fspa,) = compile_text(f"{SIGNALS}spec s {{ {clauses} }}")
+    (fspa,) = compile_text(f"{clock}{SIGNALS}spec s {{ {clauses} }}")
     return fspa
 
 

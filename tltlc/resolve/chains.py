@@ -11,22 +11,31 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic.formula import Formula, and_, eventually, next_
-from tltlc.resolve.timers import Reached, TimedGoal, Timers
-from tltlc.resolve.windows import is_present, window_of
+from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms
+from tltlc.resolve.windows import is_present
 
 MOST_GOALS: Final = 4
 """Chains of at most this many goals become states: up to 2^(n-1) of them for n goals."""
 
 
 class Goal(NamedTuple):
-    """A goal of a chain: a sample with ``state``, from ``low`` to ``high`` steps after the goal before it.
+    """A goal of a chain: a sample with ``state``, at most ``length`` after the goal before it.
 
-    ``high`` is None if the goal may come at any time. The first goal may come at any sample.
+    It must come at a later sample if ``low`` is 1, and may come at the same one if it is 0. ``length`` is None
+    if the goal may come at any time. The first goal may come at any sample.
     """
 
     state: Formula
     low: int
-    high: int | None
+    length: float | None
+
+
+class Link(NamedTuple):
+    """What a goal of a chain asks for: ``F body``, at most ``length`` later, and ``low`` as in :class:`Goal`."""
+
+    low: int
+    length: float | None
+    body: Formula
 
 
 class Segment(NamedTuple):
@@ -41,14 +50,17 @@ class Segment(NamedTuple):
     rest: Formula | None
 
 
-def segments(body: Formula, fits: Callable[[Formula], bool]) -> list[Segment]:
+def segments(
+    body: Formula, fits: Callable[[Formula], bool], timed_link: Callable[[Formula], Link | None]
+) -> list[Segment]:
     """Return the segments of the chain ``F body``: each further one begins at a goal that may come at any time.
 
-    ``fits`` says whether a timer can be about a state. The list is empty if the first goal has none.
+    ``fits`` says whether a timer can be about a state. ``timed_link`` returns a bounded operator as a link; None
+    if it is none. The list is empty if the first goal has no timer.
     """
     complete: list[Segment] = []
     goals: list[Goal] = []
-    start, low, high, rest = body, 0, None, None
+    start, low, length, rest = body, 0, None, None
     node: Formula | None = body
     while node is not None:
         parts = node.args if node.op == "and" else (node,)
@@ -56,27 +68,24 @@ def segments(body: Formula, fits: Callable[[Formula], bool]) -> list[Segment]:
         temporal = [part for part in parts if part not in present]
         if not present or len(temporal) > 1 or not fits(and_(*present)):
             break
-        if goals and high is None:
+        if goals and length is None:
             complete.append(Segment(start, tuple(goals), rest))
             start, goals = node, []
-        goals.append(Goal(and_(*present), low, high))
+        goals.append(Goal(and_(*present), low, length))
         rest = temporal[0] if temporal else None
-        low, high, node = (0, None, None) if rest is None else _next_goal(rest)
+        link = None if rest is None else timed_link(rest) or _open_link(rest)
+        low, length, node = (0, None, None) if link is None else link
     return [*complete, Segment(start, tuple(goals), rest)] if goals else []
 
 
-def _next_goal(rest: Formula) -> tuple[int, int | None, Formula | None]:
-    """Return from ``F[low,high] body`` or ``F body``, also behind ``X``, its bound and its body."""
-    bound = window_of(rest)
-    if bound is not None:
-        is_goal = bound.op == "F" and bound.low <= 1 <= bound.high
-        return (bound.low, bound.high, bound.body) if is_goal else (0, None, None)
+def _open_link(rest: Formula) -> Link | None:
+    """Return ``F body``, also behind ``X``, as a link without a bound; None for any other formula."""
     low = int(rest.op == "X")
     inner = rest.args[0] if low else rest
-    return low, None, inner.args[0] if inner.op == "F" else None
+    return Link(low, None, inner.args[0]) if inner.op == "F" else None
 
 
-def timed_goals(segment: Segment, timers: Timers, first: Reached | None) -> list[TimedGoal]:
+def timed_goals(segment: Segment, timers: TimerAtoms, first: Reached | None) -> list[TimedGoal]:
     """Return the goals of a segment, each as the event that it and all goals before it came in time.
 
     ``first`` is what must hold at the first goal besides its state; None if it may come at any sample.
@@ -84,11 +93,11 @@ def timed_goals(segment: Segment, timers: Timers, first: Reached | None) -> list
     goals: list[TimedGoal] = []
     for goal in segment.goals:
         text = timers.text(goal.state)
-        if goals and goal.high is not None:
+        if goals and goal.length is not None:
             last = goals[-1]
-            recent = timers.recent(goal.low, goal.high, last.event, last.words)
-            words = f"{text} within {timers.time(goal.high)} after {last.words}"
-            goals.append(TimedGoal(and_(goal.state, recent), words, text, goal.low, goal.high))
+            recent = timers.recent(goal.low, goal.length, last.event, last.words)
+            words = f"{text} within {timers.time(goal.length)} after {last.words}"
+            goals.append(TimedGoal(and_(goal.state, recent), words, text, goal.low, goal.length))
         elif first is None:
             goals.append(TimedGoal(goal.state, text, text))
         else:
@@ -97,8 +106,8 @@ def timed_goals(segment: Segment, timers: Timers, first: Reached | None) -> list
     return goals
 
 
-def after(segment: Segment, low: int, timers: Timers, first: Reached | None) -> Reached:
-    """Return the condition that a sample comes ``low`` or more steps after the last goal of a segment."""
+def after(segment: Segment, low: int, timers: TimerAtoms, first: Reached | None) -> Reached:
+    """Return the condition that a sample comes at the last goal of a segment or later; if ``low`` is 1, later."""
     *_, last = timed_goals(segment, timers, first)
     return Reached(timers.earlier(low, last.event), f"after {last.words}")
 

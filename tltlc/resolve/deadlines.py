@@ -26,7 +26,6 @@ from __future__ import annotations
 from itertools import pairwise
 
 from tltlc.logic.formula import (
-    FALSE,
     TRUE,
     Formula,
     always,
@@ -44,8 +43,8 @@ from tltlc.logic.formula import (
     until,
     weak_next,
 )
-from tltlc.resolve.chains import after, at_a_goal, is_long, segments, timed_goals
-from tltlc.resolve.timers import Reached, TimerAtoms, Timers
+from tltlc.resolve.chains import Link, Segment, after, at_a_goal, is_long, segments, timed_goals
+from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms, Timers
 from tltlc.resolve.unfolding import bounded_parts
 from tltlc.resolve.windows import Window, is_present, window_of
 
@@ -102,6 +101,44 @@ class Rewriting:
     def dual(self, inner: Formula, operand: Formula) -> Formula | None:
         """Return the bounded operator that ``!inner`` is, applied to the negated ``operand``."""
         raise NotImplementedError
+
+    def timed_link(self, rest: Formula) -> Link | None:
+        """Return a bounded operator that asks for the next goal of a chain; None for any other formula."""
+        raise NotImplementedError
+
+    def _long_chain(self, node: Formula) -> Formula | None:
+        """Return ``node`` with atoms for its long segments; None if it is no long chain."""
+        is_chain = node.op == "F" and is_long(self._segments(node.args[0]))
+        return eventually(self._chain(node.args[0])[0]) if is_chain else None
+
+    def _segments(self, body: Formula) -> list[Segment]:
+        return segments(body, self.fits, self.timed_link)
+
+    def _chain(self, body: Formula, first: Reached | None = None) -> tuple[Formula, list[TimedGoal] | None]:
+        """Return the body of ``F body`` with atoms for its long segments, and the goals of the first if it is long.
+
+        ``first`` must hold at its first goal; None if that may come at any sample.
+        """
+        timers, parts = self._atoms, self._segments(body)
+        if not is_long(parts):
+            return self.anchored(body, first), None
+        firsts = [first]
+        for segment, following in pairwise(parts):
+            firsts.append(after(segment, following.goals[0].low, timers, firsts[-1]))
+        outside, rest = dict(self._inside), parts[-1].rest
+        rest = None if rest is None else self.inside(rest)
+        for segment, before in zip(reversed(parts), reversed(firsts), strict=True):
+            goals = timed_goals(segment, timers, before) if is_long([segment]) else None
+            if goals is not None:
+                chain = timers.chain(goals)
+                result = chain if rest is None else and_(chain, rest)
+            else:
+                if rest is not None and segment.rest is not None:
+                    self._inside[segment.rest] = rest
+                result = self.anchored(segment.body, before if before is first else None)
+            rest = at_a_goal(result, segment.goals[0].low)
+        self._inside = outside
+        return result, goals
 
     def fits(self, *formulas: Formula) -> bool:
         """Whether a timer can be about these formulas: they have no temporal operators, and are not too large."""
@@ -218,9 +255,7 @@ class _StepRewriting(Rewriting):
 
     def from_start(self, node: Formula) -> Formula | None:
         window = window_of(node)
-        if window is not None:
-            return self._window_from_start(window)
-        return eventually(self._chain(node.args[0])[0]) if self._is_long(node) else None
+        return self._long_chain(node) if window is None else self._window_from_start(window)
 
     def _window_from_start(self, window: Window) -> Formula:
         timers = self._timers
@@ -229,7 +264,8 @@ class _StepRewriting(Rewriting):
         begun = timers.passed(window.low) if window.low else None
         if window.op == "F":
             first = Reached(timers.between(window.low, window.high), f"within {timers.time(window.high)}")
-            body, is_over = self._chain(window.body, first, window.high)
+            body, goals = self._chain(window.body, first)
+            is_over = timers.passed(window.high) if goals is None else timers.lost(goals, window.high)
             return until(not_(is_over), body if begun is None else and_(begun, body))
         if self._many_rules and self.fits(window.body):
             rule = always(not_(timers.breach_from_start(window.low, window.high, window.body)))
@@ -237,38 +273,6 @@ class _StepRewriting(Rewriting):
         body = self.inside(window.body)
         result = release(timers.lasted(window.high), body if begun is None else implies(begun, body))
         return and_(next_(TRUE), result) if window.exists else result
-
-    def _is_long(self, node: Formula) -> bool:
-        return node.op == "F" and is_long(segments(node.args[0], self.fits))
-
-    def _chain(self, body: Formula, first: Reached | None = None, high: int = 0) -> tuple[Formula, Formula]:
-        """Return the body of ``F body`` with atoms for its long segments, and the condition that it comes too late.
-
-        ``first`` must hold at its first goal, and can hold up to step ``high``; None if it may come at any sample.
-        """
-        timers, parts = self._timers, segments(body, self.fits)
-        is_over = timers.passed(high) if first is not None else FALSE
-        if not is_long(parts):
-            return self.anchored(body, first), is_over
-        firsts = [first]
-        for segment, following in pairwise(parts):
-            firsts.append(after(segment, following.goals[0].low, timers, firsts[-1]))
-        outside, rest = dict(self._inside), parts[-1].rest
-        rest = None if rest is None else self.inside(rest)
-        for segment, before in zip(reversed(parts), reversed(firsts), strict=True):
-            if is_long([segment]):
-                goals = timed_goals(segment, timers, before)
-                chain = timers.chain(goals)
-                result = chain if rest is None else and_(chain, rest)
-                if before is not None and before is first:
-                    is_over = timers.lost(goals, high)
-            else:
-                if rest is not None and segment.rest is not None:
-                    self._inside[segment.rest] = rest
-                result = self.anchored(segment.body, before if before is first else None)
-            rest = at_a_goal(result, segment.goals[0].low)
-        self._inside = outside
-        return result, is_over
 
     def response(self, clause: tuple[Formula, ...]) -> Formula | None:
         temporal = [part for part in clause if not is_present(part)]
@@ -288,7 +292,7 @@ class _StepRewriting(Rewriting):
 
     def _never(self, node: Formula) -> Formula | None:
         """Return ``G !node`` for a chain ``node``: that its last goal never comes in time."""
-        parts = segments(node.args[0], self.fits)
+        parts = self._segments(node.args[0])
         if is_long(parts):
             return not_(self.at_start(node))  # `G !F f` is `!F f`.
         if len(parts) != 1 or parts[0].rest is not None or len(parts[0].goals) < 2:
@@ -300,6 +304,12 @@ class _StepRewriting(Rewriting):
         if bound is None:
             return None
         return bounded("G[]" if inner.op == "F[]" else "F[]", bound.low, bound.high, operand)
+
+    def timed_link(self, rest: Formula) -> Link | None:
+        window = window_of(rest)
+        if window is None or window.op != "F" or not window.low <= 1 <= window.high:
+            return None
+        return Link(window.low, window.high, window.body)
 
     def anchored(self, body: Formula, reached: Reached | None) -> Formula:
         parts = body.args if body.op == "and" else (body,)

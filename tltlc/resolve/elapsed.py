@@ -23,6 +23,17 @@ class ElapsedTimers(TimerAtoms):
         """Return the robustness of "the register is at most ``length``"; it is above 0 also where they are equal."""
         return registers.negated(self._more_than(register, length))
 
+    def may_be_at_most(self, register: str, length: float) -> Expression:
+        """Return the robustness of "at the next sample, the register may be at most ``length``".
+
+        The next step may take 0 s.
+        """
+        return self.at_most(register, length)
+
+    def ends_before_next(self, length: float) -> Expression:
+        """Return the robustness of "more than ``length`` has passed since the first sample"."""
+        return self._more_than(self._elapsed(), length)
+
     def time(self, length: float) -> str:
         """Return a number of seconds as a text for people."""
         return f"{number_text(length)} s"
@@ -34,14 +45,6 @@ class ElapsedTimers(TimerAtoms):
     def lasted(self, length: float) -> Formula:
         """Return the atom of "``length`` or more has passed since the first sample"."""
         return self._atom("lasted", self.at_least(self._elapsed(), length), self.time(length))
-
-    def recent(self, length: float, event: Formula, event_words: str, *, before: bool) -> Formula:
-        """Return the atom of "``event`` held at most ``length`` ago", if ``before`` at an earlier sample.
-
-        ``event_words`` is the event in words.
-        """
-        value = self.at_most(self._age(int(before), event), length)
-        return self._atom("recent" if before else "lately", value, self.time(length), event_words)
 
     def held(self, length: float, state: Formula) -> Formula:
         """Return the atom of "``state`` held at the samples before this one, which begin ``length`` or more ago"."""

@@ -19,6 +19,7 @@ at the first sample             ``G(p -> !F[T] f)`` is ``!F(p & F[T] f)``
 at the first sample             ``G !F(p & F[T] q)`` is ``G !(q & lately)``; ``recent`` for ``F[later, T]``
 anywhere                        ``F(p & F[later, T] f)`` is ``F(p & X(recent U (recent & f)))``
 anywhere                        ``F(p & F[T] f)`` is ``F(p & (lately U (lately & f)))``
+at the first sample             a long chain of the last two is ``F chain`` (:mod:`tltlc.resolve.chains`)
 ==============================  ==============================================================
 
 There are no other rules, and a time is no number of states: any other bound is an error.
@@ -42,6 +43,7 @@ from tltlc.logic.formula import (
     time_bound_of,
     until,
 )
+from tltlc.resolve.chains import Link
 from tltlc.resolve.deadlines import Rewriting, and_both, negated, stay_for
 from tltlc.resolve.elapsed import ElapsedTimers
 from tltlc.resolve.timers import Reached
@@ -91,12 +93,16 @@ class _TimedRewriting(Rewriting):
 
     def from_start(self, node: Formula) -> Formula | None:
         timers, window = self._timers, _window(node)
-        if window is None or window.following or window.later:
+        if window is None:
+            return self._long_chain(node)
+        if window.following or window.later:
             return None
         if window.op == "F":
             in_time = not_(timers.over(window.seconds))
-            goal = self.anchored(window.body, Reached(in_time, f"within {timers.time(window.seconds)}"))
-            return until(in_time, and_(in_time, goal))
+            body, goals = self._chain(window.body, Reached(in_time, f"within {timers.time(window.seconds)}"))
+            if goals is not None:
+                return until(not_(timers.lost(goals, window.seconds)), body)
+            return until(in_time, and_(in_time, body))
         if self._many_rules and self.fits(window.body):
             return always(not_(timers.breach_from_start(window.seconds, window.body)))
         lasted = timers.lasted(window.seconds)
@@ -133,7 +139,7 @@ class _TimedRewriting(Rewriting):
             anchor, event_words = and_(anchor, reached.formula), f"{event_words} {reached.words}"
         if not self.fits(anchor):
             return self.inside(body)
-        recent = self._timers.recent(window.seconds, anchor, event_words, before=window.later)
+        recent = self._timers.recent(int(window.later), window.seconds, anchor, event_words)
         in_time = f"within {self._timers.time(window.seconds)} after {event_words}"
         waiting = until(recent, and_(recent, self.anchored(window.body, Reached(recent, in_time))))
         return and_(*present, next_(waiting) if window.later else waiting)
@@ -162,9 +168,15 @@ class _TimedRewriting(Rewriting):
         if window is None or window.op != "F" or window.following or not present or not self.fits(goal):
             return None
         words = self._timers.text(and_(*present)) + ("" if reached is None else f" {reached.words}")
-        recent = self._timers.recent(window.seconds, goal, words, before=window.later)
+        recent = self._timers.recent(int(window.later), window.seconds, goal, words)
         in_time = f"within {self._timers.time(window.seconds)} after {words}"
         return self._last_goal(window.body, Reached(recent, in_time))
+
+    def timed_link(self, rest: Formula) -> Link | None:
+        window = _window(rest)
+        if window is None or window.op != "F" or window.following:
+            return None
+        return Link(int(window.later), window.seconds, window.body)
 
     def dual(self, inner: Formula, operand: Formula) -> Formula | None:
         # `F` includes the end of its time and `G` does not, so neither is the negation of the other.

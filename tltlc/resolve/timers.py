@@ -33,14 +33,15 @@ class Reached(NamedTuple):
 class TimedGoal(NamedTuple):
     """A goal that came in time: ``event`` holds at its samples, and ``words`` says it.
 
-    ``text`` is the goal alone, which must come from ``low`` to ``high`` steps after the goal before it.
+    ``text`` is the goal alone. It must come at most ``length`` after the goal before it, at a later sample
+    if ``low`` is 1.
     """
 
     event: Formula
     words: str
     text: str
     low: int = 0
-    high: int = 0
+    length: float = 0
 
 
 class TimerAtoms:
@@ -60,6 +61,22 @@ class TimerAtoms:
     def at_most(self, register: str, length: float) -> Expression:
         """Return the robustness of "the register, which counts time, is at most ``length``"."""
         raise NotImplementedError
+
+    def may_be_at_most(self, register: str, length: float) -> Expression:
+        """Return the robustness of "at the next sample, the register may be at most ``length``"."""
+        raise NotImplementedError
+
+    def ends_before_next(self, length: float) -> Expression:
+        """Return the robustness of "at the next sample, more than ``length`` has passed since the first one"."""
+        raise NotImplementedError
+
+    def recent(self, low: int, length: float, event: Formula, event_words: str) -> Formula:
+        """Return the atom of "``event`` held at most ``length`` ago", at an earlier sample if ``low`` is 1.
+
+        ``event_words`` is the event in words. ``low`` is 0 or 1.
+        """
+        value = self.at_most(self._age(low, event), length)
+        return self._atom("recent" if low else "lately", value, self.time(length), event_words)
 
     def time(self, length: float) -> str:
         """Return a length of time as a text for people."""
@@ -92,6 +109,39 @@ class TimerAtoms:
         name = f"previously {operand_text(has_held)}"
         self._register(registers.previously(name, self.kept(has_held)))
         return self._atom(name, SignalValue(name))
+
+    def chain(self, goals: Sequence[TimedGoal]) -> Formula:
+        """Return the atom of "this sample is the last of the goals, and all came in time".
+
+        Where it does not hold, its robustness is the share of the chain that is done, less 1: k of n goals
+        have come and may still be followed in time, and the next one is near.
+        """
+        done: list[Expression] = [self._nearness(goals[0])]
+        for number, (goal, following) in enumerate(pairwise(goals), start=1):
+            waits = registers.holds(self.at_most(self._age(following.low, goal.event), following.length))
+            near = When(((waits, self._nearness(following)),), Const(0.0))
+            goals_done = Op("+", (Const(float(number)), near))
+            done.append(When(((self._continues(goal, following), goals_done),), Const(0.0)))
+        share = Op("/", (Op("max", tuple(done)), Const(float(len(goals)))))
+        last = SignalValue(self.kept(goals[-1].event))
+        value = When(((registers.holds(last), last),), Op("-", (share, Const(1.0))))
+        return self._atom("chain", value, *_chain_arguments(goals, self))
+
+    def lost(self, goals: Sequence[TimedGoal], length: float) -> Formula:
+        """Return the atom of "``length`` is over, and no goal may still be followed in time"."""
+        alive = tuple(self._continues(goal, following) for goal, following in pairwise(goals))
+        value = When(((Condition("or", alive), Const(-1.0)),), self.ends_before_next(length))
+        return self._atom("lost", value, *_chain_arguments(goals, self))
+
+    def _nearness(self, goal: TimedGoal) -> Expression:
+        """Return how near a goal that may come at this sample is: from 0 to 1."""
+        value = SignalValue(self.kept(goal.event))
+        return Op("+", (Const(1.0), Op("min", (Const(0.0), value))))
+
+    def _continues(self, goal: TimedGoal, following: TimedGoal) -> Condition:
+        """Return the condition that the next sample may be the goal that follows."""
+        in_time = registers.holds(self.may_be_at_most(self._age(following.low, goal.event), following.length))
+        return Condition("or", (registers.holds(SignalValue(self.kept(goal.event))), in_time))
 
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
@@ -158,50 +208,6 @@ class Timers(TimerAtoms):
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
         over = self._atom("over", self.at_least(self._samples(), high + 2), self.time(high))
         return and_(self.passed(low), not_(over)) if low else not_(over)
-
-    def recent(self, low: int, high: int, event: Formula, event_words: str) -> Formula:
-        """Return the atom of "``event`` held from ``low`` to ``high`` steps ago".
-
-        ``event_words`` is the event in words. ``low`` is 0 or 1.
-        """
-        value = self.at_most(self._age(low, event), high)
-        if low == 0:
-            return self._atom("lately", value, self.time(high), event_words)
-        return self._atom("recent", value, self.time(high), event_words)
-
-    def chain(self, goals: Sequence[TimedGoal]) -> Formula:
-        """Return the atom of "this sample is the last of the goals, and all came in time".
-
-        Where it does not hold, its robustness is the share of the chain that is done, less 1: k of n goals
-        have come and may still be followed in time, and the next one is near.
-        """
-        done: list[Expression] = [self._nearness(goals[0])]
-        for number, (goal, following) in enumerate(pairwise(goals), start=1):
-            waits = registers.holds(self.at_most(self._age(following.low, goal.event), following.high))
-            near = When(((waits, self._nearness(following)),), Const(0.0))
-            goals_done = Op("+", (Const(float(number)), near))
-            done.append(When(((self._continues(goal, following), goals_done),), Const(0.0)))
-        share = Op("/", (Op("max", tuple(done)), Const(float(len(goals)))))
-        last = SignalValue(self.kept(goals[-1].event))
-        value = When(((registers.holds(last), last),), Op("-", (share, Const(1.0))))
-        return self._atom("chain", value, *_chain_arguments(goals, self))
-
-    def lost(self, goals: Sequence[TimedGoal], high: int) -> Formula:
-        """Return the atom of "more than ``high`` steps have passed, and no goal may still be followed in time"."""
-        alive = tuple(self._continues(goal, following) for goal, following in pairwise(goals))
-        is_over = self.at_least(self._samples(), high + 1)
-        value = When(((Condition("or", alive), Const(-1.0)),), is_over)
-        return self._atom("lost", value, *_chain_arguments(goals, self))
-
-    def _nearness(self, goal: TimedGoal) -> Expression:
-        """Return how near a goal that may come at this sample is: from 0 to 1."""
-        value = SignalValue(self.kept(goal.event))
-        return Op("+", (Const(1.0), Op("min", (Const(0.0), value))))
-
-    def _continues(self, goal: TimedGoal, following: TimedGoal) -> Condition:
-        """Return the condition that the next sample may be the goal that follows."""
-        in_time = registers.holds(self.at_most(self._age(following.low, goal.event), following.high - 1))
-        return Condition("or", (registers.holds(SignalValue(self.kept(goal.event))), in_time))
 
     def held(self, steps: int, state: Formula) -> Formula:
         """Return the atom of "``state`` has held without a break for ``steps`` steps or more"."""
@@ -270,6 +276,14 @@ class Timers(TimerAtoms):
         border = length + 0.5
         return Op("/", (Op("-", (Const(border), registers.saturated(register, 2 * border))), Const(border)))
 
+    def may_be_at_most(self, register: str, length: float) -> Expression:
+        """Return the robustness of "at the next sample, the register may be at most ``length``"."""
+        return self.at_most(register, length - 1)
+
+    def ends_before_next(self, length: float) -> Expression:
+        """Return the robustness of "this is sample ``length``, counted from 0, or a later one"."""
+        return self.at_least(self._samples(), length + 1)
+
     def time(self, length: float) -> str:
         """Return a number of steps as a text for people: in seconds if there is a clock."""
         steps, period = int(length), self.context.clock_s
@@ -280,10 +294,10 @@ class Timers(TimerAtoms):
         return f"{number_text(seconds)} s" if abs(seconds / period - steps) < 1e-3 else f"{steps} steps"
 
 
-def _chain_arguments(goals: Sequence[TimedGoal], timers: Timers) -> tuple[str, ...]:
+def _chain_arguments(goals: Sequence[TimedGoal], timers: TimerAtoms) -> tuple[str, ...]:
     """Return the goals of a chain and the times between them: ``a``, ``5 s``, ``b``."""
     first, *others = goals
-    return (first.text, *(text for goal in others for text in (timers.time(goal.high), goal.text)))
+    return (first.text, *(text for goal in others for text in (timers.time(goal.length), goal.text)))
 
 
 def _text(formula: Formula) -> str:
