@@ -29,6 +29,7 @@ from tltlc.automaton.value_phrases import COMPARED, TIMES, VALUES, Phrase, value
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, Op, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
+from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
 from tltlc.resolve.spec import Atom, Register, RegisterKind
@@ -181,8 +182,13 @@ class Speaker:
         """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
 
         On a clock that varies, these are ``recent(5 s, a) U (recent(5 s, a) & b)`` and
-        ``lasted(5 s) R (lasted(5 s) | b)``. Return None for any other formula.
+        ``lasted(5 s) R (lasted(5 s) | b)``. A negation of the one is the other, of ``!b``. Return None for any other
+        formula.
         """
+        if node.op == "not" and node.args[0].op in ("U", "R"):
+            node = complement(node.args[0], depth=1)
+            if not all(map(is_state, node.args)):
+                return None
         if node.op not in ("U", "R"):
             return None
         timer, goal = node.args
@@ -200,9 +206,10 @@ class Speaker:
             text = f"{words} within {self._passed[passed]}"
             return eventually(and_(atom(text), *(done[part] for part in parts if part not in present)))
         kept = or_(*(part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer))
-        if timer.name not in self._passed or not is_state(kept):
+        passed = (timer.args[0] if timer.op == "not" else timer).name
+        if passed not in self._passed or not is_state(kept):
             return None
-        return self._lasting(kept, f"for {self._passed[timer.name]}")
+        return self._lasting(kept, f"for {self._passed[passed]}")
 
     def _ruled_out(self, node: Formula, base: str) -> Atom | None:
         """Return the timer with this base that ``G !timer`` rules out, else None."""
@@ -270,7 +277,8 @@ class Speaker:
             time = f"{border:g} s"
         if is_recent:
             return Phrase(SpokenName(f"{self._object(operand)} in the last {time}"))
-        return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"))
+        fails = SpokenName(f"a step with {self._object(operand)} in the last {time}", "have")
+        return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"), fails)
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
         arguments = self.arguments(item, register)

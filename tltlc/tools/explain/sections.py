@@ -101,14 +101,16 @@ def failure_texts(explanation: Explanation) -> tuple[str, ...]:
 
     If there are more than ``_MOST_FAILURES`` conditions, the last text says how many are left out.
     """
-    texts = [_failure_text(failure) for failure in explanation.failures[:_MOST_FAILURES]]
+    ends_well = any(state.verdict == "satisfied" for state in explanation.states)
+    step = "at any step before it is met for good" if ends_well else "at any step"
+    texts = [_failure_text(failure, step) for failure in explanation.failures[:_MOST_FAILURES]]
     rest = len(explanation.failures) - len(texts)
     return (*texts, *([f"and {rest} more"] if rest else ()))
 
 
-def _failure_text(failure: TrapCondition) -> str:
+def _failure_text(failure: TrapCondition, everywhere: str) -> str:
     if failure.everywhere:
-        return f"{failure.when}, at any step"
+        return f"{failure.when}, {everywhere}"
     numbers = [str(state) for state in failure.states[:_MOST_STATES]]
     ellipsis = ", …" if len(failure.states) > _MOST_STATES else ""
     return f"{failure.when}, in state{'s' * (len(failure.states) > 1)} {', '.join(numbers)}{ellipsis}"
