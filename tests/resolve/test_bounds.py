@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 
 from tests.logic.strategies import traces
 from tests.resolve.helpers import codes, formula, only_spec
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.oracle import holds
+from tltlc.pipeline import compile_text
 
 DECLARED = "clock 20 Hz signal a: bool spec s = "
 
@@ -73,3 +75,16 @@ def test_step_and_steps_are_the_same_unit() -> None:
     for singular, plural in (("F[0,1 step] a", "F[0,1 steps] a"), ("F within 1 step a", "F within 1 steps a")):
         assert only_spec(text.format(singular)).formula == only_spec(text.format(plural)).formula
     assert only_spec("signal a: bool spec s { limit 1 step keep a }").limit_steps == 1
+
+
+def test_the_error_about_a_bound_names_the_one_of_its_own_spec() -> None:
+    text = (
+        "signal a: bool\nsignal b: bool\n"
+        "spec small { require next after 90 steps b }\n"
+        "spec large { keep a implies next after 90 steps b }\n"
+    )
+    with pytest.raises(TltlError) as caught:
+        compile_text(text)
+    (problem,) = caught.value.diagnostics
+    assert problem.code == "TLT0501"
+    assert problem.labels[0].span.start > text.index("spec large")

@@ -137,7 +137,7 @@ def note_bound(node: Formula, steps: int, expr: Unary | BinaryExpr, bound: Tempo
     source = env.scope.source
     place = Bound(steps, source, bound.span, source.slice(expr.op_span), expr.op, bound.words)
     env.context.bounds.append(place)
-    env.context.bound_of.setdefault(node, place)
+    env.context.bound_of[node] = place
 
 
 def _drop_bound(op: str, steps: int, operand: Formula) -> Formula:

@@ -91,10 +91,10 @@ class Context:
     - ``broken`` has the identities of the declarations whose error has been reported.
     - ``values_of_signals`` maps the atoms that compare a signal with one value, such as ``phase == 2``
       and ``mode(g1) is alert``, to the name of the signal.
-    - ``bounds`` has the bounds resolved so far, and ``bound_of`` the first bound of each bounded
+    - ``bounds`` has the bounds resolved so far, and ``bound_of`` the latest bound of each bounded
       operator.
     - ``expansions`` counts the expansions of lets and quantifiers so far.
-    - ``timers`` says whether timers may replace bounds.
+    - ``unfolded`` has the names of the specs in which no timer replaces a bound.
 
     The identity of an object is its ``id()``. A key of ``instances`` or ``values`` contains the
     identity of a declaration or expression, and the values of its parameters or local names.

@@ -145,7 +145,7 @@ class TimerAtoms:
 
     def in_place_of(self, old: Formula, new: Formula) -> Formula:
         """Return the bounded operator ``new``, which gets the place in the text of the one that it replaces."""
-        self.context.bound_of.setdefault(new, self.context.bound_of[old])
+        self.context.bound_of[new] = self.context.bound_of[old]
         return new
 
     def _age(self, low: int, event: Formula) -> str:
