@@ -21,7 +21,8 @@ from tltlc.program.build import program
 from tltlc.program.enums import nested_enums, pascal_case
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, CommentLine, If, ProgramVariable, Statement, Table
+from tltlc.program.step_code import StepCode
+from tltlc.program.tree import FAILING, Assign, BinaryNumber, If, ProgramVariable, Statement, Table
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -114,12 +115,12 @@ class _CSharp(Printer):
         return super().call(_FUNCTIONS[function], arguments)
 
 
-class _Source:
+class _Source(StepCode):
     """Makes the C# code of one monitor, by filling the template ``monitor.cs.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
-        self._fspa, self._file = fspa, file
-        self._program = program(fspa, [*_WORDS, *_TEMPLATE], has_bools=True)
+        super().__init__(program(fspa, [*_WORDS, *_TEMPLATE], has_bools=True))
+        self._file = file
         self._printer = _CSharp()
 
     def text(self) -> str:
@@ -128,15 +129,12 @@ class _Source:
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
         present: list[str] = [
+            *snippets.common_blocks(program_),
             *program_.functions,
             *functions_called(statement for case in program_.cases for statement in case.statements),
         ]
         present += ["note"] if program_.functions & FAILING else []
-        present += ["exclusive"] if program_.exclusive else []
-        present += ["registers"] if fspa.registers else []
-        present += ["varies"] if fspa.clock_varies else []
         present += [] if all(program_.always_in_range) else ["keep"]
-        present += ["states"] if program_.tables is None else ["tables"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
             step = _CSharp.block(self._step(), 3)
@@ -192,7 +190,7 @@ class _Source:
         """Return a row for each state or, if there are tables, for each kind of states."""
         tables = self._program.tables
         lines: list[str] = []
-        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+        for index in self._program.state_rows:
             state = self._fspa.states[index]
             values = (
                 _string(str(state.label) if tables is None else ""),
@@ -232,13 +230,7 @@ class _Source:
 
     # --- a step -----------------------------------------------------------------------------------
 
-    def _step(self) -> list[str]:
-        return snippets.paragraphs(
-            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
-        )
-
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -276,47 +268,32 @@ class _Source:
             for name in names
         ]
 
-    def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
-        lines: list[str] = []
-        later: list[str] = []
-        range_checks = lines if self._fspa.registers else later
-        for step in self._program.every_step:
-            index = step.index
-            if step.kind == "register":
-                lines += self._register(index)
-                continue
-            name = self._program.atoms[index]
-            lines += self._printer.lines(self._value(index))
-            if self._program.always_in_range[index]:
-                continue
-            if functions_called(self._program.values[index]) & FAILING:
-                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {index}, out result);")
-            range_checks += _check_lines(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
-        return [*lines, *later]
+    def _value(self, index: int) -> list[str]:
+        program_, statements = self._program, self._program.values[index]
+        lines = self._printer.comment(program_.atom_comments[index])
+        lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
+        return [*lines, *self._problem(statements, index)]
+
+    def _range_check(self, index: int) -> list[str]:
+        name = self._program.atoms[index]
+        return _check_lines(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({index}, {name});")
 
     def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
         program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
         place = len(program_.atoms) + index
-        comment = CommentLine(program_.register_comments[index])
-        lines = self._printer.lines((comment, *with_declaration(name, statements, changes=False)))
-        if functions_called(statements) & FAILING:
-            lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);")
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += self._printer.lines(with_declaration(name, statements, changes=False))
+        lines += self._problem(statements, place)
         if not program_.always_finite[index]:
             lines.append(f"if (!IsFinite({name})) return Refuse(Problem.TooLarge, {place}, out result);")
         return lines
 
-    def _value(self, index: int) -> tuple[Statement, ...]:
-        """Return the statements that declare an atom's variable and compute its value."""
-        program_ = self._program
-        return (
-            CommentLine(program_.atom_comments[index]),
-            *with_declaration(program_.atoms[index], program_.values[index]),
-        )
+    def _problem(self, statements: Sequence[Statement], place: int) -> list[str]:
+        """Return the code that ends a step if one of the statements found a problem; ``place`` is that of its value."""
+        fails = functions_called(statements) & FAILING
+        return [f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);"] if fails else []
 
     def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -326,7 +303,6 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
@@ -337,17 +313,12 @@ class _Source:
             # A case that contains declarations needs braces.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
             lines += [f"{_INDENT}case {number}:", f"{_INDENT}{{"]
-            lines += [f"{_INDENT * 2}{line}" for line in self._bools(number)]
-            lines += self._printer.lines((*self._values_only_in(number), *case.statements), depth=2)
+            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *self._values(number))]
+            lines += self._printer.lines(case.statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
 
-    def _values_only_in(self, case: int) -> list[Statement]:
-        """Return the statements that compute the atoms which only this case needs."""
-        return [statement for index in self._program.computed_in(case) for statement in self._value(index)]
-
     def _judge(self) -> list[str]:
-        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         verdict = "entered.Verdict"
         lines = [f"Place entered = States[{states.TARGET}];"]
@@ -366,7 +337,6 @@ class _Source:
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     def _remember(self) -> list[str]:
-        """Return the code that keeps the values of the registers for the next sample."""
         texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
         return [f"_registers[{index}] = {text};" for index, text in enumerate(texts)]
 
@@ -411,9 +381,7 @@ def _in_xml(text: str) -> str:
 
 
 def _param_check(param: Param, name: str) -> list[str]:
-    tests = [f"IsFinite(given.{name})"]
-    tests += [] if param.low is None else [f"given.{name} >= {snippets.number_literal(param.low)}"]
-    tests += [] if param.high is None else [f"given.{name} <= {snippets.number_literal(param.high)}"]
+    tests = [f"IsFinite(given.{name})", *snippets.range_tests(f"given.{name}", param)]
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
     message = f" + Shown(given.{name}) + ".join(map(_string, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]

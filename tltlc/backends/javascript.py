@@ -23,6 +23,7 @@ from tltlc.program.enums import enums_of
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
+from tltlc.program.step_code import StepCode
 from tltlc.program.tree import FAILING, Assign, Declare, Int
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
@@ -122,12 +123,12 @@ class _JavaScript(Printer):
         return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
 
-class _Source:
+class _Source(StepCode):
     """Makes the module of one monitor and its TypeScript types, by filling their templates."""
 
     def __init__(self, fspa: Fspa, module: str, declarations: str) -> None:
-        self._fspa, self._module, self._declarations = fspa, module, declarations
-        self._program = program(fspa, _RESERVED)
+        super().__init__(program(fspa, _RESERVED))
+        self._module, self._declarations = module, declarations
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
         self._printer = _JavaScript(names)
@@ -140,18 +141,15 @@ class _Source:
         program_ = self._program
         with recursion_room():
             step = _JavaScript.block(self._step(), depth=2)
-        present: list[str] = [*program_.functions, *(["failing"] if program_.functions & FAILING else [])]
+        present: list[str] = [*snippets.common_blocks(program_), *program_.functions]
+        present += ["failing"] if program_.functions & FAILING else []
         present += ["signal"] if fspa.signals else []
         present += [] if all(program_.always_in_range) else ["range"]
-        present += ["exclusive"] if program_.exclusive else []
-        present += ["registers"] if fspa.registers else []
         present += ["computed"] if fspa.registers and "failing" in present else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
-        present += ["varies"] if fspa.clock_varies else []
         needs_errors = fspa.clock_varies or "atom" in present or not all(program_.always_finite)
         present += ["some"] if fspa.signals or needs_errors else []
         present += ["clamp"] if fspa.signals or "range" in present else []
-        present += ["states"] if program_.tables is None else ["tables"]
         present += ["params"] if program_.variables_used & {*program_.params} else []
         places = {
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -232,7 +230,7 @@ class _Source:
         """Return a row for each state or, if there are tables, for each kind of states, without labels."""
         tables = self._program.tables
         rows: list[str] = []
-        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+        for index in self._program.state_rows:
             state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
             label = f"label: {_string(str(state.label))}, " if tables is None else ""
@@ -251,11 +249,6 @@ class _Source:
         return {"tables": "\n".join(lines), "label_texts": _list(texts)}
 
     # --- the step function ------------------------------------------------------------------------
-
-    def _step(self) -> list[str]:
-        return snippets.paragraphs(
-            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
-        )
 
     def _read(self) -> list[str]:
         """Return the code that checks ``dt``, and reads signals, clamped to their ranges, and params into variables."""
@@ -283,41 +276,19 @@ class _Source:
             lines += [f"const {name} = this.registers[{index}];"] if name in used else []
         return lines
 
-    def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
-        program_ = self._program
-        lines: list[str] = []
-        later: list[str] = []
-        for step in program_.every_step:
-            if step.kind == "register":
-                lines += self._register(step.index)
-                continue
-            name = program_.atoms[step.index]
-            lines += self._value(step.index)
-            if not program_.always_in_range[step.index]:
-                check = f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({step.index}, {name});"
-                (lines if program_.registers else later).append(check)
-        return [*lines, *later]
-
-    def _values(self, case: int) -> list[str]:
-        """Return the code that computes the values of the atoms that only this case computes."""
-        return [line for index in self._program.computed_in(case) for line in self._value(index)]
-
     def _value(self, index: int) -> list[str]:
-        """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.atom_comments[index])
         if functions_called(statements) & FAILING:
             lines.append(f"this.#atom = {index};")
-        return [
-            *lines,
-            *self._printer.lines(
-                with_declaration(program_.atoms[index], statements, changes=not program_.always_in_range[index])
-            ),
-        ]
+        changes = not program_.always_in_range[index]
+        return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], statements, changes=changes))]
+
+    def _range_check(self, index: int) -> list[str]:
+        name = self._program.atoms[index]
+        return [f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({index}, {name});"]
 
     def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
         program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
         lines = self._printer.comment(program_.register_comments[index])
         if functions_called(statements) & FAILING:
@@ -329,7 +300,6 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._program.atoms[atom] for atom in group]
@@ -344,7 +314,6 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"let {states.TARGET} = this.state;", f"let {states.ROBUSTNESS} = 0;"]
         lines += [f"let {states.PROGRESS} = 0;"] if self._fspa.judge == "goal" else []
         lines.append(f"let {states.LIMITING} = null;")
@@ -361,7 +330,6 @@ class _Source:
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
-        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {reward_step.BEST} = this.progress;"]
         lines += [f"let {reward_step.DONE} = this.done;", f"let {reward_step.REWARD};"]
@@ -374,7 +342,6 @@ class _Source:
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     def _remember(self) -> list[str]:
-        """Return the code that keeps the values of the registers for the next sample."""
         texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
         return [f"this.registers[{index}] = {text};" for index, text in enumerate(texts)]
 

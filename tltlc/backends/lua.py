@@ -34,7 +34,8 @@ from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
-from tltlc.program.tree import FAILING
+from tltlc.program.step_code import StepCode
+from tltlc.program.tree import FAILING, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -74,13 +75,13 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
-class _Source:
+class _Source(StepCode):
     """Makes the Lua module of one monitor, by filling the template ``monitor.lua.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
-        self._fspa, self._file = fspa, file
         tables = _TABLES if fspa.registers else _TABLES[:3]
-        program_ = self._program = program(fspa, [*KEYWORDS, *_OWN, *tables])
+        super().__init__(program(fspa, [*KEYWORDS, *_OWN, *tables]))
+        self._file, program_ = file, self._program
         self._tables_text = ", ".join(tables)
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
@@ -125,16 +126,13 @@ class _Source:
             moves = "\n".join(self._moves())
             step = LuaPrinter.block(self._step())
         present = [
+            *snippets.common_blocks(program_),
             *functions,
             *(["failing"] if functions & FAILING else []),
             *(["many"] if self._variables_are_fields else []),
         ]
         present += [] if all(program_.always_in_range) else ["kept"]
         present += [] if self._few_cases else ["moves"]
-        present += ["states"] if program_.tables is None else ["tables"]
-        present += ["exclusive"] if program_.exclusive else []
-        present += ["registers"] if fspa.registers else []
-        present += ["varies"] if fspa.clock_varies else []
         present += ["enums"] if enums else []
         present += ["many_registers"] if fspa.registers and self._variables_are_fields else []
         places = {
@@ -186,7 +184,7 @@ class _Source:
         """Return a row for each state or, if there are tables, for each kind of states, without labels."""
         tables = self._program.tables
         rows: list[str] = []
-        for number, index in enumerate(range(len(self._fspa.states)) if tables is None else tables.kind_states):
+        for number, index in enumerate(self._program.state_rows):
             state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = (
                 f'verdict = "{state.verdict}", accepting = {snippets.boolean_literal(state.accepting)}, ends = {ends}'
@@ -306,55 +304,40 @@ class _Source:
         return lines
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
-        lines: list[str] = []
-        later: list[str] = []
-        range_checks = lines if self._fspa.registers else later
-        failing = False
-        for step in self._program.every_step:
-            index = step.index
-            if step.kind == "register":
-                lines += self._register(index)
-                failing |= bool(functions_called(self._program.updates[index]) & FAILING)
-                continue
-            atom, name = self._fspa.atoms[index], self._program.atoms[index]
-            lines += self._value(index)
-            if self._program.always_in_range[index]:
-                continue
-            if functions_called(self._program.values[index]) & FAILING:
-                failing = True
-                text = string_literal(f"the atom `{atom.name}` ")
-                lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
-            variable = self._printer.name(name)
-            range_checks += [
-                f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
-                f"  {variable}, problem = kept(self, {string_literal(atom.name)}, {variable})",
-                "  if problem then return nil, problem end",
-                "end",
-            ]
-        return [*(["failure = nil"] if failing else []), *lines, *later]
+        return [*(["failure = nil"] if self._program.functions & FAILING else []), *super()._compute()]
+
+    def _range_check(self, index: int) -> list[str]:
+        variable = self._printer.name(self._program.atoms[index])
+        return [
+            f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
+            f"  {variable}, problem = kept(self, {string_literal(self._names[index])}, {variable})",
+            "  if problem then return nil, problem end",
+            "end",
+        ]
 
     def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
         program_, statements, name = self._program, self._program.updates[index], self._program.registers[index]
         lines = self._printer.comment(program_.register_comments[index])
         lines += self._printer.lines(with_declaration(name, statements))
         text = f"the register `{self._fspa.registers[index].name}` "
-        if functions_called(statements) & FAILING:
-            lines.append(f"if failure then return nil, at_step(self, {string_literal(text)} .. failure) end")
+        lines += self._failure(statements, text)
         if not program_.always_finite[index]:
             refusal = f"return nil, at_step(self, {string_literal(f'{text}is too large to compute')})"
             lines += [f"if not is_finite({self._printer.name(name)}) then", f"  {refusal}", "end"]
         return lines
 
     def _value(self, index: int) -> list[str]:
-        """Return the code that computes the value of an atom, given its index."""
-        program_ = self._program
+        program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.atom_comments[index])
-        return [*lines, *self._printer.lines(with_declaration(program_.atoms[index], program_.values[index]))]
+        lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
+        return [*lines, *self._failure(statements, f"the atom `{self._names[index]}` ")]
+
+    def _failure(self, statements: Sequence[Statement], text: str) -> list[str]:
+        """Return the code that ends a step if one of the statements failed; its message begins with ``text``."""
+        fails = functions_called(statements) & FAILING
+        return [f"if failure then return nil, at_step(self, {string_literal(text)} .. failure) end"] if fails else []
 
     def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
@@ -379,7 +362,6 @@ class _Source:
         return [*lines, "end"]
 
     def _judge(self) -> list[str]:
-        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         definitions = {
             reward_step.ENDS: "entered.ends",
@@ -396,7 +378,6 @@ class _Source:
         ]
 
     def _remember(self) -> list[str]:
-        """Return the code that keeps the values of the registers for the next sample."""
         registers = zip(self._program.before, self._program.kept, strict=True)
         return [f"{self._printer.name(before)} = {self._printer.text(kept, CHOICE)}" for before, kept in registers]
 

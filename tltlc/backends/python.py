@@ -18,7 +18,7 @@ from tltlc.automaton.memory import Computation
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.python_syntax import long_dict, long_tuple, short_tuple, tuple_items
 from tltlc.backends.templates import fill_template, names_in
-from tltlc.program import reward_step, states
+from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of, nested_enums, upper_case
@@ -241,10 +241,7 @@ class _Source:
                     for signal in enum.signals
                 ]
             )
-        present = ["states" if self._program.tables is None else "tables"]
-        present += ["registers"] if fspa.registers else []
-        present += ["varies"] if fspa.clock_varies else []
-        present += ["enums"] if enums else []
+        present = [*snippets.common_blocks(self._program), *(["enums"] if enums else [])]
         return fill_template("monitor.py.txt", pieces, present)
 
     def _enums(self) -> str:

@@ -21,12 +21,12 @@ from tltlc.program.build import program
 from tltlc.program.enums import flat_enums, upper_case
 from tltlc.program.printer import CHOICE, OR, UNIT, Printer, comment_lines
 from tltlc.program.shapes import StateTables
+from tltlc.program.step_code import StepCode
 from tltlc.program.tree import (
     FAILING,
     Assign,
     BinaryNumber,
     Choice,
-    CommentLine,
     Declare,
     ProgramExpression,
     ProgramVariable,
@@ -123,26 +123,27 @@ class _Rust(Printer):
         return super().call(f"math::{function}" if function in _MATH else function, arguments)
 
 
-class _Source:
+class _Source(StepCode):
     """Makes the Rust module of one monitor, by filling the template ``monitor.rs.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
-        self._fspa, self._file = fspa, file
         self._enums = flat_enums(fspa, [*_RESERVED, *names_in("monitor.rs.txt", r"\b([A-Z]\w*)")], upper_case)
         constants = [name for enum in self._enums for name in enum.constants]
-        self._program = program(fspa, [*_RESERVED, *constants], has_bools=True)
+        super().__init__(program(fspa, [*_RESERVED, *constants], has_bools=True))
+        self._file = file
         self._printer = _Rust()
+        program_ = self._program
+        used = variables_read(statement for case in program_.cases for statement in case.statements)
+        used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group} | program_.variables_kept
+        self._used = used
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.rs``."""
         fspa, program_ = self._fspa, self._program
         signals = list(zip(fspa.signals, program_.signals, strict=True))
         params = list(zip(fspa.params, program_.params, strict=True))
-        present = [*program_.functions, "exclusive" if program_.exclusive else "single"]
+        present = [*snippets.common_blocks(program_), *program_.functions]
         present += [] if all(program_.always_in_range) else ["keep"]
-        present += ["states"] if program_.tables is None else ["tables"]
-        present += ["registers"] if fspa.registers else []
-        present += ["varies" if fspa.clock_varies else "fixed"]
         present += ["math"] if program_.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -223,7 +224,7 @@ class _Source:
         """Return a row for each state or, if there are tables, for each kind of states."""
         tables = self._program.tables
         lines: list[str] = []
-        for index in range(len(self._fspa.states)) if tables is None else tables.kind_states:
+        for index in self._program.state_rows:
             state = self._fspa.states[index]
             values = (
                 _string(str(state.label) if tables is None else ""),
@@ -263,13 +264,7 @@ class _Source:
 
     # --- a step -----------------------------------------------------------------------------------
 
-    def _step(self) -> list[str]:
-        return snippets.paragraphs(
-            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
-        )
-
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
         used = self._program.variables_used
         lines: list[str] = []
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
@@ -303,52 +298,29 @@ class _Source:
             for name in names
         ]
 
-    def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
+    def _value(self, index: int) -> list[str]:
         program_ = self._program
-        used = variables_read(statement for case in program_.cases for statement in case.statements)
-        used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group} | program_.variables_kept
-        lines: list[str] = []
-        later: list[str] = []
-        for step in program_.every_step:
-            if step.kind == "register":
-                lines += self._register(step.index)
-                continue
-            name = program_.atoms[step.index]
-            lines += self._value(step.index)
-            if not program_.always_in_range[step.index]:
-                head = f"let {name} = " if name in used else ""
-                (lines if program_.registers else later).append(f"{head}self.keep({step.index}, {name})?;")
-        return [*lines, *later]
+        self._printer.atom = index
+        lines = self._printer.comment(program_.atom_comments[index])
+        statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
+        return [*lines, *self._printer.lines(statements)]
+
+    def _range_check(self, index: int) -> list[str]:
+        name = self._program.atoms[index]
+        head = f"let {name} = " if name in self._used else ""
+        return [f"{head}self.keep({index}, {name})?;"]
 
     def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
         program_, name = self._program, self._program.registers[index]
         self._printer.atom = len(program_.atoms) + index
-        statements = with_declaration(name, program_.updates[index], changes=False)
-        lines = self._printer.lines((CommentLine(program_.register_comments[index]), *statements))
+        lines = self._printer.comment(program_.register_comments[index])
+        lines += self._printer.lines(with_declaration(name, program_.updates[index], changes=False))
         if not program_.always_finite[index]:
             refusal = f"return Err(self.refuse(Problem::TooLarge, {self._printer.atom}));"
             lines += [f"if !{name}.is_finite() {{", f"{_INDENT}{refusal}", "}"]
         return lines
 
-    def _value(self, index: int, depth: int = 0) -> list[str]:
-        """Return the code that computes the value of an atom, given its index."""
-        program_ = self._program
-        self._printer.atom = index
-        statements = with_declaration(program_.atoms[index], program_.values[index], changes=False)
-        return self._printer.lines((CommentLine(program_.atom_comments[index]), *statements), depth)
-
-    def _values_only_in(self, case: int) -> list[str]:
-        """Return the code that computes the atoms that only this case needs.
-
-        It first converts the bool signals that only these atoms read.
-        """
-        lines = [f"{_INDENT * 2}{line}" for line in self._bools(case)]
-        return [*lines, *(line for index in self._program.computed_in(case) for line in self._value(index, depth=2))]
-
     def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
@@ -357,7 +329,6 @@ class _Source:
         return lines
 
     def _move(self) -> list[str]:
-        """Return the code that finds the next state of the automaton, with a case for each state or shape."""
         lines = [f"let mut {states.TARGET} = self.state;", f"let mut {states.LIMITING}: isize = -1;"]
         lines.append(f"let mut {states.ROBUSTNESS} = 0.0;")
         lines += [f"let mut {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
@@ -366,12 +337,12 @@ class _Source:
         lines.append("match STATE_SHAPES[self.state] {" if has_tables else "match self.state {")
         for number, case in enumerate(self._program.cases):
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
-            lines += [f"{_INDENT}{number} => {{", *self._values_only_in(number)]
+            lines.append(f"{_INDENT}{number} => {{")
+            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *self._values(number))]
             lines += [*self._printer.lines(case.statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:
-        """Return the code that computes progress and reward, and whether the episode ends."""
         used = variables_read(self._program.reward_statements)
         verdict = "entered.verdict"
         lines = [f"let entered = &STATES[{states.TARGET}];"]
@@ -389,7 +360,6 @@ class _Source:
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     def _remember(self) -> list[str]:
-        """Return the code that keeps the values of the registers for the next sample."""
         values = [self._printer.text(value, CHOICE) for value in self._program.kept]
         return [f"self.registers = [{_Rust.items(values)}];"] if values else []
 
@@ -418,9 +388,7 @@ def _markdown(text: str) -> list[str]:
 
 def _param_check(param: Param, name: str) -> list[str]:
     value = f"params.{name}"
-    tests = [f"{value}.is_finite()"]
-    tests += [] if param.low is None else [f"{value} >= {snippets.number_literal(param.low)}"]
-    tests += [] if param.high is None else [f"{value} <= {snippets.number_literal(param.high)}"]
+    tests = [f"{value}.is_finite()", *snippets.range_tests(value, param)]
     low, high = (
         snippets.number_literal(param.low, "f64::NEG_INFINITY"),
         snippets.number_literal(param.high, "f64::INFINITY"),

@@ -129,6 +129,11 @@ class Program:
         return any(signal.type != "bool" or only != -1 for signal, only in signals)
 
     @property
+    def state_rows(self) -> Sequence[int]:
+        """The states that have a row in the table of states: all or, if there are ``tables``, one of each kind."""
+        return range(len(self.fspa.states)) if self.tables is None else self.tables.kind_states
+
+    @property
     def variables_used(self) -> frozenset[str]:
         """The names of the variables that the statements in ``values`` and ``updates`` read."""
         return variables_read(self._statements())

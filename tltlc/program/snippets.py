@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor.samples import range_text
+from tltlc.program.build import Program
 from tltlc.program.names import printable_line
 from tltlc.resolve.spec import Param, Signal
 
@@ -46,6 +47,22 @@ def values_sentence(field: Signal | Param) -> str:
     if isinstance(field, Signal) and field.values:
         return f"{', '.join(f'{number} {name}' for number, name in enumerate(field.values))}."
     return f"{_KINDS.get(field.type, 'In')} {range_text(field.low, field.high)}{_UNITS.get(field.type, '')}."
+
+
+def range_tests(value: str, field: Signal | Param) -> list[str]:
+    """Return the comparisons of ``value``, a text, with the ends of a range, as most languages write them."""
+    tests = [] if field.low is None else [f"{value} >= {number_literal(field.low)}"]
+    return tests if field.high is None else [*tests, f"{value} <= {number_literal(field.high)}"]
+
+
+def common_blocks(program_: Program) -> list[str]:
+    """Return the names of the blocks of templates that say the same about a monitor in every language."""
+    return [
+        "states" if program_.tables is None else "tables",
+        "exclusive" if program_.exclusive else "single",
+        "varies" if program_.fspa.clock_varies else "fixed",
+        *(["registers"] if program_.registers else []),
+    ]
 
 
 def example_sample(signals: Sequence[Signal], key: Callable[[str], str], equals: str) -> str:

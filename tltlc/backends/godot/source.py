@@ -26,6 +26,7 @@ from tltlc.program.build import DT, program
 from tltlc.program.enums import nested_enums, upper_case
 from tltlc.program.printer import CHOICE
 from tltlc.program.shapes import StateTables
+from tltlc.program.step_code import StepCode
 from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called
 from tltlc.resolve.spec import Param, Signal
@@ -100,14 +101,13 @@ def files(fspa: Fspa, dialect: Dialect) -> Files:
     return {script: _Source(fspa, dialect).text(), main: fill_template("monitor_main.gd.txt", places, present)}
 
 
-class _Source:
+class _Source(StepCode):
     """Makes the script of one monitor, by filling the template ``monitor.gd.txt``."""
 
     def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
-        self._fspa, self._dialect = fspa, dialect
         reserved = RESERVED | ({"registers"} if fspa.registers else set()) | ({DT} if fspa.clock_varies else set())
-        self._program = program(fspa, reserved, has_bools=True)
-        program_ = self._program
+        super().__init__(program(fspa, reserved, has_bools=True))
+        self._dialect, program_ = dialect, self._program
         variables = [*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before]
         renamed = snake_case(variables, reserved)
         self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions, dialect.swapped)
@@ -120,14 +120,10 @@ class _Source:
         """Return the text of ``NAME_monitor.gd``."""
         fspa, program_ = self._fspa, self._program
         failing = program_.functions & FAILING
-        present = [*failing, *(["note"] if failing else [])]
+        present = [*snippets.common_blocks(program_), *failing, *(["note"] if failing else [])]
         present += [] if all(program_.always_in_range) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["exclusive"] if program_.exclusive else []
         present += ["params"] if fspa.params else []
-        present += ["states"] if program_.tables is None else ["tables"]
-        present += ["registers"] if fspa.registers else []
-        present += ["varies"] if fspa.clock_varies else []
         with recursion_room():
             step = Gd.block(self._step())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
@@ -240,11 +236,6 @@ class _Source:
 
     # --- the step function ------------------------------------------------------------------------
 
-    def _step(self) -> list[str]:
-        return snippets.paragraphs(
-            self._read(), self._compute(), self._check(), self._move(), self._judge(), self._remember()
-        )
-
     def _read(self) -> list[str]:
         """Return the code that checks ``dt``, and reads signals, clamped to their ranges, and params into variables."""
         used = self._program.variables_used
@@ -297,30 +288,15 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
-        program_ = self._program
-        lines: list[str] = []
-        later: list[str] = []
-        for step in program_.every_step:
-            if step.kind == "register":
-                lines += self._register(step.index)
-                continue
-            name = self._atoms[step.index]
-            lines += self._value(step.index)
-            if not program_.always_in_range[step.index]:
-                check = [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({step.index}, {name})"]
-                if program_.registers:
-                    lines += [*check, *self._stop()]
-                else:
-                    later += check
-        return [*lines, *later, *(self._stop() if later else [])]
+        last_check = not self._program.registers and not all(self._program.always_in_range)
+        return [*super()._compute(), *(self._stop() if last_check else [])]
 
-    def _values(self, case: int) -> list[str]:
-        """Return the code that computes the values of the atoms that only this case computes."""
-        return [line for index in self._program.computed_in(case) for line in self._value(index)]
+    def _range_check(self, index: int) -> list[str]:
+        name = self._atoms[index]
+        lines = [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({index}, {name})"]
+        return [*lines, *(self._stop() if self._program.registers else [])]
 
     def _value(self, index: int) -> list[str]:
-        """Return the code that computes the value of an atom, given its index."""
         program_, statements = self._program, self._program.values[index]
         lines = self._printer.comment(program_.atom_comments[index])
         lines += self._printer.lines(with_declaration(program_.atoms[index], statements))
@@ -329,7 +305,6 @@ class _Source:
         return lines
 
     def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
         program_, statements = self._program, self._program.updates[index]
         place = len(self._atoms) + index
         lines = self._printer.comment(program_.register_comments[index])
@@ -342,7 +317,6 @@ class _Source:
         return lines
 
     def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
         lines: list[str] = []
         for index, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
@@ -385,13 +359,11 @@ class _Source:
         return [*lines, *self._printer.lines(case.statements)]
 
     def _judge(self) -> list[str]:
-        """Return the code that computes progress and reward, and whether the episode ends."""
         # Adding 0 replaces -0 by 0, as in all monitors.
         lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
         return [*lines, *self._printer.lines(self._program.reward_statements)]
 
     def _remember(self) -> list[str]:
-        """Return the code that keeps the values of the registers for the next sample."""
         texts = (self._printer.text(value, CHOICE) for value in self._program.kept)
         return [f"registers[{index}] = {text}" for index, text in enumerate(texts)]
 
