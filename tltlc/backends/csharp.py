@@ -8,21 +8,21 @@ as Mono's are on Linux.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.csharp_syntax import KEYWORDS, CSharpPrinter, string_literal, summary_comment, table_name
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import nested_enums, pascal_case
-from tltlc.program.printer import CHOICE, Printer, comment_lines
+from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
-from tltlc.program.tree import FAILING, Assign, BinaryNumber, If, ProgramVariable, Statement, Table
+from tltlc.program.tree import FAILING, Statement
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -34,28 +34,6 @@ TARGET = Target(
 )
 
 _INDENT = Printer.INDENT
-_FUNCTIONS = {
-    "divide": "Divide",
-    "sqrt": "Sqrt",
-    "power": "Power",
-    "exp": "Exp",
-    "min": "Min",
-    "max": "Max",
-    "abs": "Math.Abs",
-    "tanh": "Math.Tanh",
-}
-
-_WORDS = """
-    abstract as base bool break byte case catch char checked class const continue decimal default delegate do double
-    else enum event explicit extern false finally fixed float for foreach goto if implicit in int interface internal
-    is lock long namespace new null object operator out override params private protected public readonly ref return
-    sbyte sealed short sizeof stackalloc static string struct switch this throw true try typeof uint ulong unchecked
-    unsafe ushort using virtual void volatile while
-    add alias allows and args ascending async await by descending dynamic equals extension field file from get global
-    group init into join let managed nameof nint not notnull nuint on or orderby partial record remove required scoped
-    select set unmanaged value var when where with yield
-""".split()
-
 _TEMPLATE = """
     Array AtomNames Defaults Divide Equals Exp Finalize GetHashCode GetType IsFinite Keep List Math Max
     MemberwiseClone MethodImpl MethodImplOptions Min Missing Note Params Place Power Problem Read ReferenceEquals
@@ -82,46 +60,13 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {monitor: _Source(fspa, monitor).text(), behaviour: component}
 
 
-def _pascal_case(name: str) -> str:
-    """Return the name of a table in C#: ``EdgeTargets`` for ``edge_targets``."""
-    return name.title().replace("_", "")
-
-
-class _CSharp(Printer):
-    """Prints the program of a monitor (:mod:`tltlc.program`) as C# code, with each brace on its own line."""
-
-    TABLES: ClassVar[dict[Table, str]] = {name: _pascal_case(name) for name in Printer.TABLES}
-
-    def branches(self, statement: If, depth: int) -> list[str]:
-        """Return the lines of an ``if`` with all its cases and its ``else``."""
-        indent = self.INDENT * depth
-        lines: list[str] = []
-        for index, (test, body) in enumerate(statement.cases):
-            lines += [f"{indent}{'else ' if index else ''}if ({self.text(test)})", f"{indent}{{"]
-            lines += [*self.lines(body, depth + 1), f"{indent}}}"]
-        if statement.otherwise:
-            lines += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
-        return lines
-
-    def assignment(self, statement: Assign) -> str:
-        """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
-        match statement:
-            case Assign(name, BinaryNumber("+" | "-" as op, ProgramVariable(left), right)) if left == name:
-                return f"{name} {op}= {self.text(right)};"
-        return super().assignment(statement)
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function: of the monitor, or of C#'s ``Math``."""
-        return super().call(_FUNCTIONS[function], arguments)
-
-
 class _Source(StepCode):
     """Makes the C# code of one monitor, by filling the template ``monitor.cs.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
-        super().__init__(program(fspa, [*_WORDS, *_TEMPLATE], has_bools=True))
+        super().__init__(program(fspa, [*KEYWORDS, *_TEMPLATE], has_bools=True))
         self._file = file
-        self._printer = _CSharp()
+        self._printer = CSharpPrinter()
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.cs``."""
@@ -137,7 +82,7 @@ class _Source(StepCode):
         present += [] if all(program_.always_in_range) else ["keep"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
-            step = _CSharp.block(self._step(), 3)
+            step = CSharpPrinter.block(self._step(), 3)
         places = {
             "p": fspa.name,
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -145,28 +90,30 @@ class _Source(StepCode):
             "dt_parameter": ", double dt" if fspa.clock_varies else "",
             "row_dt": ", times.Next(trace)" if fspa.clock_varies else "",
             "file": self._file,
-            "enums": _CSharp.block(self._enums(), 2),
+            "enums": CSharpPrinter.block(self._enums(), 2),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
-            "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
-            "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
-            "register_names": _list([_string(register.name) for register in fspa.registers]),
+            "signal_names": _list([string_literal(signal.name) for signal in fspa.signals]),
+            "atom_names": _list([string_literal(atom.name) for atom in fspa.atoms]),
+            "register_names": _list([string_literal(register.name) for register in fspa.registers]),
             "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers]),
             # The beginning of a message about an atom, or perhaps a register.
             "at_fault": 'Computed() + "' if fspa.registers else '"the atom `" + AtomNames[_which] + "`',
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
-            "signal_defaults": _CSharp.block(
+            "signal_defaults": CSharpPrinter.block(
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
             ),
-            "param_defaults": _CSharp.block(
+            "param_defaults": CSharpPrinter.block(
                 [f"own.{name} = {snippets.number_literal(param.value)};" for param, name in params], 5
             ),
-            "param_checks": _CSharp.block([line for param, name in params for line in _param_check(param, name)], 3),
-            "states": _CSharp.block(self._states(), 3),
+            "param_checks": CSharpPrinter.block(
+                [line for param, name in params for line in _param_check(param, name)], 3
+            ),
+            "states": CSharpPrinter.block(self._states(), 3),
             **self._state_tables(program_.tables),
             "step": step,
-            "give": _CSharp.block(self._give(), 3),
+            "give": CSharpPrinter.block(self._give(), 3),
         }
         return fill_template("monitor.cs.txt", places, present)
 
@@ -176,14 +123,14 @@ class _Source(StepCode):
         variables = (*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before)
         names = names_in("monitor.cs.txt", r"\b([A-Za-z]\w*)")
         members = ("Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone", "ReferenceEquals", "ToString")
-        types = (*_WORDS, *_TEMPLATE, *names, *variables, f"{self._fspa.name}_monitor")
+        types = (*KEYWORDS, *_TEMPLATE, *names, *variables, f"{self._fspa.name}_monitor")
         lines: list[str] = []
         for enum in nested_enums(self._fspa, types, members, pascal_case):
             constants: list[str] = []
             for number, (name, value) in enumerate(zip(enum.constants, enum.enum.values, strict=True)):
-                constants += ["", *_summary(f"{value}."), f"public const double {name} = {number}.0;"]
-            lines += [*_summary(enum.title), f"public static class {enum.type}", "{"]
-            lines += [*_CSharp.block(constants[1:], 1).split("\n"), "}", ""]
+                constants += ["", *summary_comment(f"{value}."), f"public const double {name} = {number}.0;"]
+            lines += [*summary_comment(enum.title), f"public static class {enum.type}", "{"]
+            lines += [*CSharpPrinter.block(constants[1:], 1).split("\n"), "}", ""]
         return lines
 
     def _states(self) -> list[str]:
@@ -193,7 +140,7 @@ class _Source(StepCode):
         for index in self._program.state_rows:
             state = self._fspa.states[index]
             values = (
-                _string(str(state.label) if tables is None else ""),
+                string_literal(str(state.label) if tables is None else ""),
                 f"Verdict.{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
                 snippets.boolean_literal(self._program.ends[index]),
@@ -209,8 +156,8 @@ class _Source(StepCode):
         for name, numbers in tables.all_tables(self._fspa.judge).items():
             type_ = "double" if name == "level_progress" else "ushort" if max(numbers, default=0) < 1 << 16 else "int"
             items = _list([*map(repr, numbers)])
-            lines.append(f"{_INDENT * 2}private static readonly {type_}[] {_pascal_case(name)} = {{{items}}};")
-        texts = [f"new[] {{{', '.join(map(_string, pieces))}}}" for pieces in tables.labels.texts]
+            lines.append(f"{_INDENT * 2}private static readonly {type_}[] {table_name(name)} = {{{items}}};")
+        texts = [f"new[] {{{', '.join(map(string_literal, pieces))}}}" for pieces in tables.labels.texts]
         return {"tables": "\n".join(lines), "label_texts": _list(texts)}
 
     def _give(self) -> list[str]:
@@ -363,40 +310,18 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a class, each with its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        lines += [*_summary(snippets.field_comment(name, declared)), f"public {type_} {name};", ""]
+        lines += [*summary_comment(snippets.field_comment(name, declared)), f"public {type_} {name};", ""]
     # An empty line follows every field, also the last one.
-    return _CSharp.block(lines, 3)
-
-
-def _summary(text: str) -> list[str]:
-    """Return the lines of a documentation comment."""
-    comments = [_in_xml(line) for line in comment_lines(text)]
-    if len(comments) == 1:
-        return [f"/// <summary>{comments[0]}</summary>"]
-    return ["/// <summary>", *(f"/// {line}" for line in comments), "/// </summary>"]
-
-
-def _in_xml(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return CSharpPrinter.block(lines, 3)
 
 
 def _param_check(param: Param, name: str) -> list[str]:
     tests = [f"IsFinite(given.{name})", *snippets.range_tests(f"given.{name}", param)]
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
-    message = f" + Shown(given.{name}) + ".join(map(_string, parts))
+    message = f" + Shown(given.{name}) + ".join(map(string_literal, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
-
-
-def _string(text: str) -> str:
-    """Return a string literal that has only ASCII characters."""
-    return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
-
-
-def _escape(character: str) -> str:
-    code = ord(character)
-    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
 def _list(items: Sequence[str]) -> str:
     """Return the text of the items of an array initializer."""
-    return _CSharp.items(items, depth=2)
+    return CSharpPrinter.items(items, depth=2)
