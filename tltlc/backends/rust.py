@@ -6,42 +6,27 @@ if the platform's ``pow``, ``exp`` and ``tanh`` are those that Python was built 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import ClassVar
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.rust_syntax import MATH_FUNCTIONS, RustPrinter, markdown_lines, string_literal
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import flat_enums, upper_case
-from tltlc.program.printer import CHOICE, OR, UNIT, Printer, comment_lines
+from tltlc.program.printer import CHOICE, Printer, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
-from tltlc.program.tree import (
-    FAILING,
-    Assign,
-    BinaryNumber,
-    Choice,
-    Declare,
-    ProgramExpression,
-    ProgramVariable,
-    Table,
-    Type,
-)
 from tltlc.program.used_names import variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bevy", "rs"))
 
 _INDENT = Printer.INDENT
-_MATH = {"sqrt", "power", "exp", "tanh"}
-"""The functions of a program that Rust's ``core`` lacks."""
-
 _RESERVED = """
     abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen if
     impl in let loop macro match mod move mut override priv pub raw ref return self Self static struct super trait
@@ -67,62 +52,6 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
-class _Rust(Printer):
-    """Prints the program of a monitor (:mod:`tltlc.program`) as Rust code.
-
-    ``atom`` is the index of the atom whose computation is being printed; registers count after the
-    atoms. Functions that have no value for some arguments, such as the division, also get this index,
-    to name the atom or register in the error.
-    """
-
-    TYPES: ClassVar[dict[Type, str]] = {"real": "f64", "int": "i64", "bool": "bool"}
-    TEST: ClassVar[int] = OR
-    TABLES: ClassVar[dict[Table, str]] = {name: name.upper() for name in Printer.TABLES}
-
-    def __init__(self) -> None:
-        self.atom = 0
-
-    def declaration(self, statement: Declare) -> str:
-        """Return a declaration, with its type if it has no value."""
-        head = f"let mut {statement.name}" if statement.changes else f"let {statement.name}"
-        if statement.value is None:
-            return f"{head}: {self.TYPES[statement.type]};"
-        return f"{head} = {self.text(statement.value, CHOICE)};"
-
-    def assignment(self, statement: Assign) -> str:
-        """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
-        match statement:
-            case Assign(name, BinaryNumber("+" | "-" as op, ProgramVariable(left), right)) if left == name:
-                return f"{name} {op}= {self.text(right)};"
-        return super().assignment(statement)
-
-    def head(self, test: str, *, first: bool) -> str:
-        """Return the line that begins a case: ``if`` or ``else if``, with its test."""
-        return f"if {test} {{" if first else f"}} else if {test} {{"
-
-    def choice(self, test: str, value: str, otherwise: str) -> str:
-        """Return an ``if`` that is an expression."""
-        return f"if {test} {{ {value} }} else {{ {otherwise} }}"
-
-    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
-        text, binding = super()._text_and_binding(node)
-        # An `if` needs no brackets: the compiler warns about them.
-        return text, UNIT if isinstance(node, Choice) else binding
-
-    def entry(self, table: Table, index: str) -> str:
-        """Return the code that reads an entry of a table; integers become indices."""
-        return super().entry(table, index) + ("" if table == "level_progress" else " as usize")
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function.
-
-        If the function has no value for its arguments, the ``?`` after the call ends the step.
-        """
-        if function in FAILING:
-            return super().call(f"self.{function}", [str(self.atom), *arguments]) + "?"
-        return super().call(f"math::{function}" if function in _MATH else function, arguments)
-
-
 class _Source(StepCode):
     """Makes the Rust module of one monitor, by filling the template ``monitor.rs.txt``."""
 
@@ -131,7 +60,7 @@ class _Source(StepCode):
         constants = [name for enum in self._enums for name in enum.constants]
         super().__init__(program(fspa, [*_RESERVED, *constants], has_bools=True))
         self._file = file
-        self._printer = _Rust()
+        self._printer = RustPrinter()
         program_ = self._program
         used = variables_read(statement for case in program_.cases for statement in case.statements)
         used |= {program_.atoms[atom] for _, group in program_.exclusive for atom in group} | program_.variables_kept
@@ -144,10 +73,10 @@ class _Source(StepCode):
         params = list(zip(fspa.params, program_.params, strict=True))
         present = [*snippets.common_blocks(program_), *program_.functions]
         present += [] if all(program_.always_in_range) else ["keep"]
-        present += ["math"] if program_.functions & _MATH else []
+        present += ["math"] if program_.functions & MATH_FUNCTIONS else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
-            step = _Rust.block(self._step(), 2)
+            step = RustPrinter.block(self._step(), 2)
         give_code = self._give()
         places = {
             "p": fspa.name,
@@ -156,36 +85,40 @@ class _Source(StepCode):
             "dt_parameter": ", dt: f64" if fspa.clock_varies else "",
             "file": self._file,
             "enums": "\n".join(self._enum_lines()),
-            "needs": "\n".join(self._needs(program_.functions & _MATH)),
+            "needs": "\n".join(self._needs(program_.functions & MATH_FUNCTIONS)),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "f64", param) for param, name in params]),
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
             "group_count": str(len(fspa.exclusive)),
             "state_count": str(len(fspa.states)),
-            "signal_names": _Rust.items([_string(signal.name) for signal in fspa.signals]),
-            "atom_names": _Rust.items([_string(atom.name) for atom in fspa.atoms]),
+            "signal_names": RustPrinter.items([string_literal(signal.name) for signal in fspa.signals]),
+            "atom_names": RustPrinter.items([string_literal(atom.name) for atom in fspa.atoms]),
             "register_count": str(len(fspa.registers)),
-            "register_names": _Rust.items([_string(register.name) for register in fspa.registers]),
-            "register_starts": _Rust.items([snippets.number_literal(register.initial) for register in fspa.registers]),
+            "register_names": RustPrinter.items([string_literal(register.name) for register in fspa.registers]),
+            "register_starts": RustPrinter.items(
+                [snippets.number_literal(register.initial) for register in fspa.registers]
+            ),
             # What a problem is about: an atom, or perhaps a register.
             "at_fault": "{}" if fspa.registers else "atom `{}`",
             "name_at_fault": "Computed(self.which)" if fspa.registers else "ATOM_NAMES[self.which]",
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
-            "groups": _Rust.items([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
-            "signal_defaults": _Rust.block(
+            "groups": RustPrinter.items([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
+            "signal_defaults": RustPrinter.block(
                 [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
             ),
-            "param_defaults": _Rust.block(
+            "param_defaults": RustPrinter.block(
                 [f"{name}: {snippets.number_literal(param.value)}," for param, name in params], 3
             ),
-            "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
-            "states": _Rust.block(self._states(), 1),
+            "param_checks": RustPrinter.block(
+                [line for param, name in params for line in _param_check(param, name)], 2
+            ),
+            "states": RustPrinter.block(self._states(), 1),
             **self._state_tables(program_.tables),
             "sample": "sample" if program_.reads_sample else "_",
             "step": step,
             "given": "sample" if give_code else "_",
-            "give": _Rust.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
+            "give": RustPrinter.block(give_code or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
         return fill_template("monitor.rs.txt", places, present)
 
@@ -195,7 +128,7 @@ class _Source(StepCode):
         for enum in self._enums:
             lines.append("")
             for number, (name, value) in enumerate(zip(enum.constants, enum.enum.values, strict=True)):
-                about = _markdown(f"The value `{value}` of the signal `{enum.enum.base}`.")
+                about = markdown_lines(f"The value `{value}` of the signal `{enum.enum.base}`.")
                 lines += [*(f"/// {line}" for line in about), f"pub const {name}: f64 = {number}.0;"]
         return lines
 
@@ -204,7 +137,7 @@ class _Source(StepCode):
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
         formula = ["```text", *comment_lines(str(fspa.formula).replace("```", "'''")), "```"]
-        about = [_markdown(title), _markdown(fspa.doc), formula]
+        about = [markdown_lines(title), markdown_lines(fspa.doc), formula]
         parts = ["\n".join(f"//! {line}" for line in lines) for lines in about if lines]
         return ["\n//!\n".join(parts)]
 
@@ -227,7 +160,7 @@ class _Source(StepCode):
         for index in self._program.state_rows:
             state = self._fspa.states[index]
             values = (
-                _string(str(state.label) if tables is None else ""),
+                string_literal(str(state.label) if tables is None else ""),
                 f"Verdict::{state.verdict.capitalize()}",
                 snippets.boolean_literal(state.accepting),
                 snippets.boolean_literal(self._program.ends[index]),
@@ -242,11 +175,11 @@ class _Source(StepCode):
         lines: list[str] = []
         for name, numbers in tables.step_tables(self._fspa.judge).items():
             type_ = "f64" if name == "level_progress" else "u16" if max(numbers) < 1 << 16 else "u32"
-            items = _Rust.items([*map(repr, numbers)])
+            items = RustPrinter.items([*map(repr, numbers)])
             lines.append(f"static {name.upper()}: [{type_}; {len(numbers)}] = [{items}];")
         return {
             "tables": "\n".join(lines),
-            "labels": _Rust.items([_string(str(state.label)) for state in self._fspa.states]),
+            "labels": RustPrinter.items([string_literal(str(state.label)) for state in self._fspa.states]),
             "kind_count": str(len(tables.kind_states)),
         }
 
@@ -361,7 +294,7 @@ class _Source(StepCode):
 
     def _remember(self) -> list[str]:
         values = [self._printer.text(value, CHOICE) for value in self._program.kept]
-        return [f"self.registers = [{_Rust.items(values)}];"] if values else []
+        return [f"self.registers = [{RustPrinter.items(values)}];"] if values else []
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -375,15 +308,9 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """Return the fields of a struct, each after its documentation."""
     lines: list[str] = []
     for name, type_, declared in fields:
-        lines += [f"/// {line}" for line in _markdown(snippets.field_comment(name, declared))]
+        lines += [f"/// {line}" for line in markdown_lines(snippets.field_comment(name, declared))]
         lines.append(f"pub {name}: {type_},")
-    return _Rust.block(lines, 1)
-
-
-def _markdown(text: str) -> list[str]:
-    """Return lines of documentation, escaped so that rustdoc reads nothing in them as code, HTML or links."""
-    escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda match: re.sub("(.)", r"\\\1", match[0]), text)
-    return comment_lines(escaped)
+    return RustPrinter.block(lines, 1)
 
 
 def _param_check(param: Param, name: str) -> list[str]:
@@ -394,16 +321,5 @@ def _param_check(param: Param, name: str) -> list[str]:
         snippets.number_literal(param.high, "f64::INFINITY"),
     )
     test = f"!({' && '.join(tests)})" if tests[1:] else f"!{tests[0]}"
-    wrong = f"WrongParam {{ name: {_string(param.name)}, value: {value}, low: {low}, high: {high} }}"
+    wrong = f"WrongParam {{ name: {string_literal(param.name)}, value: {value}, low: {low}, high: {high} }}"
     return [f"if {test} {{", f"{_INDENT}return Err({wrong});", "}"]
-
-
-def _string(text: str) -> str:
-    """Return a string literal that has only ASCII characters."""
-    return snippets.string_literal(text, _escape, snippets.is_plain_ascii)
-
-
-def _escape(character: str) -> str:
-    """Return the escape of a character, or of U+FFFD for half a surrogate pair, which Rust does not allow."""
-    code = ord(character)
-    return "\\u{fffd}" if 0xD800 <= code < 0xE000 else f"\\u{{{code:x}}}"

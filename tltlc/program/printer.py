@@ -70,6 +70,8 @@ class Printer:
     """How tightly the test of a choice must bind to need no brackets."""
     END: ClassVar[str] = ";"
     """The end of a statement."""
+    COMPOUND: ClassVar[bool] = False
+    """Whether ``+=`` and ``-=`` add to a variable and subtract from it."""
     TABLES: ClassVar[dict[Table, str]] = {name: name for name in get_args(Table)}
     """The name of each table."""
 
@@ -98,6 +100,10 @@ class Printer:
 
     def assignment(self, statement: Assign) -> str:
         """Return the code that assigns a value to a variable."""
+        match statement:
+            case Assign(name, BinaryNumber("+" | "-" as op, ProgramVariable(left), right)) if left == name:
+                if self.COMPOUND:
+                    return f"{self.name(name)} {op}= {self.text(right)}{self.END}"
         return f"{self.name(statement.name)} = {self.text(statement.value, CHOICE)}{self.END}"
 
     def branches(self, statement: If, depth: int) -> list[str]:

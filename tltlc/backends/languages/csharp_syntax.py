@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 from tltlc.program import snippets
 from tltlc.program.printer import Printer, comment_lines
-from tltlc.program.tree import Assign, BinaryNumber, If, ProgramVariable, Table
+from tltlc.program.tree import If, Table
 
 KEYWORDS: Final = """
     abstract as base bool break byte case catch char checked class const continue decimal default delegate do double
@@ -41,6 +41,7 @@ def table_name(name: str) -> str:
 class CSharpPrinter(Printer):
     """Prints the program of a monitor (:mod:`tltlc.program`) as C# code, with each brace on its own line."""
 
+    COMPOUND: ClassVar[bool] = True
     TABLES: ClassVar[dict[Table, str]] = {name: table_name(name) for name in Printer.TABLES}
 
     def branches(self, statement: If, depth: int) -> list[str]:
@@ -53,13 +54,6 @@ class CSharpPrinter(Printer):
         if statement.otherwise:
             lines += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
         return lines
-
-    def assignment(self, statement: Assign) -> str:
-        """Return an assignment, with ``+=`` or ``-=`` for an addition to the variable or a subtraction from it."""
-        match statement:
-            case Assign(name, BinaryNumber("+" | "-" as op, ProgramVariable(left), right)) if left == name:
-                return f"{name} {op}= {self.text(right)};"
-        return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """Return the text of a call of a numeric function: of the monitor, or of C#'s ``Math``."""
