@@ -3,7 +3,7 @@
 Each target is a module of this package, imported on first use. It has ``TARGET`` (a
 :class:`Target`) and a function ``emit(fspa, options) -> Files``, which returns files and writes
 nothing to disk. To add a target, add its module. Code that several targets share is in the
-subpackages; ``languages`` has parts of targets whose modules would be too long.
+subpackages; ``languages`` has the syntax of the languages of monitors.
 """
 
 from __future__ import annotations

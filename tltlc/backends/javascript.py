@@ -7,24 +7,33 @@ these functions in their own ways.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from itertools import combinations
-from typing import ClassVar
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.languages.javascript_syntax import (
+    JavaScriptPrinter,
+    array,
+    branch_lines,
+    key,
+    member,
+    number_literal,
+    own_key,
+    range_test,
+    string_literal,
+)
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of
 from tltlc.program.nesting_limit import split_deep_values
-from tltlc.program.printer import CHOICE, Printer, comment_lines
+from tltlc.program.printer import CHOICE, comment_lines
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
-from tltlc.program.tree import FAILING, Assign, Declare, Int
+from tltlc.program.tree import FAILING
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
@@ -34,8 +43,6 @@ TARGET = Target(
     ("_monitor.mjs", "_monitor.d.mts"),
     ("js", "mjs", "node", "ts", "typescript", "web"),
 )
-
-_LONGEST = 110
 
 _FEW = 3
 """The largest exclusive group whose atoms are tested in pairs; in a larger one, the atoms that hold are counted."""
@@ -75,54 +82,6 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {module: source.module(), declarations: source.declarations()}
 
 
-class _JavaScript(Printer):
-    """Prints the program of a monitor (:mod:`tltlc.program`) as JavaScript code.
-
-    ``atoms`` are the names of the atoms in the spec. A numeric function whose name is in ``built_in`` is
-    called as a function of ``Math``: ``Math.abs(x)``. The template of the monitor must define all other
-    functions that the program calls. A function that has no value for some arguments, such as the
-    division, is a method of the monitor: ``this.#divide(x, y)``.
-    """
-
-    INDENT = "  "
-    COMPARISONS: ClassVar = {**Printer.COMPARISONS, "==": "===", "!=": "!=="}
-    TABLES: ClassVar = {name: name.upper() for name in Printer.TABLES}
-
-    def __init__(self, atoms: Sequence[str], built_in: Collection[str] = ("abs", "tanh")) -> None:
-        self._atoms, self._built_in = atoms, built_in
-
-    def declaration(self, statement: Declare) -> str:
-        """Return a declaration: ``const`` if the variable keeps its value, ``let`` otherwise."""
-        if statement.value is None:
-            return f"let {statement.name};"
-        return f"{'let' if statement.changes else 'const'} {statement.name} = {self.text(statement.value, CHOICE)};"
-
-    def assignment(self, statement: Assign) -> str:
-        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
-        match statement:
-            case Assign(states.LIMITING, Int(index)):
-                return f"{states.LIMITING} = {_string(self._atoms[index]) if index >= 0 else 'null'};"
-        return super().assignment(statement)
-
-    def name(self, name: str) -> str:
-        """Return the name of a variable in JavaScript.
-
-        For ``steps_real``, the number of steps as a real number, this is ``steps``: JavaScript has
-        one type for all numbers.
-        """
-        return reward_step.STEPS if name == reward_step.STEPS_REAL else name
-
-    def real(self, value: float) -> str:
-        """Return the literal of a number; whole numbers have no decimal point."""
-        return _number(value)
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function: ``Math.abs(x)``, ``this.#divide(x, y)`` or ``min(x, y)``."""
-        if function in self._built_in:
-            function = f"Math.{function}"
-        return super().call(f"this.#{function}" if function in FAILING else function, arguments)
-
-
 class _Source(StepCode):
     """Makes the module of one monitor and its TypeScript types, by filling their templates."""
 
@@ -131,16 +90,16 @@ class _Source(StepCode):
         self._module, self._declarations = module, declarations
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         names = [atom.name for atom in fspa.atoms]
-        self._printer = _JavaScript(names)
+        self._printer = JavaScriptPrinter(names)
         # Math.min may return 0 for -0, which does not matter for atoms, and is faster than a method of the monitor.
-        self._moves = _JavaScript(names, ("min", "max"))
+        self._moves = JavaScriptPrinter(names, ("min", "max"))
 
     def module(self) -> str:
         """Return the text of ``NAME_monitor.mjs``, the module with the monitor."""
         fspa = self._fspa
         program_ = self._program
         with recursion_room():
-            step = _JavaScript.block(self._step(), depth=2)
+            step = JavaScriptPrinter.block(self._step(), depth=2)
         present: list[str] = [*snippets.common_blocks(program_), *program_.functions]
         present += ["failing"] if program_.functions & FAILING else []
         present += ["signal"] if fspa.signals else []
@@ -155,22 +114,22 @@ class _Source(StepCode):
             "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._module,
             "declarations": self._declarations,
-            "example": snippets.example_sample(fspa.signals, _key, ": "),
-            "signals": _list(
+            "example": snippets.example_sample(fspa.signals, key, ": "),
+            "signals": array(
                 [_row(signal, f"isBool: {snippets.boolean_literal(signal.type == 'bool')}") for signal in fspa.signals]
             ),
             "enums": self._enums(),
             # Blocks of a template cannot be nested.
-            "named_value": _JavaScript.block(_NAMED_VALUE if enums_of(fspa) else [], depth=2),
-            "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
-            "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
-            "registers": _list([_string(register.name) for register in fspa.registers]),
-            "register_starts": _list([_number(register.initial) for register in fspa.registers]),
+            "named_value": JavaScriptPrinter.block(_NAMED_VALUE if enums_of(fspa) else [], depth=2),
+            "params": array([_row(param, f"value: {number_literal(param.value)}") for param in fspa.params]),
+            "atoms": array([string_literal(atom.name) for atom in fspa.atoms]),
+            "registers": array([string_literal(register.name) for register in fspa.registers]),
+            "register_starts": array([number_literal(register.initial) for register in fspa.registers]),
             "computed": "${computed(this.#atom)}" if fspa.registers else "atom \\`${ATOMS[this.#atom]}\\`",
             # The monitor checks the names of params even if no atom reads a param.
             "params_kept": "this.#params = " if "params" in present else "",
-            "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
-            "states": _list(self._states()),
+            "exclusive": array([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
+            "states": array(self._states()),
             **self._state_tables(program_.tables),
             "dt": f"{DT}, " if fspa.clock_varies else "",
             "length": "lengths.next(cells, reader.first), " if fspa.clock_varies else "",
@@ -206,13 +165,13 @@ class _Source(StepCode):
             return ""
         lines = ["", f"/** {_VALUES_DOC} */", "export const VALUES = Object.freeze({"]
         for enum in enums:
-            values = ", ".join(f"{_own_key(value)}: {number}" for number, value in enumerate(enum.values))
-            lines.append(f"  {_own_key(enum.base)}: Object.freeze({{ {values} }}),")
+            values = ", ".join(f"{own_key(value)}: {number}" for number, value in enumerate(enum.values))
+            lines.append(f"  {own_key(enum.base)}: Object.freeze({{ {values} }}),")
         lines += ["});", "", "/** @type {ReadonlyMap<string, ReadonlyArray<string>>} */"]
         lines.append("const VALUE_NAMES = new Map([")
         for enum in enums:
-            names = ", ".join(map(_string, enum.values))
-            lines += [f"  [{_string(signal)}, [{names}]]," for signal in enum.signals]
+            names = ", ".join(map(string_literal, enum.values))
+            lines += [f"  [{string_literal(signal)}, [{names}]]," for signal in enum.signals]
         return "\n".join([*lines, "]);"])
 
     def _enum_types(self) -> str:
@@ -222,8 +181,8 @@ class _Source(StepCode):
             return ""
         lines = [f"/** {_VALUES_DOC} */", "export const VALUES: {"]
         for enum in enums:
-            values = " ".join(f"readonly {_key(value)}: {number};" for number, value in enumerate(enum.values))
-            lines.append(f"  readonly {_key(enum.base)}: {{ {values} }};")
+            values = " ".join(f"readonly {key(value)}: {number};" for number, value in enumerate(enum.values))
+            lines.append(f"  readonly {key(enum.base)}: {{ {values} }};")
         return "\n".join([*lines, "};", ""])
 
     def _states(self) -> list[str]:
@@ -233,7 +192,7 @@ class _Source(StepCode):
         for index in self._program.state_rows:
             state, ends = self._fspa.states[index], snippets.boolean_literal(self._program.ends[index])
             values = f'verdict: "{state.verdict}", accepting: {snippets.boolean_literal(state.accepting)}, ends: {ends}'
-            label = f"label: {_string(str(state.label))}, " if tables is None else ""
+            label = f"label: {string_literal(str(state.label))}, " if tables is None else ""
             rows.append(f"{{ {label}{values} }}")
         return rows
 
@@ -242,11 +201,11 @@ class _Source(StepCode):
         if tables is None:
             return {"tables": "", "label_texts": ""}
         lines = [
-            f"const {name.upper()} = [{_JavaScript.items([*map(_number, numbers)])}];"
+            f"const {name.upper()} = [{JavaScriptPrinter.items([*map(number_literal, numbers)])}];"
             for name, numbers in tables.all_tables(self._fspa.judge).items()
         ]
-        texts = [f"[{', '.join(map(_string, pieces))}]" for pieces in tables.labels.texts]
-        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
+        texts = [f"[{', '.join(map(string_literal, pieces))}]" for pieces in tables.labels.texts]
+        return {"tables": "\n".join(lines), "label_texts": array(texts)}
 
     # --- the step function ------------------------------------------------------------------------
 
@@ -255,21 +214,21 @@ class _Source(StepCode):
         used = self._program.variables_used
         lines: list[str] = []
         if self._fspa.clock_varies:
-            lines += _branch([f"!({_in_range(DT, 0.0, None)})"], f"throw this.#length({DT});")
+            lines += branch_lines([f"!({range_test(DT, 0.0, None)})"], f"throw this.#length({DT});")
         for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({index}, signals)"
             if name not in used:
                 # The monitor checks unused signals, too.
                 lines.append(f"{checked};")
                 continue
-            given = _member("signals", signal.name)
+            given = member("signals", signal.name)
             if signal.type == "bool":
                 lines.append(f"const {name} = {given} === true ? 1 : {given} === false ? 0 : {checked};")
             else:
                 # The names of values fail the test of the range.
                 number = f"/** @type {{number}} */ ({given})" if signal.values else given
                 lines.append(f"let {name} = {number};")
-                lines += _branch([f"!({_in_range(name, signal.low, signal.high)})"], f"{name} = {checked};")
+                lines += branch_lines([f"!({range_test(name, signal.low, signal.high)})"], f"{name} = {checked};")
         for index, name in enumerate(self._program.params):
             lines += [f"const {name} = this.#params[{index}];"] if name in used else []
         for index, name in enumerate(self._program.before):
@@ -295,8 +254,8 @@ class _Source(StepCode):
             lines.append(f"this.#atom = {len(self._fspa.atoms) + index};")
         lines += self._printer.lines(with_declaration(name, statements, changes=False))
         if not program_.always_finite[index]:
-            text = _string(f"the register `{self._fspa.registers[index].name}` is too large to compute")
-            lines += _branch([f"!Number.isFinite({name})"], f"throw this.#error({text});")
+            text = string_literal(f"the register `{self._fspa.registers[index].name}` is too large to compute")
+            lines += branch_lines([f"!Number.isFinite({name})"], f"throw this.#error({text});")
         return lines
 
     def _check(self) -> list[str]:
@@ -307,10 +266,10 @@ class _Source(StepCode):
             if len(names) <= _FEW:
                 pairs = [f"{first} > 0 && {second} > 0" for first, second in combinations(names, 2)]
                 tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]
-                lines += _branch(tests, refusal, "||")
+                lines += branch_lines(tests, refusal, "||")
             else:
                 *before, last = [f"({name} > 0 ? 1 : 0)" for name in names]
-                lines += _branch([*before, f"{last} > 1"], refusal, "+")
+                lines += branch_lines([*before, f"{last} > 1"], refusal, "+")
         return lines
 
     def _move(self) -> list[str]:
@@ -361,85 +320,17 @@ def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
             lines.append(f"/** {doc_lines[0]} */")
         elif doc_lines:
             lines += ["/**", *(f" * {line}" for line in doc_lines), " */"]
-        lines.append(f"{_key(name)}: {type_};")
-    return _JavaScript.block(lines)
+        lines.append(f"{key(name)}: {type_};")
+    return JavaScriptPrinter.block(lines)
 
 
 def _row(field: Signal | Param, properties: str) -> str:
-    least = "-Infinity" if field.low is None else _number(field.low)
-    greatest = "Infinity" if field.high is None else _number(field.high)
-    return f"{{ name: {_string(field.name)}, {properties}, low: {least}, high: {greatest} }}"
-
-
-def _number(value: float) -> str:
-    return repr(float(value)).removesuffix(".0")
-
-
-def _string(text: str) -> str:
-    return snippets.string_literal(text, _escape)
-
-
-def _escape(character: str) -> str:
-    code = ord(character)
-    return f"\\u{code:04x}" if code < 0x10000 else f"\\u{{{code:x}}}"
-
-
-def _in_range(name: str, low: float | None, high: float | None) -> str:
-    """Return a JavaScript expression that is true if the variable ``name`` is a finite number in a range.
-
-    The range goes from ``low`` to ``high``; None means that there is no bound.
-    """
-    if low is None and high is None:
-        return f"Number.isFinite({name})"
-    least = f"-Infinity < {name}" if low is None else f"{_number(low)} <= {name}"
-    greatest = f"{name} < Infinity" if high is None else f"{name} <= {_number(high)}"
-    return f'typeof {name} === "number" && {least} && {greatest}'
-
-
-def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
-    """Return the lines of an ``if`` that runs ``body``; its condition joins ``tests`` with the operator ``word``."""
-    head = f"if ({f' {word} '.join(tests)})"
-    if len(head) + len(body) < _LONGEST:
-        return [f"{head} {body}"]
-    if len(head) < _LONGEST or len(tests) == 1:
-        return [f"{head} {{", f"  {body}", "}"]
-    lines, text = [], tests[0]
-    for test in tests[1:]:
-        if len(text) + len(test) > _LONGEST - 8:
-            lines.append(f"  {text} {word}")
-            text = test
-        else:
-            text = f"{text} {word} {test}"
-    return ["if (", *lines, f"  {text}", ") {", f"  {body}", "}"]
-
-
-def _is_plain(name: str) -> bool:
-    return re.fullmatch(r"[A-Za-z_$][A-Za-z0-9_$]*", name) is not None
-
-
-def _key(name: str) -> str:
-    """Return a property's name as it is written in an object or a type: in quotes unless it is an identifier."""
-    return name if _is_plain(name) else _string(name)
-
-
-def _own_key(name: str) -> str:
-    """Return a property's name in an object; in brackets if it is ``__proto__``, which would set the prototype."""
-    return f"[{_string(name)}]" if name == "__proto__" else _key(name)
+    least = "-Infinity" if field.low is None else number_literal(field.low)
+    greatest = "Infinity" if field.high is None else number_literal(field.high)
+    return f"{{ name: {string_literal(field.name)}, {properties}, low: {least}, high: {greatest} }}"
 
 
 def _type(signal: Signal) -> str:
     if signal.type == "bool":
         return "boolean | 0 | 1"
-    return " | ".join(["number", *map(_string, signal.values)])
-
-
-def _member(owner: str, name: str) -> str:
-    return f"{owner}.{name}" if _is_plain(name) else f"{owner}[{_string(name)}]"
-
-
-def _list(items: Sequence[str]) -> str:
-    """Return the text of an array, on one line if it is short, otherwise with a line for each item."""
-    line = f"[{', '.join(items)}]"
-    if len(line) <= 80 and not any("{" in item for item in items):
-        return line
-    return "[\n" + "".join(f"{_JavaScript.INDENT}{item},\n" for item in items) + "]"
+    return " | ".join(["number", *map(string_literal, signal.values)])

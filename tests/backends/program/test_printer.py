@@ -6,7 +6,7 @@ import pytest
 
 from tltlc import compile_text
 from tltlc.backends import emit
-from tltlc.backends.javascript import _JavaScript
+from tltlc.backends.languages.javascript_syntax import JavaScriptPrinter
 from tltlc.backends.languages.lua_syntax import LuaPrinter
 from tltlc.program.printer import Printer
 from tltlc.program.tree import All, Compare, ProgramVariable
@@ -19,7 +19,7 @@ OTHER = Compare("!=", ProgramVariable("a"), ProgramVariable("b"))
     ("printer", "expected"),
     [
         (Printer(), "a == b && a != b"),
-        (_JavaScript(()), "a === b && a !== b"),
+        (JavaScriptPrinter(()), "a === b && a !== b"),
         (LuaPrinter({"a": "value['x != y']"}, ()), "value['x != y'] == b and value['x != y'] ~= b"),
     ],
     ids=["C", "JavaScript", "Lua"],

@@ -1,1 +1,1 @@
-"""Parts that would make the module of a target too long: the reserved names of C, and the syntax of Lua."""
+"""The syntax of the languages of monitors: printers, literals and reserved names."""
