@@ -16,20 +16,21 @@ from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.lua_syntax import (
-    DEEPEST_BLOCK,
     KEYWORDS,
     LuaPrinter,
-    declarations,
+    enum_tables,
+    items_from_0,
     key_access,
-    nesting,
     string_literal,
     table_key,
+    table_text,
 )
+from tltlc.backends.languages.lua_variables import TABLES, needs_fields, register_fields, variable_fields
 from tltlc.backends.templates import fill_template
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
-from tltlc.program.enums import SignalEnum, enums_of
+from tltlc.program.enums import enums_of
 from tltlc.program.names import printable_line
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE
@@ -46,12 +47,6 @@ TARGET = Target(
     ("defold", "love", "luajit", "luau", "roblox"),
 )
 
-_MOST_LOCALS: Final = 150
-"""The most local variables and arguments for the signals, params and atoms of a spec.
-
-The step function has more local variables, and Lua allows 200 in all.
-"""
-
 _FEW_CASES: Final = 8
 """The most states, or shapes of states, for which a step has an ``if`` with a case for each.
 
@@ -65,9 +60,6 @@ _OWN = """
 """.split()
 """Names that the step function uses in the template; no variable of the program may have them."""
 
-_TABLES: Final = ("signal", "param", "value", "register", "registers")
-"""The tables of variables: signals, params, atoms, and the registers after and before the sample."""
-
 
 def emit(fspa: Fspa, options: Options) -> Files:
     """Return the module ``NAME_monitor.lua``, where NAME is the name of the automaton."""
@@ -79,42 +71,16 @@ class _Source(StepCode):
     """Makes the Lua module of one monitor, by filling the template ``monitor.lua.txt``."""
 
     def __init__(self, fspa: Fspa, file: str) -> None:
-        tables = _TABLES if fspa.registers else _TABLES[:3]
+        tables = TABLES if fspa.registers else TABLES[:3]
         super().__init__(program(fspa, [*KEYWORDS, *_OWN, *tables]))
-        self._file, program_ = file, self._program
-        self._tables_text = ", ".join(tables)
+        self._file, self._tables_text = file, ", ".join(tables)
         self._names = [atom.name for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
-        variables = (*program_.signals, *program_.params, *program_.atoms, *program_.registers)
         with recursion_room():
-            computed = (*program_.values, *program_.updates)
-            parts = [declaration.name for value in computed for declaration in declarations(value)]
-            deepest = max(map(nesting, computed), default=0)
-        # Each variable counts twice, because it is also an argument of the functions of states.
-        self._variables_are_fields = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= DEEPEST_BLOCK
-        fields = {
-            **{
-                name: f"signal{key_access(signal.name)}"
-                for signal, name in zip(fspa.signals, program_.signals, strict=True)
-            },
-            **{
-                name: f"param{key_access(param.name)}" for param, name in zip(fspa.params, program_.params, strict=True)
-            },
-            **{name: f"value{key_access(atom.name)}" for atom, name in zip(fspa.atoms, program_.atoms, strict=True)},
-            **{name: f"part.{name}" for name in [*parts, *([DT] if fspa.clock_varies else [])]},
-            **{
-                name: f"register{key_access(register.name)}"
-                for register, name in zip(fspa.registers, program_.registers, strict=True)
-            },
-        }
-        before = {
-            name: f"registers{key_access(register.name)}"
-            for register, name in zip(fspa.registers, program_.before, strict=True)
-        }
-        self._few_cases = len(program_.cases) <= _FEW_CASES
-        self._printer = LuaPrinter(
-            {**before, **(fields if self._variables_are_fields else {})}, self._names, self._tables_text
-        )
+            self._variables_are_fields = needs_fields(self._program)
+            fields = variable_fields(self._program) if self._variables_are_fields else {}
+        self._few_cases = len(self._program.cases) <= _FEW_CASES
+        self._printer = LuaPrinter({**fields, **register_fields(self._program)}, self._names, self._tables_text)
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.lua``."""
@@ -140,30 +106,28 @@ class _Source(StepCode):
             "title": snippets.title_comment(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
-            "enums": _enum_tables(enums),
+            "enums": enum_tables(enums),
             "example": snippets.example_sample(fspa.signals, table_key, " = "),
             "signal_fields": "\n".join(
-                _field(
-                    signal.name,
-                    _type(signal),
-                    snippets.field_comment(signal.name, signal),
-                )
+                _field(signal.name, _type(signal), snippets.field_comment(signal.name, signal))
                 for signal in fspa.signals
             ),
             "param_fields": "\n".join(
                 _field(param.name, "number?", snippets.field_comment(param.name, param)) for param in fspa.params
             ),
-            "signals": _list(
+            "signals": table_text(
                 [
                     _row(signal, f"is_bool = {snippets.boolean_literal(signal.type == 'bool')}")
                     for signal in fspa.signals
                 ]
             ),
-            "params": _list([_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]),
-            "exclusive": _list(
+            "params": table_text(
+                [_row(param, f"value = {snippets.number_literal(param.value)}") for param in fspa.params]
+            ),
+            "exclusive": table_text(
                 [f"{{ {', '.join(string_literal(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
-            "register_starts": _list(
+            "register_starts": table_text(
                 [
                     f"{{ name = {string_literal(register.name)}, value = {snippets.number_literal(register.initial)} }}"
                     for register in fspa.registers
@@ -198,11 +162,11 @@ class _Source(StepCode):
         if tables is None:
             return {"tables": "", "label_texts": ""}
         lines = [
-            f"local {name.upper()} = {{{LuaPrinter.items(_from_0(numbers))}}}"
+            f"local {name.upper()} = {{{LuaPrinter.items(items_from_0(numbers))}}}"
             for name, numbers in tables.all_tables(self._fspa.judge).items()
         ]
         texts = [f"{{ {', '.join(map(string_literal, pieces))} }}" for pieces in tables.labels.texts]
-        return {"tables": "\n".join(lines), "label_texts": _list(texts)}
+        return {"tables": "\n".join(lines), "label_texts": table_text(texts)}
 
     # --- the functions of states ------------------------------------------------------------------
 
@@ -397,21 +361,6 @@ def _type(signal: Signal) -> str:
     return " | ".join(["number", *map(string_literal, signal.values)])
 
 
-def _enum_tables(enums: Sequence[SignalEnum]) -> str:
-    """Return the tables of the values of enums, and an empty line; an empty text if there are none."""
-    if not enums:
-        return ""
-    lines = ["-- The values of enums, by the name of a signal without its arguments, and the name of the value."]
-    lines.append("local VALUES = {")
-    for enum in enums:
-        values = ", ".join(f"{table_key(value)} = {number}" for number, value in enumerate(enum.values))
-        lines.append(f"  {table_key(enum.base)} = {{ {values} }},")
-    lines += ["}", "", "-- The same by the name of a signal.", "local SIGNAL_VALUES = {"]
-    for enum in enums:
-        lines += [f"  {table_key(signal)} = VALUES{key_access(enum.base)}," for signal in enum.signals]
-    return "\n".join([*lines, "}", ""])
-
-
 def _accepting_cases(signal: Signal, variable: str) -> list[str]:
     """Return the first cases of the ``if`` that checks a signal: if the value is valid, they convert it to a float.
 
@@ -432,13 +381,3 @@ def _accepting_cases(signal: Signal, variable: str) -> list[str]:
 def _row(field: Signal | Param, entries: str) -> str:
     low, high = snippets.number_literal(field.low, "-huge"), snippets.number_literal(field.high, "huge")
     return f"{{ name = {string_literal(field.name)}, {entries}, low = {low}, high = {high} }}"
-
-
-def _from_0(numbers: Sequence[float]) -> list[str]:
-    """Return the items of a list of numbers whose first index is 0."""
-    return [f"{'' if index else '[0] = '}{number!r}" for index, number in enumerate(numbers)]
-
-
-def _list(items: Sequence[str]) -> str:
-    """Return the text of a list in Lua, with a line for each item; ``{}`` if there are no items."""
-    return "{\n" + "".join(f"{LuaPrinter.INDENT}{item},\n" for item in items) + "}" if items else "{}"

@@ -1,12 +1,13 @@
-"""Print the program of a monitor, strings and table keys in Lua."""
+"""Print the program of a monitor, strings and tables in Lua."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, Final
 
 from tltlc.program import reward_step, snippets, states
+from tltlc.program.enums import SignalEnum
 from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.tree import Assign, Declare, If, Int, Statement
 
@@ -109,26 +110,6 @@ class LuaPrinter(Printer):
         return ["end"]
 
 
-def declarations(statements: Iterable[Statement]) -> Iterator[Declare]:
-    """Yield every declaration among the statements, including those in branches."""
-    for statement in statements:
-        if isinstance(statement, Declare):
-            yield statement
-        elif isinstance(statement, If):
-            for body in _bodies(statement):
-                yield from declarations(body)
-
-
-def nesting(statements: Iterable[Statement]) -> int:
-    """Return how deep ``if`` statements are nested; 0 if there are none."""
-    bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
-    return 1 + max(map(nesting, bodies)) if bodies else 0
-
-
-def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
-    return (*(body for _, body in statement.cases), statement.otherwise)
-
-
 def string_literal(text: str) -> str:
     """Return a string literal, in which each UTF-8 byte of a character that does not print is escaped."""
     return snippets.string_literal(text, _escape)
@@ -150,3 +131,28 @@ def key_access(name: str) -> str:
 
 def _is_identifier(name: str) -> bool:
     return re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) is not None and name not in KEYWORDS
+
+
+def items_from_0(numbers: Sequence[float]) -> list[str]:
+    """Return the items of a list of numbers whose first index is 0."""
+    return [f"{'' if index else '[0] = '}{number!r}" for index, number in enumerate(numbers)]
+
+
+def table_text(items: Sequence[str]) -> str:
+    """Return the text of a list in Lua, with a line for each item; ``{}`` if there are no items."""
+    return "{\n" + "".join(f"{LuaPrinter.INDENT}{item},\n" for item in items) + "}" if items else "{}"
+
+
+def enum_tables(enums: Sequence[SignalEnum]) -> str:
+    """Return the tables of the values of enums, and an empty line; an empty text if there are none."""
+    if not enums:
+        return ""
+    lines = ["-- The values of enums, by the name of a signal without its arguments, and the name of the value."]
+    lines.append("local VALUES = {")
+    for enum in enums:
+        values = ", ".join(f"{table_key(value)} = {number}" for number, value in enumerate(enum.values))
+        lines.append(f"  {table_key(enum.base)} = {{ {values} }},")
+    lines += ["}", "", "-- The same by the name of a signal.", "local SIGNAL_VALUES = {"]
+    for enum in enums:
+        lines += [f"  {table_key(signal)} = VALUES{key_access(enum.base)}," for signal in enum.signals]
+    return "\n".join([*lines, "}", ""])
