@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import builtins
 import keyword
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from math import inf
-from typing import ClassVar, Final
+from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import Computation
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.languages.python_syntax import long_dict, long_tuple, short_tuple, tuple_items
+from tltlc.backends.languages.python_syntax import PythonPrinter, long_dict, long_tuple, short_tuple, tuple_items
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
@@ -24,21 +24,15 @@ from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of, nested_enums, upper_case
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
-from tltlc.program.printer import CHOICE, OR, Printer
+from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.shapes import StateTables
 from tltlc.program.tree import (
     FAILING,
     Assign,
-    BinaryNumber,
     CommentLine,
-    Declare,
     If,
     Int,
-    NumericCall,
-    ProgramExpression,
     Statement,
-    Table,
-    Type,
 )
 from tltlc.program.used_names import functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
@@ -84,94 +78,6 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
-class _Python(Printer):
-    """Prints the program of a monitor (:mod:`tltlc.program`) as Python code.
-
-    ``atoms`` are the names of the atoms in the spec.
-    """
-
-    COMMENT: ClassVar[str] = "#"
-    TEST: ClassVar[int] = OR
-    TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
-    WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "True", "false": "False"}
-    END: ClassVar[str] = ""
-    TABLES: ClassVar[dict[Table, str]] = {name: f"_{name.upper()}" for name in Printer.TABLES}
-
-    def __init__(self, atoms: Sequence[str]) -> None:
-        self._atoms = atoms
-
-    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
-        """Return the lines of statements; declarations without a value are left out, since Python needs none."""
-        needed = (
-            statement for statement in statements if not (isinstance(statement, Declare) and statement.value is None)
-        )
-        return super().lines(needed, depth)
-
-    def declaration(self, statement: Declare) -> str:
-        """Return a declaration with a value, which is an assignment in Python."""
-        assert statement.value is not None, "variables without a value are left out"
-        return f"{statement.name} = {self.text(statement.value, CHOICE)}"
-
-    def name(self, name: str) -> str:
-        """Return the name of a variable in Python.
-
-        For ``steps_real``, the number of steps as a real number, this is the int ``steps``, which
-        Python converts where a real number is needed.
-        """
-        return reward_step.STEPS if name == reward_step.STEPS_REAL else name
-
-    def assignment(self, statement: Assign) -> str:
-        """Return the text of an assignment; ``limiting`` gets the name of an atom or None instead of an index."""
-        return f"{statement.name} = {self.result(statement)}"
-
-    def result(self, statement: Assign) -> str:
-        """Return the text of the value that a statement assigns."""
-        match statement:
-            case Assign(states.LIMITING, Int(index)):
-                return string_literal(self._atoms[index]) if index >= 0 else "None"
-        return self.text(statement.value, CHOICE)
-
-    def head(self, test: str, *, first: bool) -> str:
-        """Return the line that begins a case: ``if`` or ``elif``, with its test."""
-        return f"if {test}:" if first else f"elif {test}:"
-
-    def otherwise(self) -> str:
-        """Return the line that begins the ``else``."""
-        return "else:"
-
-    def closing(self) -> list[str]:
-        """Return no lines, because Python ends a branch by its indentation."""
-        return []
-
-    def _text_and_binding(self, node: ProgramExpression) -> tuple[str, int]:
-        """Return the text of an expression and its binding strength, which decides where brackets are needed.
-
-        ``min(min(a, b), c)`` becomes ``min(a, b, c)``, which is faster; so do nested calls of ``max``.
-        The result is the same: of equal arguments, the first.
-        """
-        match node:
-            case NumericCall("min" | "max" as function):
-                return super()._text_and_binding(NumericCall(function, tuple(_arguments(node))))
-            case NumericCall("divide", (left, right)):
-                return super()._text_and_binding(BinaryNumber("/", left, right))
-        return super()._text_and_binding(node)
-
-    def choice(self, test: str, value: str, otherwise: str) -> str:
-        """Return the text of a conditional expression in Python."""
-        return f"{value} if {test} else {otherwise}"
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function in Python."""
-        return super().call("pow" if function == "power" else function, arguments)
-
-
-def _arguments(node: NumericCall) -> list[ProgramExpression]:
-    """Return the arguments of nested calls of one function: ``a, b, c`` for ``f(f(a, b), c)``."""
-    first, second = node.args
-    before = _arguments(first) if isinstance(first, NumericCall) and first.function == node.function else [first]
-    return [*before, second]
-
-
 class _Source:
     """Makes the Python module of one monitor, by filling the template ``monitor.py.txt``."""
 
@@ -187,13 +93,13 @@ class _Source:
         only_kept = self._program.variables_kept - read
         needed = zip(self._program.atoms, self._program.only_in, strict=True)
         self._computed = [name for name, only in needed if only != -1 and name not in only_kept]
-        self._printer = _Python([atom.name for atom in fspa.atoms])
+        self._printer = PythonPrinter([atom.name for atom in fspa.atoms])
 
     def text(self) -> str:
         """Return the text of ``NAME_monitor.py``."""
         fspa, at_goal = self._fspa, self._fspa.judge == "goal"
         with recursion_room():
-            step = _Python.block(self._step(), depth=2)
+            step = PythonPrinter.block(self._step(), depth=2)
             body = "\n\n\n".join(map(self._function, range(len(self._program.cases))))
         pieces = {
             "title": docstring_text(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
