@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.godot.source import ENDINGS, Dialect, files
+from tltlc.backends.godot.dialect import Dialect
+from tltlc.backends.godot.source import ENDINGS, files
 
 TARGET = Target("gdscript3", "a stand-alone monitor in GDScript, for Godot 3", ENDINGS, ("godot3",))
 

@@ -35,6 +35,11 @@ def number(value: float) -> str:
     return f"({factor} * pow(2.0, {power}.0))"
 
 
+def signed_number(value: float) -> str:
+    """Return an expression whose value in Godot is exactly the given number, which may be negative."""
+    return f"-{number(-value)}" if repr(value)[0] == "-" else number(float(value))
+
+
 def _split(value: float) -> tuple[int, int]:
     """Return the odd integer f and the exponent n with ``value == f * 2**n``."""
     factor, divisor = value.as_integer_ratio()

@@ -8,17 +8,17 @@ precision in Godot 3. Godot 3 also rounds a number that it parses from a string.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files
+from tltlc.backends.godot.dialect import Dialect
 from tltlc.backends.godot.names import RESERVED, snake_case
-from tltlc.backends.godot.numbers import number
+from tltlc.backends.godot.numbers import signed_number
 from tltlc.backends.godot.printer import Gd
 from tltlc.backends.templates import fill_template, names_in
-from tltlc.core.record import record
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
@@ -58,35 +58,6 @@ _MEMBERS = {
 A step that refuses its sample returns before it assigns to any of these members, so the monitor
 stays unchanged.
 """
-
-
-@record
-class Dialect:
-    """How a version of Godot differs from other versions.
-
-    ``version`` is the name of the version in templates, and ``title`` its name for readers.
-    ``base`` is Godot's class of reference-counted objects. ``functions`` maps numeric functions of
-    the monitor's program to functions of Godot with exactly the same results. Functions in
-    ``swapped`` get their arguments in reverse order, because Godot returns the last of equal values
-    (0 and -0) where the program needs the first. ``typed`` says whether GDScript has typed arrays
-    and enum types, and ``wide`` whether its strings have escapes for characters above U+FFFF.
-    """
-
-    version: str
-    title: str
-    base: str
-    functions: Mapping[str, str]
-    swapped: frozenset[str]
-    typed: bool
-    wide: bool
-
-    def types(self) -> dict[str, str]:
-        """Map each name of a type in the templates to the type in this version: ``"ints"`` to ``"Array[int]"``."""
-        arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
-        arrays["verdict_array"] = "Verdict"
-        types = {name: f"Array[{element}]" if self.typed else "Array" for name, element in arrays.items()}
-        enums = {"verdict": "Verdict", "problem": "Problem"}
-        return types | {name: enum if self.typed else "int" for name, enum in enums.items()}
 
 
 def files(fspa: Fspa, dialect: Dialect) -> Files:
@@ -139,7 +110,7 @@ class _Source(StepCode):
             "fields": self._strings(self._signals),
             "atoms": self._strings(atom.name for atom in fspa.atoms),
             "registers": self._strings(register.name for register in fspa.registers),
-            "register_starts": _list([_signed(register.initial) for register in fspa.registers]),
+            "register_starts": _list([signed_number(register.initial) for register in fspa.registers]),
             "labels": self._strings(str(state.label) for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
@@ -191,11 +162,13 @@ class _Source(StepCode):
         types, lines = self._dialect.types(), []
         for name, numbers in columns.items():
             is_real = name == "level_progress"
-            items = map(_signed if is_real else repr, numbers)
+            items = map(signed_number if is_real else repr, numbers)
             lines.append(f"const _{name.upper()}: {types['floats' if is_real else 'ints']} = {_list(items)}")
         return {
             "tables": "\n".join(lines),
-            "label_texts": _list([f"[{', '.join(map(self._string, pieces))}]" for pieces in tables.labels.texts]),
+            "label_texts": _list(
+                [f"[{', '.join(map(self._dialect.string_literal, pieces))}]" for pieces in tables.labels.texts]
+            ),
         }
 
     # --- records ----------------------------------------------------------------------------------
@@ -208,7 +181,7 @@ class _Source(StepCode):
 
     def _param_fields(self) -> str:
         fields = zip(self._fspa.params, self._params, strict=True)
-        return self._fields([(name, "float", _signed(param.value), param) for param, name in fields])
+        return self._fields([(name, "float", signed_number(param.value), param) for param, name in fields])
 
     def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
         """Return the lines that declare the variables of a class, each with its documentation.
@@ -370,31 +343,13 @@ class _Source(StepCode):
     # --- pieces -----------------------------------------------------------------------------------
 
     def _strings(self, texts: Iterable[str]) -> str:
-        return _list([self._string(text) for text in texts])
-
-    def _string(self, text: str) -> str:
-        """Return a string literal with escapes for characters that do not print.
-
-        NUL characters are left out, because they would end the string in the engine.
-        """
-        return snippets.string_literal(text.replace("\0", ""), self._escape)
-
-    def _escape(self, character: str) -> str:
-        code = ord(character)
-        if 0xD800 <= code < 0xE000:
-            return "?"
-        if code > 0xFFFF:
-            return f"\\U{code:06x}" if self._dialect.wide else character
-        return {"\n": "\\n", "\r": "\\r", "\t": "\\t"}.get(character, f"\\u{code:04x}")
-
-
-def _signed(value: float) -> str:
-    return f"-{number(-value)}" if repr(value)[0] == "-" else number(float(value))
+        return _list(map(self._dialect.string_literal, texts))
 
 
 def _ends(field: Signal | Param) -> tuple[str, str]:
     """Return the lowest and the highest value of a signal or a param, as GDScript: ``("0.0", "INF")``."""
-    return "-INF" if field.low is None else _signed(field.low), "INF" if field.high is None else _signed(field.high)
+    low = "-INF" if field.low is None else signed_number(field.low)
+    return low, "INF" if field.high is None else signed_number(field.high)
 
 
 def _within(value: str, field: Signal | Param) -> str:
