@@ -26,9 +26,8 @@ from tltlc.core.record import replace
 from tltlc.expression import tree as source
 from tltlc.expression.evaluate import MULTIPLIED_EXPONENTS
 from tltlc.program.flags import Flags, Truths
+from tltlc.program.operations import all_or_any, nesting_depth, operation
 from tltlc.program.tree import (
-    All,
-    Any,
     Assign,
     BinaryNumber,
     Bool,
@@ -36,9 +35,7 @@ from tltlc.program.tree import (
     Compare,
     Declare,
     If,
-    Negate,
     Not,
-    NumericCall,
     ProgramExpression,
     ProgramVariable,
     Real,
@@ -311,29 +308,11 @@ class ExpressionTranslator:
             if factors:
                 base = self._as_variable(self._argument(node.args[0], lines), lines)
                 return reduce(lambda left, right: BinaryNumber("*", left, right), [base] * factors)
-        return self._operation(node, [self._argument(argument, lines) for argument in node.args])
+        return operation(node, [self._argument(argument, lines) for argument in node.args])
 
     def _argument(self, node: source.Expression, lines: list[Statement]) -> ProgramExpression:
         value = self._value(node, lines)
-        return self._as_variable(value, lines) if self._depth(value) >= _DEEPEST else value
-
-    def _operation(self, node: source.Op, args: list[ProgramExpression]) -> ProgramExpression:
-        match node.op:
-            case "+" | "-" | "*":
-                op = node.op
-                return reduce(lambda left, right: BinaryNumber(op, left, right), args)
-            case "/":
-                return reduce(_divide, args)
-            case "neg":
-                return Negate(args[0])
-            case "^":
-                return NumericCall("power", tuple(args))
-            case "clamp":
-                return NumericCall("min", (NumericCall("max", (args[0], args[1])), args[2]))
-            case "min" | "max":
-                function = node.op
-                return reduce(lambda left, right: NumericCall(function, (left, right)), args)
-        return NumericCall(node.op, tuple(args))
+        return self._as_variable(value, lines) if nesting_depth(value) >= _DEEPEST else value
 
     # --- tests ------------------------------------------------------------------------------------
 
@@ -353,7 +332,7 @@ class ExpressionTranslator:
 
     def _part(self, node: _SourceNode, lines: list[Statement]) -> ProgramExpression:
         test = self._test(node, lines)
-        if self._depth(test) < _DEEPEST:
+        if nesting_depth(test) < _DEEPEST:
             return test
         name = self._declare("bool", lines)
         lines.append(Assign(name, test))
@@ -373,12 +352,12 @@ class ExpressionTranslator:
                 lines += needed
             elif needed:
                 name = self._declare("bool", lines, changes=True)
-                lines.append(Assign(name, _all_or_any(node.op, tests)))
+                lines.append(Assign(name, all_or_any(node.op, tests)))
                 undecided = ProgramVariable(name) if node.op == "and" else Not(ProgramVariable(name))
                 lines.append(If(((undecided, (*needed, Assign(name, test))),)))
                 tests, test = [], ProgramVariable(name)
             tests.append(test)
-        return _all_or_any(node.op, tests)
+        return all_or_any(node.op, tests)
 
     # --- variables --------------------------------------------------------------------------------
 
@@ -400,18 +379,6 @@ class ExpressionTranslator:
         lines.append(Declare(name, type_, None, changes))
         return name
 
-    def _depth(self, node: ProgramExpression) -> int:
-        match node:
-            case BinaryNumber(_, left, right) | Compare(_, left, right):
-                return 1 + max(self._depth(left), self._depth(right))
-            case NumericCall(_, args) | All(args) | Any(args):
-                return 1 + max(map(self._depth, args))
-            case Choice(test, value, otherwise):
-                return 1 + max(map(self._depth, (test, value, otherwise)))
-            case Negate(operand) | Not(operand):
-                return 1 + self._depth(operand)
-        return 0
-
 
 def _branch_depth(node: _SourceNode) -> int:
     """Return how deep ``when`` expressions (conditional expressions) are nested in a node; 0 for none."""
@@ -421,19 +388,3 @@ def _branch_depth(node: _SourceNode) -> int:
     if isinstance(node, (source.Op, source.Condition)):
         return max(map(_branch_depth, node.args))
     return 0
-
-
-def _all_or_any(op: str, tests: list[ProgramExpression]) -> ProgramExpression:
-    if len(tests) == 1:
-        return tests[0]
-    return All(tuple(tests)) if op == "and" else Any(tuple(tests))
-
-
-def _divide(left: ProgramExpression, right: ProgramExpression) -> ProgramExpression:
-    """Return a quotient: ``/`` if the divisor is a literal other than 0, else a call of ``divide``.
-
-    ``divide`` reports a division by 0 when the program runs.
-    """
-    if isinstance(right, Real) and right.value != 0.0:
-        return BinaryNumber("/", left, right)
-    return NumericCall("divide", (left, right))
