@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tltlc.automaton.fspa import Fspa
-    from tltlc.grammar.tree import Module
+    from tltlc.grammar.module import Module
     from tltlc.resolve.spec import ResolvedFile, Spec
 
 _TEXT_NAME: Final = "<text>"

@@ -17,6 +17,7 @@ from typing import Any, Final
 from tests.memory.names import MEMORY, NOWHERE, Names, Scope
 from tltlc.core.source import SourceFile
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import BinaryExpr, CallExpr, Expr, GroupExpr, NameExpr, NumberExpr, Quantified, Unary
 
@@ -50,7 +51,7 @@ class Definition(Names):
     by the identity of an expression, so expressions must live as long as the definition.
     """
 
-    def __init__(self, module: tree.Module, trace: Sequence[Mapping[str, float]], params: Mapping[str, float]) -> None:
+    def __init__(self, module: Module, trace: Sequence[Mapping[str, float]], params: Mapping[str, float]) -> None:
         self.trace = trace
         super().__init__(module)
         self._period: Fraction | None = None

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.grammar.tree import CallExpr, Expr, GroupExpr, NameExpr, Quantified
 
 MEMORY: Final = ("times", "time_since", "time_holding", "previous", "initial", "highest", "lowest")
@@ -37,7 +38,7 @@ NOWHERE: Final = Scope({})
 class Names:
     """The declarations of a module, and the local names of the expressions in it."""
 
-    def __init__(self, module: tree.Module) -> None:
+    def __init__(self, module: Module) -> None:
         self.declared: dict[str, tree.Declaration] = {
             declaration.name: declaration
             for declaration in module.declarations

@@ -13,6 +13,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import CompileOptions, Session
 
@@ -26,7 +27,7 @@ class Case(NamedTuple):
     """A random spec: its formula, the module that declares its names, and its automaton."""
 
     requirement: str
-    module: tree.Module
+    module: Module
     fspa: Fspa
 
 

@@ -21,7 +21,7 @@ from tests.tools.conformance.runner import Runner, build_program, runners
 from tests.tools.conformance.runners.c import WITHOUT_REGISTERS
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
-from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.monitor import Monitor
 from tltlc.pipeline import Session
 
@@ -53,7 +53,7 @@ Trace = list[dict[str, float]]
 
 
 @cache
-def rules() -> tuple[tree.Module, Fspa]:
+def rules() -> tuple[Module, Fspa]:
     """Return the module and the automaton of the rules, at 2 Hz."""
     session = Session(SourceFile("<rules>", EXAMPLE.read_text(encoding="utf-8").replace("60 Hz", "2 Hz")))
     (fspa,) = session.automata

@@ -14,6 +14,7 @@ from math import inf
 from tests.memory.definition import TINY, Definition, exact
 from tests.memory.names import NOWHERE, Scope
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.grammar.tree import BinaryExpr, Expr, TemporalInterval, Unary
 
 
@@ -25,7 +26,7 @@ class TimedDefinition(Definition):
 
     def __init__(
         self,
-        module: tree.Module,
+        module: Module,
         trace: Sequence[Mapping[str, float]],
         lengths_s: Sequence[float],
         params: Mapping[str, float],

@@ -12,6 +12,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import parse_formula
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import CompileOptions, Session
@@ -26,7 +27,7 @@ class TimedCase(NamedTuple):
     """A spec: its clauses, the module that it is in, and its automaton."""
 
     clauses: tuple[tree.Clause, ...]
-    module: tree.Module
+    module: Module
     fspa: Fspa
 
 

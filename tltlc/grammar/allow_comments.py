@@ -19,7 +19,8 @@ from typing import Final
 
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
-from tltlc.grammar.tree import Comment, EntityDecl, Module, SpecDecl
+from tltlc.grammar.module import Comment, Module
+from tltlc.grammar.tree import EntityDecl, SpecDecl
 
 _COMMENT: Final = re.compile(r"//(?!/)\s*tltlc\s*:\s*allow\b")
 _CODES: Final = re.compile(r"[\s,]*(TLT[0-9]{4})\b")

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allow_comments import Allowance, allowances
-from tltlc.grammar.tree import Module
+from tltlc.grammar.module import Module
 
 
 def drop_silenced(modules: Iterable[Module], reported: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from tltlc.core.source import Span
+from tltlc.grammar.module import Comment
 from tltlc.grammar.tables import ParserTables, load
-from tltlc.grammar.tree import Comment
 
 MAX_TOKENS: Final = 1 << 17
 """The most tokens of a file, with ``$END``. The parser refuses larger files, so that its time is bounded."""

@@ -14,8 +14,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr, nesting, tree_checks
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import MAX_TOKENS, Tokens, tokenize
+from tltlc.grammar.module import Module
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import Declaration, Expr, Module
+from tltlc.grammar.tree import Declaration, Expr
 from tltlc.io.limits import SOURCE
 
 MAX_CHARACTERS: Final = 1 << 20

@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Union
 
 from tltlc.core.record import record
-from tltlc.core.source import SourceFile, Span
+from tltlc.core.source import Span
 
 # --- expressions ------------------------------------------------------------------------------
 
@@ -387,20 +387,3 @@ Declaration = Union[
     SpecDecl,
     TestDecl,
 ]
-
-
-@record
-class Comment:
-    """A ``//`` or ``///`` comment with its slashes, for tools that print the source text."""
-
-    text: str
-    span: Span
-
-
-@record
-class Module:
-    """A parsed source file: its declarations and its comments, both in order."""
-
-    source: SourceFile
-    declarations: tuple[Declaration, ...]
-    comments: tuple[Comment, ...]

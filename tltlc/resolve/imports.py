@@ -10,7 +10,8 @@ from typing import Final
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, replacement_fix
-from tltlc.grammar.tree import Import, Module
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import Import
 from tltlc.grammar.typos import likely_name
 from tltlc.io.confinement import may_read, outside_diagnostic
 from tltlc.io.files import is_file, may_be_file, read_source

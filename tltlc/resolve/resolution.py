@@ -8,8 +8,9 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.allow_index import drop_silenced
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import parse_formula
-from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
+from tltlc.grammar.tree import ExclusiveDecl, Expr, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.context import Context

@@ -8,17 +8,8 @@ from typing import Literal, Union
 from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, replacement_fix
-from tltlc.grammar.tree import (
-    EntityDecl,
-    GroupDecl,
-    Import,
-    LetDecl,
-    Module,
-    NameExpr,
-    ParamDecl,
-    PredicateDecl,
-    SignalDecl,
-)
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import EntityDecl, GroupDecl, Import, LetDecl, NameExpr, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.grammar.typos import likely_name
 from tltlc.io.limits import IMPORTED
 from tltlc.resolve.imports import LoadedModule

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar import allow_comments as allowed
 from tltlc.grammar import tree
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import parse
 from tltlc.tools.fmt import format_text
 
@@ -34,13 +35,13 @@ def check(text: str, style: str) -> str:
     return formatted
 
 
-def read(text: str) -> tree.Module:
+def read(text: str) -> Module:
     module, diagnostics = parse(SourceFile("a.tltl", text))
     assert diagnostics == ()
     return module
 
 
-def comment_targets(module: tree.Module) -> list[set[int] | None]:
+def comment_targets(module: Module) -> list[set[int] | None]:
     """Return, for each allow comment, the numbers of the outermost statements that it applies to.
 
     None stands for the whole file.

@@ -8,8 +8,8 @@ import pytest
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Module
 from tltlc.pipeline import CompileOptions, Session
 from tltlc.tools.lint.fixes import OfferedFix, fixes_of_errors, fixes_of_findings
 from tltlc.tools.lint.run import findings, lint, view_of

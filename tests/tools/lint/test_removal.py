@@ -9,8 +9,8 @@ import pytest
 
 from tests.tools.lint.helpers import apply_fixes, codes
 from tltlc.core.source import SourceFile, Span
+from tltlc.grammar.module import Comment
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Comment
 from tltlc.tools.lint.removal import removal_span
 
 SPEC = "spec s = F a\n"

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
-from tltlc.grammar.tree import Comment, Import, Module
+from tltlc.grammar.module import Comment, Module
+from tltlc.grammar.tree import Import
 
 
 def declaration_edit(module: Module, line: str) -> Edit:

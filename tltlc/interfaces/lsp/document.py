@@ -12,7 +12,7 @@ from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allow_index import drop_silenced
 from tltlc.grammar.lexer import Token, Tokens, tokenize
-from tltlc.grammar.tree import Module
+from tltlc.grammar.module import Module
 from tltlc.interfaces.lsp.follow_up_errors import unparsed_parts
 from tltlc.interfaces.lsp.occurrences import Occurrence, occurrences
 from tltlc.interfaces.lsp.paths import location_of

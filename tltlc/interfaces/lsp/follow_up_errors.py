@@ -9,7 +9,8 @@ from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.tree import Import, Module, TestDecl
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import Import, TestDecl
 
 _NO_SUCH_ATOM: Final = "TLT0209"
 _WRONG_TEST: Final = "TLT0217"

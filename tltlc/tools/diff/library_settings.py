@@ -13,7 +13,7 @@ from tltlc.tools.diff.differences import are_exclusive
 
 if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic
-    from tltlc.grammar.tree import Module
+    from tltlc.grammar.module import Module
     from tltlc.resolve.spec import ResolvedFile
 
 

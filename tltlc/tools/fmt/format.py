@@ -6,8 +6,8 @@ from typing import Final
 
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.grammar import tree
 from tltlc.grammar.lexer import MAX_TOKENS
+from tltlc.grammar.module import Module
 from tltlc.grammar.parser import is_too_large, parse
 from tltlc.tools.fmt.declarations import DeclarationPrinter
 from tltlc.tools.fmt.layout_constraints import NO_CONSTRAINTS, LayoutConstraints, required_constraints
@@ -54,7 +54,7 @@ def format_source(source: SourceFile, style: str = DEFAULT) -> str:
 _END: Final = 1 << 62
 
 
-def _format_module(module: tree.Module, style: Style) -> str:
+def _format_module(module: Module, style: Style) -> str:
     """Return the text of a module in the standard layout.
 
     Each ``allow`` comment must apply to the same statements as before. So the layout is repeated
@@ -79,7 +79,7 @@ def _check_size(layout: SourceFile) -> None:
         raise TltlError([Diagnostic("TLT0004", title, help=help_)])
 
 
-def _lay_out(module: tree.Module, style: Style, constraints: LayoutConstraints) -> str:
+def _lay_out(module: Module, style: Style, constraints: LayoutConstraints) -> str:
     page = Page(module.source, module.comments)
     declarations = DeclarationPrinter(module.source, page, OneLinePrinter(module.source, style), constraints.joints)
     for declaration in module.declarations:

@@ -12,8 +12,9 @@ from typing import Final
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.allow_comments import commented_spans, statements
+from tltlc.grammar.module import Comment, Module
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Comment, EntityDecl, Module
+from tltlc.grammar.tree import EntityDecl
 
 
 @record

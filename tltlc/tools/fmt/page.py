@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.grammar.tree import Comment
+from tltlc.grammar.module import Comment
 
 WIDTH: Final = 100
 """The most columns of a line. Only a long word or a comment can make a line longer."""

@@ -15,7 +15,7 @@ from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, Severity
 from tltlc.grammar.allow_comments import Allowance, codes, is_allowing
 from tltlc.grammar.allow_index import AllowIndex
-from tltlc.grammar.tree import Comment
+from tltlc.grammar.module import Comment
 from tltlc.tools.lint.file_view import FileView
 from tltlc.tools.lint.removal import removal_span
 from tltlc.tools.lint.rule import LintFinding, removal_fix

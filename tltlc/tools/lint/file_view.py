@@ -12,7 +12,8 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, GroupExpr, Module, NameExpr, Quantified, SpecDecl
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, Expr, GroupExpr, NameExpr, Quantified, SpecDecl
 from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.phrases import is_state

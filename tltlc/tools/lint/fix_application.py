@@ -9,7 +9,7 @@ from tltlc.core.record import EMPTY, record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.allow_comments import commented_spans
-from tltlc.grammar.tree import Module
+from tltlc.grammar.module import Module
 from tltlc.io.limits import WORK
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.lint.rule import LintFinding

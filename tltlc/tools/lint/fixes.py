@@ -15,7 +15,7 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix
 from tltlc.grammar.allow_comments import commented_spans
-from tltlc.grammar.tree import Module
+from tltlc.grammar.module import Module
 from tltlc.io.limits import WORK
 from tltlc.tools.lint.rule import LintFinding
 from tltlc.tools.lint.scopes import apply_edits, preserve_scopes

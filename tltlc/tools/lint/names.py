@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterator
 
 from tltlc.core.record import record
-from tltlc.grammar.tree import CallExpr, Declaration, Expr, GroupDecl, Module, NameExpr, Quantified, SpecDecl
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import CallExpr, Declaration, Expr, GroupDecl, NameExpr, Quantified, SpecDecl
 from tltlc.grammar.walk import expressions, parts
 
 _FORMULAS = ("reach", "keep", "avoid", "require")

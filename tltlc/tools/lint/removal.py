@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from tltlc.core.source import SourceFile, Span
 from tltlc.grammar.mistakes.insertion import documentation_start
-from tltlc.grammar.tree import Comment
+from tltlc.grammar.module import Comment
 
 
 def removal_span(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:

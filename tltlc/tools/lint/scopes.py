@@ -14,8 +14,8 @@ from typing import TypeVar
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.allow_comments import commented_spans
+from tltlc.grammar.module import Comment, Module
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Comment, Module
 from tltlc.tools.lint.removal import removal_span
 
 T = TypeVar("T")

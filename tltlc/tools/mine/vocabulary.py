@@ -19,7 +19,8 @@ from tltlc.core.record import record, replace
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.expression.tree import AtomValue, Before, Expression, SignalValue, nodes
-from tltlc.grammar.tree import Module, Parameter, SignalDecl, SpecDecl, TestDecl
+from tltlc.grammar.module import Module
+from tltlc.grammar.tree import Parameter, SignalDecl, SpecDecl, TestDecl
 from tltlc.io.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.pipeline import CompileOptions, Session
