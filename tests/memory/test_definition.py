@@ -19,8 +19,8 @@ from tltlc.automaton.memory import given_atoms
 from tltlc.core.source import SourceFile
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.grammar.parser import parse
+from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.monitor import Monitor
-from tltlc.monitor.samples import MonitorError
 from tltlc.pipeline import CompileOptions, Session, compile_text, decode_artefact, encode_artefact
 
 BOOLS = "clock 2 Hz signal p: bool signal q: bool "

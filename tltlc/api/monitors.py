@@ -14,6 +14,7 @@ names of the reward modes; ``mode_function`` returns the function that computes 
 
 from tltlc.automaton.memory import deciding_atoms, given_atoms, registers_from_atoms, schedule
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
+from tltlc.monitor.errors import SUGGESTIONS
 from tltlc.monitor.guards import bounding_literal, robustness
 from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.progress_and_reward import MODES, Mode, TerminalPenalty, Termination, ends_episode, terminal_penalty
@@ -21,7 +22,6 @@ from tltlc.monitor.reward_modes import Transition, mode_function
 from tltlc.monitor.samples import (
     ROUNDING,
     STEP_LENGTH,
-    SUGGESTIONS,
     Samples,
     finite_signal_value,
     name_list,

@@ -5,8 +5,8 @@ A sample has the values of a game's signals at one step. Begin with `Monitor`.
 
 from __future__ import annotations
 
+from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.monitor.progress_and_reward import RewardOptions
-from tltlc.monitor.samples import MonitorError
 
 __all__ = ["Monitor", "MonitorError", "RewardOptions", "Step"]

@@ -13,21 +13,15 @@ from typing import Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import given_atoms, registers_from_atoms, schedule
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.expression.python import compile_expressions
 from tltlc.expression.tree import AtomValue, Before, StepLength, VariableKey
+from tltlc.monitor.errors import SUGGESTIONS, MonitorError, sample_error, sample_place
 from tltlc.resolve.computed_atoms import Computed, computed
 from tltlc.resolve.spec import Param, Signal
 
 ROUNDING: Final = 1e-9
 """How far rounding may take the value of an atom outside [-1, 1] without a warning."""
-
-
-class MonitorError(TltlError):
-    """Raised for a sample or param that the monitor cannot use.
-
-    The state of the monitor stays unchanged.
-    """
 
 
 STEP_LENGTH: Final = "length of the step"
@@ -130,7 +124,7 @@ class Samples:
     ) -> SampleValues:
         missing = [name for name in self._names if name not in signals]
         if missing:
-            raise _error("TLT0611", when, f"no value for {name_list(missing)}")
+            raise sample_error("TLT0611", when, f"no value for {name_list(missing)}")
         sample = [
             self._signal_value(signal, name, signals[name], when)
             for signal, name in zip(self._fspa.signals, self._names, strict=True)
@@ -151,17 +145,17 @@ class Samples:
         if not self._fspa.clock_varies:
             if given is not None:
                 advice = "leave it out, or write `clock varies` in the spec"
-                raise _error("TLT0619", when, "it has a length, but the clock of the spec does not vary", advice)
+                raise sample_error("TLT0619", when, "it has a length, but the clock of the spec does not vary", advice)
             return ()
         if given is None:
-            raise _error("TLT0619", when, "its time since the sample before is missing, and the clock varies")
+            raise sample_error("TLT0619", when, "its time since the sample before is missing, and the clock varies")
         try:
             value = float(given) if hasattr(given, "__float__") and not getattr(given, "ndim", 0) else None
         except OverflowError:
             value = inf
         if value is None or not 0.0 <= value < inf:
             text = f"{given!r:.40}" if value is None else number_text(value)
-            raise _error("TLT0619", when, f"its time since the sample before is {text}, not a number of seconds")
+            raise sample_error("TLT0619", when, f"its time since the sample before is {text}, not a number of seconds")
         return (value,)
 
     def from_atoms(
@@ -235,7 +229,7 @@ class Samples:
         name = self._fspa.registers[index].name
         value = self._computed(self._updates[index], known, "register", name, when)
         if not isfinite(value):
-            raise _error("TLT0613", when, f"the register `{name}` is too large to compute")
+            raise sample_error("TLT0613", when, f"the register `{name}` is too large to compute")
         return value
 
     def _signal_value(self, signal: Signal, name: str, given: SupportsFloat | str, when: int | str) -> float:
@@ -249,7 +243,7 @@ class Samples:
         low, high = signal.low, signal.high
         if signal.type == "bool":
             if value not in (0.0, 1.0):
-                raise _error("TLT0612", when, f"the signal `{name}` is {number_text(value)}, not true or false")
+                raise sample_error("TLT0612", when, f"the signal `{name}` is {number_text(value)}, not true or false")
             return value
         nearest = low if low is not None and value < low else high if high is not None and value > high else value
         if nearest != value and ("TLT0615", name) not in self._noticed:
@@ -276,14 +270,14 @@ class Samples:
             problem = "is too large to compute"
         except ValueError:
             problem = "takes a root or power that does not exist"
-        raise _error("TLT0613", when, f"the {kind} `{name}` {problem}")
+        raise sample_error("TLT0613", when, f"the {kind} `{name}` {problem}")
 
     def _clamped_atom_value(self, index: int, value: float, when: int | str) -> float:
         if -1.0 <= value <= 1.0:
             return value
         name = self._fspa.atoms[index].name
         if not isfinite(value):
-            raise _error("TLT0613", when, f"the atom `{name}` is too large to compute")
+            raise sample_error("TLT0613", when, f"the atom `{name}` is too large to compute")
         nearest = 1.0 if value > 0.0 else -1.0
         if abs(value - nearest) > ROUNDING:
             text = f"the atom `{name}` is {number_text(value)}, outside [-1, 1]"
@@ -293,7 +287,7 @@ class Samples:
     def _notice(self, code: str, name: str, when: int | str, text: str) -> None:
         if (code, name) not in self._noticed:
             self._noticed.add((code, name))
-            self._notices.append(Diagnostic(code, f"{_location(when)}: {text}", (), SUGGESTIONS[code], "warning"))
+            self._notices.append(Diagnostic(code, f"{sample_place(when)}: {text}", (), SUGGESTIONS[code], "warning"))
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
@@ -340,7 +334,7 @@ def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
         holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
         if len(holding) > 1:
             declaration = ", ".join(fspa.atoms[atom].name for atom in group)
-            raise _error("TLT0614", step, f"{name_list(holding)} hold at once, against `exclusive {declaration}`")
+            raise sample_error("TLT0614", step, f"{name_list(holding)} hold at once, against `exclusive {declaration}`")
 
 
 def number_text(value: float) -> str:
@@ -370,50 +364,31 @@ def finite_signal_value(signal: Signal, given: SupportsFloat | str, when: int | 
     """
     value = given if type(given) is float else _as_float(signal, given, when)
     if not isfinite(value):
-        raise _error("TLT0612", when, f"the signal `{signal.name}` is {value}, not a finite number")
+        raise sample_error("TLT0612", when, f"the signal `{signal.name}` is {value}, not a finite number")
     return value
 
 
 def _as_float(signal: Signal, given: SupportsFloat | str, when: int | str) -> float:
     if getattr(given, "ndim", 0):
-        raise _error("TLT0612", when, f"the signal `{signal.name}` is an array, not a number")
+        raise sample_error("TLT0612", when, f"the signal `{signal.name}` is an array, not a number")
     if isinstance(given, str) and signal.values:
         return _value_of_name(signal, given, when)
     if isinstance(given, str) or not hasattr(given, "__float__"):
-        raise _error("TLT0612", when, f"the signal `{signal.name}` is not a number")
+        raise sample_error("TLT0612", when, f"the signal `{signal.name}` is not a number")
     try:
         return float(given)
     except OverflowError:
-        raise _error("TLT0612", when, f"the signal `{signal.name}` is too large for a number") from None
+        raise sample_error("TLT0612", when, f"the signal `{signal.name}` is too large for a number") from None
 
 
 def _value_of_name(signal: Signal, name: str, when: int | str) -> float:
     if name not in signal.values:
-        title = f"{_location(when)}: the signal `{signal.name}` has no value `{name:.40}`"
-        raise MonitorError([Diagnostic("TLT0612", title, help=values_advice(signal))])
+        raise sample_error(
+            "TLT0612", when, f"the signal `{signal.name}` has no value `{name:.40}`", values_advice(signal)
+        )
     return float(signal.values.index(name))
 
 
 def values_advice(signal: Signal) -> str:
     """Return the advice for an enum that has an unknown value."""
     return f"its values are {name_list(signal.values)}, or the numbers from 0 to {len(signal.values) - 1}"
-
-
-SUGGESTIONS: Final = {
-    "TLT0611": "supply every signal that the atoms use, at each step",
-    "TLT0612": "check how the game computes it",
-    "TLT0613": "give its predicate a value for this case, with `when`",
-    "TLT0614": "remove the declaration, or check how the game computes them",
-    "TLT0615": "supply it on the declared scale, or declare the range that it has",
-    "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
-    "TLT0619": "give the seconds since the sample before, at least 0, as `dt`: `monitor.step(signals, dt)`",
-}
-"""The advice of each diagnostic about a sample, by its code."""
-
-
-def _error(code: str, when: int | str, text: str, advice: str | None = None) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"{_location(when)}: {text}", help=advice or SUGGESTIONS[code])])
-
-
-def _location(when: int | str) -> str:
-    return when if isinstance(when, str) else f"step {when}"

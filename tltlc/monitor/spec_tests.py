@@ -10,8 +10,9 @@ from tltlc.automaton.fspa import NOTATIONS, Fspa
 from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.monitor import Monitor, Step
-from tltlc.monitor.samples import MonitorError, number_text
+from tltlc.monitor.samples import number_text
 from tltlc.resolve.spec import Expect, ResolvedFile, Test
 
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}

@@ -11,8 +11,9 @@ from tltlc.automaton.memory import given_atoms, registers_from_atoms
 from tltlc.automaton.work import Work
 from tltlc.core.record import replace
 from tltlc.logic.formula import Formula, and_, atom, not_, or_
+from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.guards import holds
-from tltlc.monitor.samples import MonitorError, Samples, check_exclusive
+from tltlc.monitor.samples import Samples, check_exclusive
 from tltlc.resolve.sources import names_read
 
 _STEP_WORK: Final = 40

@@ -11,7 +11,7 @@ from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.text import label_text
 from tltlc.automaton.work import OutOfWork
 from tltlc.monitor import Monitor
-from tltlc.monitor.samples import MonitorError
+from tltlc.monitor.errors import MonitorError
 from tltlc.tools.witness.blocks import given_values
 from tltlc.tools.witness.samples import SampleFinder
 from tltlc.tools.witness.step_lengths import length_of, shortest_deadline_s

@@ -11,12 +11,13 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import deciding_atoms
 from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.guards import holds, prime_robustness
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.parquet import as_text
 from tltlc.monitor.sample_times import times_fit
-from tltlc.monitor.samples import MonitorError, Samples, SampleValues
+from tltlc.monitor.samples import Samples, SampleValues
 from tltlc.monitor.traces import TraceSample, in_trace, read_trace
 from tltlc.tools.judge.clauses import Clauses
 from tltlc.tools.judge.measures import Measure, measure
