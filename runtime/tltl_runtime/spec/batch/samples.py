@@ -5,7 +5,7 @@ The values of registers, in which the monitors remember the traces so far, go in
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -13,9 +13,10 @@ import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
 
+from tltl_runtime.spec.batch.computations import Computation, computations_of, constants, rows_of
 from tltl_runtime.spec.batch.expressions import TensorExpressions
 from tltl_runtime.spec.batch.float_formats import counts_up_to, fits, narrow
-from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors, record
+from tltlc.api import Diagnostic, Fspa, MonitorError, expressions, monitors
 
 _NAMED = 5
 """An error message names at most this many environments."""
@@ -59,12 +60,12 @@ class BatchSamples:
         # Times that are sums of many short steps need double precision, too.
         is_exact = (
             not fspa.clock_varies
-            and fits(_constants(fspa, values), dtype)
+            and fits(constants(fspa, values), dtype)
             and all(high is not None and counts_up_to(high, dtype) for high in counters)
         )
         self._dtype = dtype = dtype if is_exact else torch.float64
         self._values = values
-        self._computations = _computations(fspa)
+        self._computations = computations_of(fspa)
         before = [expressions.Before(register.name) for register in fspa.registers]
         length = [expressions.StepLength()] if before and fspa.clock_varies else []
         self._before: tuple[expressions.VariableKey, ...] = (*before, *length)
@@ -77,7 +78,7 @@ class BatchSamples:
             [each.key for each in self._computations] if fspa.registers else (),
         )
         self._atom_rows, self._register_rows = (
-            torch.tensor(_rows(self._computations, is_atom), dtype=torch.int64, device=device)
+            torch.tensor(rows_of(self._computations, is_atom), dtype=torch.int64, device=device)
             for is_atom in (True, False)
         )
         starts = torch.tensor([register.initial for register in fspa.registers], dtype=dtype, device=device)
@@ -153,7 +154,7 @@ class BatchSamples:
         return BatchSampleValues(narrow(torch.clamp(atoms, -1.0, 1.0), self._result_dtype), after)
 
     @cached_property
-    def _atom_program(self) -> tuple[TensorExpressions, list[_Computation]]:
+    def _atom_program(self) -> tuple[TensorExpressions, list[Computation]]:
         """The program of :meth:`from_atoms`, and what it computes."""
         fspa, given, following = self._fspa, monitors.given_atoms(self._fspa), monitors.registers_from_atoms(self._fspa)
         computations = [
@@ -297,7 +298,7 @@ class BatchSamples:
 
     def _value_error(
         self,
-        computation: _Computation,
+        computation: Computation,
         indices: Sequence[int],
         columns: Tensor,
         registers: Tensor,
@@ -323,53 +324,9 @@ class BatchSamples:
         return _error("TLT0613", f"{_environments(indices)}: {title}")
 
 
-@record
-class _Computation:
-    """The atom or the register with this index: its expression, and the key by which others read its value."""
-
-    is_atom: bool
-    index: int
-    key: expressions.VariableKey
-    expression: expressions.Expression
-
-
-def _computations(fspa: Fspa) -> list[_Computation]:
-    """Return the atoms and registers of an automaton in the order in which they are computed."""
-    computations: list[_Computation] = []
-    for step in monitors.schedule(fspa):
-        if step.kind == "atom":
-            atom = fspa.atoms[step.index]
-            key = expressions.AtomValue(atom.name)
-            computations.append(_Computation(True, step.index, key, atom.expression))
-        else:
-            register = fspa.registers[step.index]
-            computations.append(_Computation(False, step.index, register.name, register.update))
-    return computations
-
-
-def _rows(computations: Sequence[_Computation], is_atom: bool) -> list[int]:
-    """Return the places of the atoms, or of the registers, among the computations, in the order of the automaton."""
-    rows = {each.index: row for row, each in enumerate(computations) if each.is_atom == is_atom}
-    return [rows[index] for index in range(len(rows))]
-
-
 def _are_finite(registers: Tensor) -> bool:
     """Whether all values are finite; without registers, nothing waits for the device."""
     return not registers.shape[0] or bool(torch.isfinite(registers).all())
-
-
-def _constants(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
-    """Yield all numbers that are used to compute atoms and registers, except the values of signals.
-
-    They are the constants in expressions, the values of registers before the first sample, the ends of
-    the signals' ranges, and the values of the params.
-    """
-    for each in _computations(fspa):
-        yield from (node.value for node in expressions.nodes(each.expression) if isinstance(node, expressions.Const))
-    yield from (register.initial for register in fspa.registers)
-    for signal in fspa.signals:
-        yield from (end for end in (signal.low, signal.high) if end is not None)
-    yield from params.values()
 
 
 def check_exclusive(fspa: Fspa, truth: Tensor) -> None:
