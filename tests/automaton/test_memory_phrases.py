@@ -141,6 +141,10 @@ SENTENCES = [
         "Either reach not hidden within 20 s or reach near(door) within 30 s.",
     ),
     ("keep not historically for 3 s hidden", "Have a step with not hidden in the last 3 s throughout."),
+    (
+        "avoid alarm and eventually within 20 s (seen and eventually within 10 s hidden)",
+        "Avoid (hidden and seen within 20 s of alarm in the last 10 s) throughout.",
+    ),
     ("reach previously once alarm and hidden", "Reach alarm at an earlier step and hidden."),
     ("require eventually within 30 s near(door)", "Reach near(door) within 30 s."),
     ("keep time_since(alarm) >= 5 s or hidden", "Keep at least 5 s after alarm or hidden throughout."),
@@ -270,3 +274,30 @@ def test_a_timer_of_the_steps_before_has_words_where_it_fails() -> None:
     recent = atom("recent(2 s, true)")
     assert str(spoken(recent, fspa)) == "any step in the 2 s before"
     assert str(spoken(not_(recent), fspa)) == "no step in the 2 s before"
+
+
+@pytest.mark.parametrize(
+    ("clauses", "english"),
+    [
+        ("reach calm", "Reach calm."),
+        ("reach lately(g1) avoid seen", "Reach lately(g1), and avoid seen throughout."),
+        ("require (not passed(g1)) until seen", "Reach seen, avoiding passed(g1) until then."),
+        ("keep seen implies eventually held(g1)", "Whenever seen, reach held(g1) at that step or later."),
+        ("reach chain(g1, g2)", "Reach chain(g1, g2)."),
+    ],
+)
+def test_a_predicate_that_reads_a_time_or_has_the_name_of_a_timer_keeps_its_name(clauses: str, english: str) -> None:
+    (fspa,) = compile_text(f"{GAME}{PREDICATES}spec s {{ {clauses} }}")
+    assert formula_text(fspa) == english
+    for target in ("dot", "mermaid", "json"):
+        (text,) = emit(target, fspa).values()
+        assert "◷" not in str(text)
+
+
+PREDICATES = """
+predicate calm in [-1, 1] = (time_since(seen, 10 s) - 5 s) / 5 s
+predicate lately(x: entity) in [-1, 1] = clamp((time_since(near(x), 4 s) - 2 s) / 2 s, -1, 1)
+predicate passed(x: entity) in [-1, 1] = clamp((time_since(near(x), 4 s) - 2 s) / 2 s, -1, 1)
+predicate held(x: entity) in [-1, 1] = clamp((time_holding(near(x), 4 s) - 2 s) / 2 s, -1, 1)
+predicate chain(x: entity, y: entity) in [-1, 1] = clamp(previous(health) / 10, -1, 1)
+"""

@@ -18,6 +18,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import compile_text, decode_artefact, encode_artefact
 from tltlc.resolve import chains
+from tltlc.resolve.spec import Timer
 from tltlc.tools.explain.explanation import explain
 
 CHAINS = (
@@ -221,6 +222,18 @@ def test_a_chain_is_named_by_its_goals() -> None:
     assert [failure.when for failure in explain(fspa).failures] == []
     (forbidden,) = compile_text(chain_text(5).replace("reach", "avoid"))
     assert [failure.when for failure in explain(forbidden).failures] == ["the chain from a0 to a4"]
+
+
+def test_goals_of_a_chain_that_may_come_at_one_step_say_so() -> None:
+    chain = "a4"
+    for number in reversed(range(4)):
+        chain = f"a{number} and eventually within 5 s ({chain})"
+    text = chain_text(5)
+    (fspa,) = compile_text(f"{text[: text.index('spec')]}spec s {{ reach {chain} }}")
+    assert fspa.atoms[0].timer == Timer((False,) * 4)
+    said = "Reach a0, then or at the same time a1 up to 5 s after a0, then or at the same time a2 up to 5 s after a1, "
+    assert formula_text(fspa).startswith(said)
+    assert formula_text(decode_artefact(json.loads(json.dumps(encode_artefact(fspa))), "chain")).startswith(said)
 
 
 def test_a_chain_by_a_deadline_is_violated_when_no_attempt_is_left(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -56,6 +56,15 @@ RULES = {
     "an avoided sequence": "avoid a then within {n} steps b",
     "an avoided answer": "keep a implies not eventually within {n} steps b",
     "an avoided sequence of three": "avoid a then within {n} steps b then within {m} steps c",
+    "an avoided chain at the same step": (
+        "avoid a and eventually within {n} steps (b and eventually within {m} steps c)"
+    ),
+    "an avoided answer with an answer": (
+        "keep a implies not eventually within {n} steps (b and next eventually within {m} steps c)"
+    ),
+    "an avoided later answer": (
+        "keep a implies not next eventually within {n} steps (b and eventually within {m} steps c)"
+    ),
     "a forbidden chain": "require not eventually (a and next eventually within {n} steps b)",
 }
 """For each form with a rule, a clause. In the text, ``n`` and ``m`` are bounds, ``m`` at most ``n``."""
@@ -206,6 +215,14 @@ def test_waiting_for_an_answer_costs_no_distance(monkeypatch: pytest.MonkeyPatch
 def test_spellings_of_deadlines_have_their_meaning(form: str, meaning: str) -> None:
     (written,), (meant,) = (compile_text(f"{SIGNALS}spec s {{ {clause} }}") for clause in (form, meaning))
     assert written == meant
+
+
+@pytest.mark.parametrize("clock", ["60 Hz", "varies"])
+def test_timers_of_goals_at_the_same_step_have_names_of_their_own(clock: str) -> None:
+    later = "a then within 50 s b then within 50 s c"
+    same = "a and eventually within 50 s (b and eventually within 50 s c)"
+    specs = f"spec x {{ reach {later} }} spec y {{ reach {same} }} spec z {{ reach {later} reach {same} }}"
+    assert len(compile_text(f"clock {clock} {SIGNALS} {specs}")) == 3
 
 
 def test_then_within_no_steps_is_an_error() -> None:

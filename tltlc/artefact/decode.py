@@ -17,7 +17,7 @@ from tltlc.io.limits import ARTEFACT
 from tltlc.logic.formula import Formula
 from tltlc.logic.text.parser import FormulaParser
 from tltlc.logic.text.printer import is_ascii_text
-from tltlc.resolve.spec import Atom, Param, Register, Signal
+from tltlc.resolve.spec import Atom, Param, Register, Signal, Timer
 
 
 def decode(document: object, name: str) -> Fspa:
@@ -167,7 +167,8 @@ def _param(param: dict[str, Any]) -> Param:
 
 def _atom(atom: dict[str, Any]) -> Atom:
     base, arguments = split_name(atom["name"])
-    return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments)
+    timer = Timer(tuple(atom["timer"].get("later", ()))) if "timer" in atom else None
+    return Atom(base, from_json(atom["expression"]), atom.get("doc", ""), arguments, timer)
 
 
 def _register(register: dict[str, Any]) -> Register:

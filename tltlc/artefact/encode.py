@@ -7,7 +7,7 @@ from typing import Any, Final
 from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
 from tltlc.automaton.text import formula_text, guard_texts, label_text
 from tltlc.expression.json import to_json
-from tltlc.resolve.spec import Param, Register, Signal
+from tltlc.resolve.spec import Atom, Param, Register, Signal
 
 VERSION: Final = 2
 """The newest version of the format. Automata without registers on a fixed clock are written as version 1."""
@@ -36,7 +36,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "semantics": fspa.semantics,
         "signals": [_signal(signal) for signal in fspa.signals],
         "params": [_param(param) for param in fspa.params],
-        "atoms": [{"name": atom.name, "expression": to_json(atom.expression), **_doc(atom.doc)} for atom in fspa.atoms],
+        "atoms": [_atom(atom) for atom in fspa.atoms],
         **({"registers": [_register(register) for register in fspa.registers]} if version == VERSION else {}),
         "exclusive": [list(group) for group in fspa.exclusive],
         "states": [_state(fspa, state) for state in fspa.states],
@@ -45,6 +45,11 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "spec_size": fspa.spec_size,
         **_acceptance(fspa),
     }
+
+
+def _atom(atom: Atom) -> dict[str, Any]:
+    timer = {} if atom.timer is None else {"timer": {"later": list(atom.timer.later)} if atom.timer.later else {}}
+    return {"name": atom.name, "expression": to_json(atom.expression), **timer, **_doc(atom.doc)}
 
 
 def _acceptance(fspa: Fspa) -> dict[str, Any]:

@@ -341,6 +341,25 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                             data__atoms_item_keys.remove("expression")
                             data__atoms_item__expression = data__atoms_item["expression"]
                             validate___definitions_expression(data__atoms_item__expression, custom_formats, (*path, 'atoms', data__atoms_x, 'expression'))
+                        if "timer" in data__atoms_item_keys:
+                            data__atoms_item_keys.remove("timer")
+                            data__atoms_item__timer = data__atoms_item["timer"]
+                            if not isinstance(data__atoms_item__timer, (dict)):
+                                raise JsonSchemaValueException((*path, 'atoms', data__atoms_x, 'timer'), 'type', 'object')
+                            data__atoms_item__timer_is_dict = isinstance(data__atoms_item__timer, dict)
+                            if data__atoms_item__timer_is_dict:
+                                data__atoms_item__timer_keys = set(data__atoms_item__timer.keys())
+                                if "later" in data__atoms_item__timer_keys:
+                                    data__atoms_item__timer_keys.remove("later")
+                                    data__atoms_item__timer__later = data__atoms_item__timer["later"]
+                                    if not isinstance(data__atoms_item__timer__later, (list, tuple)):
+                                        raise JsonSchemaValueException((*path, 'atoms', data__atoms_x, 'timer', 'later'), 'type', 'array')
+                                    data__atoms_item__timer__later_is_list = isinstance(data__atoms_item__timer__later, (list, tuple))
+                                    if data__atoms_item__timer__later_is_list:
+                                        data__atoms_item__timer__later_len = len(data__atoms_item__timer__later)
+                                        for data__atoms_item__timer__later_x, data__atoms_item__timer__later_item in enumerate(data__atoms_item__timer__later):
+                                            if not isinstance(data__atoms_item__timer__later_item, (bool)):
+                                                raise JsonSchemaValueException((*path, 'atoms', data__atoms_x, 'timer', 'later', data__atoms_item__timer__later_x), 'type', 'boolean')
                         if "doc" in data__atoms_item_keys:
                             data__atoms_item_keys.remove("doc")
                             data__atoms_item__doc = data__atoms_item["doc"]

@@ -4,26 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.value_phrases import Phrase
-from tltlc.expression.tree import SignalValue, nodes
 from tltlc.logic.formula import Formula, always, and_, atom, eventually, next_, not_
 from tltlc.resolve.spec import Atom
 
 
-def chains(fspa: Fspa) -> dict[str, list[str]]:
-    """Return the goals of each atom about a chain in words: ``a`` and ``b within 5 s after a``."""
-    kinds = {register.name: register.kind for register in fspa.registers}
-    goals_of: dict[str, list[str]] = {}
+class GoalPhrase(NamedTuple):
+    """A goal of a chain in words: "b within 5 s after a".
+
+    If not ``later``, it may come at the sample of the goal before it.
+    """
+
+    words: str
+    later: bool = True
+
+
+def chains(fspa: Fspa) -> dict[str, list[GoalPhrase]]:
+    """Return the goals of each atom about a chain."""
+    goals_of: dict[str, list[GoalPhrase]] = {}
     for item in fspa.atoms:
-        read = {node.name for node in nodes(item.expression) if isinstance(node, SignalValue)}
-        kept = sum(kinds.get(name) == "last" for name in read)
-        # An atom of a predicate with one of these names would not read what is kept of each goal.
-        if item.base in ("chain", "lost") and 2 * kept - len(item.arguments) in (1, -1):
+        if item.timer is not None and item.base in ("chain", "lost"):
             goals, times = item.arguments[::2], item.arguments[1::2]
-            timed = zip(pairwise(goals), times, strict=True)
-            goals_of[item.name] = [goals[0], *(f"{goal} within {time} after {last}" for (last, goal), time in timed)]
+            goals_of[item.name] = [GoalPhrase(goals[0])]
+            for (last, goal), time, later in zip(pairwise(goals), times, item.timer.later, strict=True):
+                words = f"{goal} {'within ' if later else ''}{time} after {last}"
+                goals_of[item.name].append(GoalPhrase(words, later))
     return goals_of
 
 
@@ -33,7 +41,9 @@ def chain_phrase(item: Atom) -> Phrase:
     return Phrase(chain if item.base == "chain" else f"the end of {chain}")
 
 
-def in_order(node: Formula, known: Mapping[str, Sequence[str]], done: Mapping[Formula, Formula]) -> Formula | None:
+def in_order(
+    node: Formula, known: Mapping[str, Sequence[GoalPhrase]], done: Mapping[Formula, Formula]
+) -> Formula | None:
     """Return ``F chain(a, 5 s, b)`` as ``F(a & X F b)``, where b is "b within 5 s after a"; None for other formulas.
 
     ``!lost U chain`` becomes the same: the last goal must come before the chain is lost. ``!F chain`` is to
@@ -47,10 +57,13 @@ def in_order(node: Formula, known: Mapping[str, Sequence[str]], done: Mapping[Fo
     chain = next((part for part in parts if part.op == "atom" and part.name in known), None)
     if chain is None:
         return None
+    first, *others = known[chain.name]
     if node is not outer and len(parts) == 1:
-        return always(not_(atom(", then ".join(known[chain.name]))))
-    *goals, last = map(atom, known[chain.name])
-    result = eventually(and_(last, *(done[part] for part in parts if part is not chain)))
-    for goal in reversed(goals):
-        result = eventually(and_(goal, next_(result)))
-    return result if node is outer else not_(result)
+        links = (f", then {'' if goal.later else 'or at the same time '}{goal.words}" for goal in others)
+        return always(not_(atom("".join((first.words, *links)))))
+    goals = [first, *others]
+    result = and_(atom(goals[-1].words), *(done[part] for part in parts if part is not chain))
+    for goal, following in reversed([*pairwise(goals)]):
+        rest = eventually(result)
+        result = and_(atom(goal.words), next_(rest) if following.later else rest)
+    return eventually(result) if node is outer else not_(eventually(result))

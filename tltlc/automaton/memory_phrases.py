@@ -71,8 +71,6 @@ _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
 _FROM_START: Final = ("{2} in the first {0}", "{1} for the first {0}")
 """The same for a rule that applies from the first sample on."""
-_TIMED: Final = ("passed", "lasted", "lately", "recent", "late", "due", "breach", "held", "over")
-"""The bases of the names of timers."""
 
 
 def spoken(formula: Formula, fspa: Fspa) -> Formula:
@@ -241,7 +239,7 @@ class Speaker:
         if register.kind == "breach" and len(item.arguments) == 1:
             return None
         timer = _TIMERS.get(register.kind, {}).get(item.base)
-        if timer is not None and item.arguments:
+        if item.timer is not None and timer is not None:
             return self._timer_phrase(item, register, timer)
         if register.kind == "last":
             operand = remembered(register.name, self._registers) if len(names_read(item)) == 1 else None
@@ -266,7 +264,8 @@ class Speaker:
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             return Phrase(SpokenName(holds), SpokenName(fails))
-        window = window_of(item.expression)
+        # A predicate, whose name has no spaces, may compute what looks like a window.
+        window = window_of(item.expression) if " " in item.base else None
         if register.kind != "time_since" or window is None:
             return None
         # `once within n steps` has its border at n + 1/2 steps, `historically for n steps` at n - 1/2.
@@ -396,7 +395,7 @@ class Speaker:
 
     def _is_timed(self, formula: Formula) -> bool:
         """Whether a formula reads a timer, as the later goals of a chain do."""
-        return any(name in self._atoms and self._atoms[name].base in _TIMED for name in formula.atoms())
+        return any(name in self._atoms and self._atoms[name].timer is not None for name in formula.atoms())
 
     def _previous_operand(self, name: str) -> Formula | None:
         """Return the formula p of an atom ``previously p``; None for any other atom."""
@@ -411,6 +410,6 @@ class Speaker:
         times: dict[str, str] = {}
         for item in self._atoms.values():
             kinds = {register.kind for register in self._read(item)}
-            if item.base in _UNTIL and item.arguments and kinds & _COUNTING:
+            if item.timer is not None and item.base in _UNTIL and kinds & _COUNTING:
                 times[item.name] = " after ".join(self.arguments(item, self._register_of(item)))
         return times

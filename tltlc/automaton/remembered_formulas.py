@@ -129,7 +129,7 @@ def rules_of_every_sample(fspa: Fspa) -> dict[str, Formula]:
     rules: dict[str, Formula] = {}
     for item in fspa.atoms:
         read = names_read(item)
-        register = registers.get(next(iter(read))) if len(read) == 1 and item.arguments else None
+        register = registers.get(next(iter(read))) if len(read) == 1 and item.timer is not None else None
         if register is None:
             continue
         if item.base == "breach":

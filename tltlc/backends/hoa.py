@@ -27,6 +27,7 @@ from tltlc.automaton.transitions import ACCEPT, REJECT, TransitionDiagrams
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import escape_invisible
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.expression.tree import SignalValue, nodes
 from tltlc.logic.formula import FALSE, TRUE
 from tltlc.resolve.spec import Register, RegisterKind
 
@@ -40,9 +41,7 @@ _KEPT_BY_NAME: Final[tuple[RegisterKind, ...]] = (
     *("once", "historically", "since", "previously", "times"),
     *("previous", "initial", "highest", "lowest"),
 )
-"""The kinds of registers that no timer needs: the spec itself asks for them."""
-_TIMED: Final[tuple[RegisterKind, ...]] = ("samples", "elapsed", "age", "run", "waiting", "due", "breach")
-"""The kinds of registers that only timers need."""
+"""The kinds of registers that a spec asks for itself, if no atom of a timer reads them."""
 OTHER_MEMORY = "leave out the target `hoa`, or state the rule without this memory"
 FIXED_CLOCK = "write a `clock` with a fixed rate, such as `clock 60 Hz`, or leave out the target `hoa`"
 ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
@@ -70,8 +69,11 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 def _without_registers(fspa: Fspa, options: Options) -> Fspa:
     """Return the automaton of the same spec with states in place of timers; raise TltlError, TLT0713, if that fails."""
-    kept = [register for register in fspa.registers if register.kind in _KEPT_BY_NAME]
-    if kept or not _has_timers(fspa):
+    timers = [atom for atom in fspa.atoms if atom.timer is not None]
+    of_timers = {node.name for atom in timers for node in nodes(atom.expression) if isinstance(node, SignalValue)}
+    named = [register for register in fspa.registers if register.kind in _KEPT_BY_NAME]
+    kept = [register for register in named if register.name not in of_timers]
+    if kept or not timers:
         raise TltlError([_refusal(fspa, kept or fspa.registers, OTHER_MEMORY)])
     if fspa.clock_varies:
         title = f"`{fspa.name}` has timers on a clock that varies, which the Hanoi format cannot express: "
@@ -91,13 +93,6 @@ def _without_registers(fspa: Fspa, options: Options) -> Fspa:
     if unfolded.registers:
         raise TltlError([_refusal(unfolded, unfolded.registers, OTHER_MEMORY)])
     return unfolded
-
-
-def _has_timers(fspa: Fspa) -> bool:
-    """Whether timers took the place of bounds."""
-    return any(register.kind in _TIMED for register in fspa.registers) or any(
-        atom.base in ("passed", "lately", "held") and atom.arguments for atom in fspa.atoms
-    )
 
 
 def _refusal(fspa: Fspa, registers: Sequence[Register], advice: str) -> Diagnostic:

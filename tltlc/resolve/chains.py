@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic.formula import Formula, and_, eventually, next_
-from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms
+from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms, in_time
 from tltlc.resolve.windows import is_present
 
 MOST_GOALS: Final = 4
@@ -96,7 +96,7 @@ def timed_goals(segment: Segment, timers: TimerAtoms, first: Reached | None) -> 
         if goals and goal.length is not None:
             last = goals[-1]
             recent = timers.recent(goal.low, goal.length, last.event, last.words)
-            words = f"{text} within {timers.time(goal.length)} after {last.words}"
+            words = f"{text} {in_time(goal.low, timers.time(goal.length), last.words)}"
             goals.append(TimedGoal(and_(goal.state, recent), words, text, goal.low, goal.length))
         elif first is None:
             goals.append(TimedGoal(goal.state, text, text))

@@ -16,7 +16,7 @@ from tltlc.io.limits import WORK
 from tltlc.logic.formula import Formula, atom
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.registers import RegisterDraft
-from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
+from tltlc.resolve.spec import Atom, Bound, Param, Signal, Timer, ValueType
 
 LARGEST_EXPANSION = 100_000
 """The most nodes in the tree of a formula after its bounds, quantifiers and lets are expanded."""
@@ -185,6 +185,7 @@ class Context:
         source: SourceFile,
         span: Span,
         arguments: tuple[str, ...] = (),
+        timer: Timer | None = None,
     ) -> Formula:
         """Return the atom with this base name and these arguments, and record it.
 
@@ -194,7 +195,7 @@ class Context:
         name = full_name(base, arguments)
         if name not in self.atoms:
             self._arithmetic += self.count_arithmetic(expression, source, span, self._arithmetic)
-        known = self.atoms.setdefault(name, Atom(base, expression, doc, arguments))
+        known = self.atoms.setdefault(name, Atom(base, expression, doc, arguments, timer))
         if known.expression != expression:
             raise problem(
                 "TLT0216",

@@ -44,7 +44,7 @@ from tltlc.logic.formula import (
     weak_next,
 )
 from tltlc.resolve.chains import Link, Segment, after, at_a_goal, is_long, segments, timed_goals
-from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms, Timers
+from tltlc.resolve.timers import Reached, TimedGoal, TimerAtoms, Timers, in_time
 from tltlc.resolve.unfolding import bounded_parts
 from tltlc.resolve.windows import Window, is_present, window_of
 
@@ -219,7 +219,8 @@ class Rewriting:
         if inner.op == "implies":
             return and_(inner.args[0], operands[1])
         if inner.op in ("X", "N"):
-            return (weak_next if inner.op == "X" else next_)(*operands)
+            operand = self._pushed(inner.args[0]) or operands[0]
+            return (weak_next if inner.op == "X" else next_)(operand)
         dual = self.dual(inner, operands[0])
         return None if dual is None else self._atoms.in_place_of(inner, dual)
 
@@ -282,6 +283,9 @@ class _StepRewriting(Rewriting):
         if window is None or window.low > 1 or window.high == 0:
             return None
         request = and_(*(negated(part) for part in clause if part is not temporal[0]))
+        if window.op == "G" and window.body.op == "not" and not is_present(window.body) and not window.exists:
+            goal = bounded("F[]", window.low, window.high, window.body.args[0])
+            return self._never(eventually(and_both(goal, request)))
         if not self.fits(request, window.body):
             return None
         if window.op == "F":
@@ -323,9 +327,9 @@ class _StepRewriting(Rewriting):
             anchor, event_words = and_(anchor, reached.formula), f"{event_words} {reached.words}"
         if not self.fits(anchor):
             return self.inside(body)
-        in_time = f"within {self._timers.time(window.high)} after {event_words}"
+        words = in_time(window.low, self._timers.time(window.high), event_words)
         recent = self._timers.recent(window.low, window.high, anchor, event_words)
-        goal = self.anchored(window.body, Reached(recent, in_time))
+        goal = self.anchored(window.body, Reached(recent, words))
         waiting = until(not_(self._timers.passed(window.high, anchor, event_words)), goal)
         return and_(*present, next_(waiting) if window.low else waiting)
 

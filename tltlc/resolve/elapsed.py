@@ -40,17 +40,17 @@ class ElapsedTimers(TimerAtoms):
 
     def over(self, length: float) -> Formula:
         """Return the atom of "more than ``length`` has passed since the first sample"."""
-        return self._atom("over", self._more_than(self._elapsed(), length), self.time(length))
+        return self._timer("over", self._more_than(self._elapsed(), length), self.time(length))
 
     def lasted(self, length: float) -> Formula:
         """Return the atom of "``length`` or more has passed since the first sample"."""
-        return self._atom("lasted", self.at_least(self._elapsed(), length), self.time(length))
+        return self._timer("lasted", self.at_least(self._elapsed(), length), self.time(length))
 
     def held(self, length: float, state: Formula) -> Formula:
         """Return the atom of "``state`` held at the samples before this one, which begin ``length`` or more ago"."""
         register = f"run({self.text(state)})"
         self._register(registers.run(register, self.kept(state)))
-        return self._atom("held", self.at_least(register, length), self.time(length), self.text(state))
+        return self._timer("held", self.at_least(register, length), self.time(length), self.text(state))
 
     def previous(self, state: Formula) -> Formula:
         """Return the atom of "``state`` held at the sample before this one"."""
@@ -68,7 +68,7 @@ class ElapsedTimers(TimerAtoms):
         self._register(registers.waiting_time(waiting, asks, comes, length))
         # While nothing waits, the register is -1, which is no time.
         value = Op("max", (self._more_than(waiting, length), Const(-1.0)))
-        return self._atom("due", SignalValue(due), *pair), self._atom("late", value, time, *pair)
+        return self._timer("due", SignalValue(due), *pair), self._timer("late", value, time, *pair)
 
     def breach(self, length: float, event: Formula, rule: Formula) -> Formula:
         """Return the atom of "``event`` held less than ``length`` ago, and ``rule`` does not hold"."""
@@ -82,7 +82,7 @@ class ElapsedTimers(TimerAtoms):
     def _breach(self, inside: Expression, rule: Formula, arguments: tuple[str, ...]) -> Formula:
         name = full_name("breach", arguments)
         self._register(registers.breach(name, Op("min", (inside, self._value(not_(rule))))))
-        return self._atom("breach", SignalValue(name), *arguments)
+        return self._timer("breach", SignalValue(name), *arguments)
 
     def _more_than(self, register: str, length: float) -> Expression:
         return Op("/", (Op("-", (registers.saturated(register, 2 * length), Const(length))), Const(length)))

@@ -54,17 +54,30 @@ class Param:
 
 
 @record
+class Timer:
+    """What an atom that takes the place of a bound knows beside its name.
+
+    ``later`` says for each goal of a chain but the first whether it must come at a later sample than the
+    goal before it.
+    """
+
+    later: tuple[bool, ...] = ()
+
+
+@record
 class Atom:
     """An atom: it is true at a sample where its expression, whose value lies in [-1, 1], is above 0.
 
     ``near(s1)`` has the base ``near`` and the argument ``s1``. An atom that is a comparison, such as
-    ``x > 3``, has its text as its base and no arguments.
+    ``x > 3``, has its text as its base and no arguments. ``timer`` is not None for the atoms that
+    take the place of a bound, such as ``late(5 s, alarm, hidden)``.
     """
 
     base: str
     expression: Expression
     doc: str = ""
     arguments: tuple[str, ...] = ()
+    timer: Timer | None = None
 
     @property
     def name(self) -> str:

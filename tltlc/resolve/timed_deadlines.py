@@ -46,7 +46,7 @@ from tltlc.logic.formula import (
 from tltlc.resolve.chains import Link
 from tltlc.resolve.deadlines import Rewriting, and_both, negated, stay_for
 from tltlc.resolve.elapsed import ElapsedTimers
-from tltlc.resolve.timers import Reached
+from tltlc.resolve.timers import Reached, in_time
 from tltlc.resolve.windows import is_present
 
 
@@ -98,11 +98,11 @@ class _TimedRewriting(Rewriting):
         if window.following or window.later:
             return None
         if window.op == "F":
-            in_time = not_(timers.over(window.seconds))
-            body, goals = self._chain(window.body, Reached(in_time, f"within {timers.time(window.seconds)}"))
+            in_bound = not_(timers.over(window.seconds))
+            body, goals = self._chain(window.body, Reached(in_bound, f"within {timers.time(window.seconds)}"))
             if goals is not None:
                 return until(not_(timers.lost(goals, window.seconds)), body)
-            return until(in_time, and_(in_time, body))
+            return until(in_bound, and_(in_bound, body))
         if self._many_rules and self.fits(window.body):
             return always(not_(timers.breach_from_start(window.seconds, window.body)))
         lasted = timers.lasted(window.seconds)
@@ -140,8 +140,8 @@ class _TimedRewriting(Rewriting):
         if not self.fits(anchor):
             return self.inside(body)
         recent = self._timers.recent(int(window.later), window.seconds, anchor, event_words)
-        in_time = f"within {self._timers.time(window.seconds)} after {event_words}"
-        waiting = until(recent, and_(recent, self.anchored(window.body, Reached(recent, in_time))))
+        words = in_time(int(window.later), self._timers.time(window.seconds), event_words)
+        waiting = until(recent, and_(recent, self.anchored(window.body, Reached(recent, words))))
         return and_(*present, next_(waiting) if window.later else waiting)
 
     def _never(self, body: Formula) -> Formula | None:
@@ -169,8 +169,8 @@ class _TimedRewriting(Rewriting):
             return None
         words = self._timers.text(and_(*present)) + ("" if reached is None else f" {reached.words}")
         recent = self._timers.recent(int(window.later), window.seconds, goal, words)
-        in_time = f"within {self._timers.time(window.seconds)} after {words}"
-        return self._last_goal(window.body, Reached(recent, in_time))
+        reached_words = in_time(int(window.later), self._timers.time(window.seconds), words)
+        return self._last_goal(window.body, Reached(recent, reached_words))
 
     def timed_link(self, rest: Formula) -> Link | None:
         window = _window(rest)

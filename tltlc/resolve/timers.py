@@ -15,12 +15,18 @@ from tltlc.logic.text.printer import ascii_text, operand_text
 from tltlc.resolve import registers
 from tltlc.resolve.context import Context
 from tltlc.resolve.registers import RegisterDraft
+from tltlc.resolve.spec import Timer
 from tltlc.resolve.values import number_text
 
 _MOST_PARTS: Final = 1_000
 """The most parts of the formulas that one timer is about; their texts are in its name."""
 _MOST_DEPTH: Final = ARITHMETIC.depth // 2
 """The greatest depth of their robustness, since an update adds operators to it."""
+
+
+def in_time(low: int, time: str, event_words: str) -> str:
+    """Return "within 5 s after a" where the goal must come at a later sample (``low`` is 1), else "within 5 s of a"."""
+    return f"within {time} {'after' if low else 'of'} {event_words}"
 
 
 class Reached(NamedTuple):
@@ -76,7 +82,7 @@ class TimerAtoms:
         ``event_words`` is the event in words. ``low`` is 0 or 1.
         """
         value = self.at_most(self._age(low, event), length)
-        return self._atom("recent" if low else "lately", value, self.time(length), event_words)
+        return self._timer("recent" if low else "lately", value, self.time(length), event_words)
 
     def time(self, length: float) -> str:
         """Return a length of time as a text for people."""
@@ -103,12 +109,12 @@ class TimerAtoms:
         """Return the atom of "``event`` has held", at this sample or before; if ``low`` is 1, before this sample."""
         once = f"once {operand_text(event)}"
         self._register(registers.once(once, self._value(event)))
-        has_held = self._atom(once, SignalValue(once))
+        has_held = self._timer(once, SignalValue(once))
         if low == 0:
             return has_held
         name = f"previously {operand_text(has_held)}"
         self._register(registers.previously(name, self.kept(has_held)))
-        return self._atom(name, SignalValue(name))
+        return self._timer(name, SignalValue(name))
 
     def chain(self, goals: Sequence[TimedGoal]) -> Formula:
         """Return the atom of "this sample is the last of the goals, and all came in time".
@@ -125,13 +131,13 @@ class TimerAtoms:
         share = Op("/", (Op("max", tuple(done)), Const(float(len(goals)))))
         last = SignalValue(self.kept(goals[-1].event))
         value = When(((registers.holds(last), last),), Op("-", (share, Const(1.0))))
-        return self._atom("chain", value, *_chain_arguments(goals, self))
+        return self._timer("chain", value, *_chain_arguments(goals, self), later=_later(goals))
 
     def lost(self, goals: Sequence[TimedGoal], length: float) -> Formula:
         """Return the atom of "``length`` is over, and no goal may still be followed in time"."""
         alive = tuple(self._continues(goal, following) for goal, following in pairwise(goals))
         value = When(((Condition("or", alive), Const(-1.0)),), self.ends_before_next(length))
-        return self._atom("lost", value, *_chain_arguments(goals, self))
+        return self._timer("lost", value, *_chain_arguments(goals, self), later=_later(goals))
 
     def _nearness(self, goal: TimedGoal) -> Expression:
         """Return how near a goal that may come at this sample is: from 0 to 1."""
@@ -179,8 +185,11 @@ class TimerAtoms:
     def _value(self, state: Formula) -> Expression:
         return registers.robustness(state)
 
-    def _atom(self, base: str, value: Expression, *arguments: str) -> Formula:
-        return self.context.atom(base, value, "", self.source, self.span, arguments)
+    def _atom(self, name: str, value: Expression) -> Formula:
+        return self.context.atom(name, value, "", self.source, self.span)
+
+    def _timer(self, base: str, value: Expression, *arguments: str, later: Sequence[bool] = ()) -> Formula:
+        return self.context.atom(base, value, "", self.source, self.span, arguments, Timer(tuple(later)))
 
 
 class Timers(TimerAtoms):
@@ -193,20 +202,20 @@ class Timers(TimerAtoms):
         event in words, by default its text.
         """
         if event is None:
-            return self._atom("passed", self.at_least(self._samples(), steps + 1), self.time(steps))
+            return self._timer("passed", self.at_least(self._samples(), steps + 1), self.time(steps))
         value = self.at_least(self.time_since(event), steps)
-        return self._atom("passed", value, self.time(steps), event_words or _text(event))
+        return self._timer("passed", value, self.time(steps), event_words or _text(event))
 
     def lasted(self, steps: int) -> Formula:
         """Return the atom of "this is sample ``steps``, counted from 0, or a later one".
 
         It is named by the time that all samples up to this one take.
         """
-        return self._atom("lasted", self.at_least(self._samples(), steps + 1), self.time(steps + 1))
+        return self._timer("lasted", self.at_least(self._samples(), steps + 1), self.time(steps + 1))
 
     def between(self, low: int, high: int) -> Formula:
         """Return the formula of "from ``low`` to ``high`` steps after the first sample"."""
-        over = self._atom("over", self.at_least(self._samples(), high + 2), self.time(high))
+        over = self._timer("over", self.at_least(self._samples(), high + 2), self.time(high))
         return and_(self.passed(low), not_(over)) if low else not_(over)
 
     def held(self, steps: int, state: Formula) -> Formula:
@@ -214,7 +223,7 @@ class Timers(TimerAtoms):
         register = f"time_holding({ascii_text(state)})"
         kept, truth = self.kept(state), registers.truth(state)
         self._register(registers.time_holding(register, truth, kept, registers.step_length(False), "steps"))
-        return self._atom("held", self.at_least(register, steps), self.time(steps + 1), _text(state))
+        return self._timer("held", self.at_least(register, steps), self.time(steps + 1), _text(state))
 
     def response(self, request: Formula, goal: Formula, low: int, high: int) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for too long".
@@ -230,8 +239,8 @@ class Timers(TimerAtoms):
         step = registers.step_length(False)
         self._register(registers.waiting(waiting, registers.truth(request), registers.truth(goal), strict, step))
         time = f"{'the next ' if strict else ''}{self.time(high)}"
-        late = self._atom("late", self.at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
-        return self._atom("due", SignalValue(due), *pair), late
+        late = self._timer("late", self.at_least(waiting, high + 1), time, *pair[:-1], _text(goal))
+        return self._timer("due", SignalValue(due), *pair), late
 
     def breach(self, low: int, high: int, event: Formula, rule: Formula) -> Formula:
         """Return the atom of "``event`` held from ``low`` to ``high`` steps ago, and ``rule`` does not hold".
@@ -259,7 +268,7 @@ class Timers(TimerAtoms):
     def _breach(self, value: Expression, *arguments: str) -> Formula:
         name = full_name("breach", arguments)
         self._register(registers.breach(name, value))
-        return self._atom("breach", SignalValue(name), *arguments)
+        return self._timer("breach", SignalValue(name), *arguments)
 
     def _samples(self) -> str:
         self._register(registers.samples())
@@ -295,9 +304,17 @@ class Timers(TimerAtoms):
 
 
 def _chain_arguments(goals: Sequence[TimedGoal], timers: TimerAtoms) -> tuple[str, ...]:
-    """Return the goals of a chain and the times between them: ``a``, ``5 s``, ``b``."""
+    """Return the goals of a chain and the times between them: ``a``, ``5 s``, ``b``.
+
+    A time is ``up to 5 s`` where the two goals may come at one sample.
+    """
     first, *others = goals
-    return (first.text, *(text for goal in others for text in (timers.time(goal.length), goal.text)))
+    times = (f"{'' if goal.low else 'up to '}{timers.time(goal.length)}" for goal in others)
+    return (first.text, *(text for time, goal in zip(times, others, strict=True) for text in (time, goal.text)))
+
+
+def _later(goals: Sequence[TimedGoal]) -> list[bool]:
+    return [goal.low == 1 for goal in goals[1:]]
 
 
 def _text(formula: Formula) -> str:

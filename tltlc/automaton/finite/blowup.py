@@ -149,8 +149,9 @@ def bound_advice(bound: Bound) -> str:
 
 def _times_in_sequence(part: Conjunct, spec: Spec) -> int:
     """Return how many goals of a clause wait for another one with a timer (:mod:`tltlc.resolve.deadlines`)."""
-    passed = {atom.name for atom in spec.atoms if atom.base == "passed" and len(atom.arguments) > 1}
-    recent = {atom.name for atom in spec.atoms if atom.base in ("recent", "lately")}  # where the clock varies
+    timers = [atom for atom in spec.atoms if atom.timer is not None]
+    passed = {atom.name for atom in timers if atom.base == "passed" and len(atom.arguments) > 1}
+    recent = {atom.name for atom in timers if atom.base in ("recent", "lately")}  # where the clock varies
     waits = (node.args[0] for node in part.formula.walk() if node.op == "U")
     return sum(1 for wait in waits if wait.name in recent or (wait.op == "not" and wait.args[0].name in passed))
 
