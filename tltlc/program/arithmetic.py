@@ -80,17 +80,17 @@ class _BranchPath:
 def with_declaration(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
     """Return ``statements``, changed so that they declare the variable ``name``.
 
-    ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``, or from
-    :meth:`ExpressionTranslator.declare_flag`, which declares it already.
+    ``statements`` come from :meth:`ExpressionTranslator.assign`, which assigns a value to ``name``; or they declare
+    it already, as those from :meth:`ExpressionTranslator.declare_flag` do.
     If the last statement assigns this value, a declaration with the value replaces it. Otherwise, a
     declaration without a value comes first. ``changes`` says whether the variable is assigned again
     later, for example when the value of an atom is clamped to [-1, 1].
     """
+    if any(isinstance(statement, Declare) and statement.name == name for statement in statements):
+        return tuple(statements)
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
         return (*before, Declare(name, "real", last.value, changes))
-    if isinstance(last, Declare) and last.name == name:
-        return tuple(statements)
     return (Declare(name, "real", None, changes or _is_reassigned(name, statements)), *statements)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -16,7 +16,7 @@ from tltlc.program.bounds import ValueRange, range_between
 from tltlc.program.compact_states import WORST, AtomVariables
 from tltlc.program.flags import Flags
 from tltlc.program.names import VariableNames
-from tltlc.program.sample_ranges import RegisterVariables, prove_sample
+from tltlc.program.sample_ranges import RegisterVariables, prove_sample, proved_ranges
 from tltlc.program.shapes import Case, StateTables, cases_and_tables
 from tltlc.program.tree import (
     FAILING,
@@ -59,6 +59,8 @@ class Program:
     - ``values`` has, for each atom, the statements that assign its value; none if no case needs it.
     - ``always_in_range`` says, for each atom, whether it is proved that its value exists and lies in
       [-1, 1].
+    - ``ranges`` has the intervals in which the values of signals, params, atoms and registers lie, by variable, where
+      they are known; those of the registers before a sample, too.
     - ``updates`` has, for each register, the statements that assign its value after the sample.
       ``always_finite`` says whether it is proved that this value exists and is finite.
     - ``every_step`` has what every step computes, in order. If there are registers, each value must be
@@ -89,6 +91,7 @@ class Program:
     booleans: frozenset[str]
     values: tuple[tuple[Statement, ...], ...]
     always_in_range: tuple[bool, ...]
+    ranges: Mapping[str, ValueRange]
     updates: tuple[tuple[Statement, ...], ...]
     always_finite: tuple[bool, ...]
     every_step: tuple[Computation, ...]
@@ -137,6 +140,12 @@ class Program:
     def variables_used(self) -> frozenset[str]:
         """The names of the variables that the statements in ``values`` and ``updates`` read."""
         return variables_read(self._statements())
+
+    @property
+    def unchecked(self) -> frozenset[str]:
+        """The variables of the atoms and registers that a step need not check: they are always in range, or finite."""
+        safe = zip((*self.atoms, *self.registers), (*self.always_in_range, *self.always_finite), strict=True)
+        return frozenset(name for name, is_safe in safe if is_safe)
 
     @property
     def functions(self) -> frozenset[NumericFunction]:
@@ -222,13 +231,13 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
     updates = tuple(proved[name].statements for name in now)
     kept = variables_read(statement for update in updates for statement in update)
     eager = {atoms[atom] for _, group in exclusive for atom in group} | kept
-    only_in = _only_in(
+    only = only_in(
         atoms,
         [is_in_range and name not in eager for name, is_in_range in zip(atoms, in_range, strict=True)],
-        cases,
+        [case.statements for case in cases],
     )
-    needed = tuple(() if only == -1 else proved[name].statements for name, only in zip(atoms, only_in, strict=True))
-    every_step = tuple(step for step in order if step.kind == "register" or only_in[step.index] is None)
+    needed = tuple(() if place == -1 else proved[name].statements for name, place in zip(atoms, only, strict=True))
+    every_step = tuple(step for step in order if step.kind == "register" or only[step.index] is None)
     return Program(
         fspa=fspa,
         signals=tuple(signals.values()),
@@ -245,12 +254,13 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
         ),
         values=needed,
         always_in_range=in_range,
+        ranges=ranges | proved_ranges(proved, atoms, registers),
         updates=updates,
         always_finite=tuple(name not in fails and proved[name].is_finite for name in now),
         every_step=every_step,
-        only_in=only_in,
-        read_in=_read_in(tuple(signals.values()), (*only_in, *(None for _ in now)), (*needed, *updates)),
-        atom_comments=_atom_comments(fspa, only_in, every_step, len(cases)),
+        only_in=only,
+        read_in=_read_in(tuple(signals.values()), (*only, *(None for _ in now)), (*needed, *updates)),
+        atom_comments=_atom_comments(fspa, only, every_step, len(cases)),
         register_comments=tuple(map(_register_comment, fspa.registers)),
         exclusive=exclusive,
         cases=cases,
@@ -273,20 +283,22 @@ def _booleans(fspa: Fspa, flags: Flags, has_bools: bool) -> frozenset[VariableKe
     return frozenset((*(key for key in keys if key in flags), *bools))
 
 
-def _only_in(atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Case]) -> tuple[int | None, ...]:
+def only_in(
+    atoms: Sequence[str], silent: Sequence[bool], cases: Sequence[Iterable[Statement]]
+) -> tuple[int | None, ...]:
     """Return for each atom the number of the only case that needs it.
 
     The number is -1 if no case needs the atom, and None if every step computes it. ``silent``
     says, for each atom, that its computation never gives an error or a notice, and that no register
     reads it. Every step computes the atoms that are not silent, so that all monitors give the same
-    errors and notices. ``atoms`` are the variables of the atoms.
+    errors and notices. ``atoms`` are the variables of the atoms, and ``cases`` the statements of each case.
     """
-    used = [variables_read(case.statements) for case in cases]
-    only_in: list[int | None] = []
+    used = [variables_read(statements) for statements in cases]
+    places: list[int | None] = []
     for name, is_silent in zip(atoms, silent, strict=True):
         readers = [number for number, names in enumerate(used) if name in names]
-        only_in.append((readers or [-1])[0] if is_silent and len(readers) < 2 else None)
-    return tuple(only_in)
+        places.append((readers or [-1])[0] if is_silent and len(readers) < 2 else None)
+    return tuple(places)
 
 
 def _read_in(

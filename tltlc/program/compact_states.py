@@ -31,7 +31,6 @@ from tltlc.program.tree import (
     If,
     Int,
     Negate,
-    Not,
     NumericCall,
     ProgramExpression,
     ProgramVariable,
@@ -80,7 +79,7 @@ class CompactStateCode(StateCode):
     """Makes the statements of one state or shape."""
 
     def __init__(self, tables: MonitorTables, atoms: AtomVariables, *, reads_tables: bool) -> None:
-        super().__init__(tables, atoms.names, reads_tables=reads_tables)
+        super().__init__(tables, atoms.names, atoms.booleans, reads_tables=reads_tables)
         self._atoms = atoms
         self._worst: frozenset[_Literal] = frozenset()
         """The literals of the atoms whose negated maximum is ``-worst``."""
@@ -141,12 +140,6 @@ class CompactStateCode(StateCode):
 
     def _all(self, literals: Iterable[_Literal]) -> ProgramExpression:
         return _all([self._literal_test(literal) for literal in literals])
-
-    def _literal_test(self, literal: _Literal) -> ProgramExpression:
-        atom, positive = literal
-        if (name := self._atoms.names[atom]) in self._atoms.booleans:
-            return ProgramVariable(name) if positive else Not(ProgramVariable(name))
-        return super()._literal_test(literal)
 
     # --- robustness -------------------------------------------------------------------------------
 

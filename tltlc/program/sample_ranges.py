@@ -71,6 +71,19 @@ def prove_sample(
         before |= dict.fromkeys(left, _ANY)
 
 
+def proved_ranges(
+    proved: Mapping[str, ProvedStatements], atoms: Collection[str], registers: Sequence[RegisterVariables]
+) -> dict[str, ValueRange]:
+    """Return the ranges of atoms, and of registers before and after a sample, by variable; those that are known."""
+    ranges = {name: _common(proved[name].range, _ATOM) for name in atoms}
+    for each in registers:
+        ranges[each.now] = now = _common(proved[each.now].range, _ANY)
+        # Before the first sample, a register has its initial value.
+        initial = each.register.initial
+        ranges[each.before] = ValueRange(min(now.low, initial), max(now.high, initial))
+    return ranges
+
+
 def _one_sample(
     computations: Mapping[str, Sequence[Statement]],
     registers: set[str],

@@ -42,6 +42,14 @@ class Case:
 
 
 @record
+class TransitionCase:
+    """The statements that find the next state of each of the states, or shapes of states, with these ``numbers``."""
+
+    numbers: tuple[int, ...]
+    statements: tuple[Statement, ...]
+
+
+@record
 class StateTables:
     """The tables of an automaton whose states share code.
 
@@ -121,6 +129,30 @@ def cases_and_tables(
             )
     code = _state_code(monitor, atoms, reads_tables=False)
     return tuple(Case(str(state.label), code.statements(state_edges(monitor, state.id))) for state in states), None
+
+
+def transition_cases(
+    monitor: MonitorTables, atoms: AtomVariables, state_tables: StateTables | None, *, compact: bool
+) -> tuple[TransitionCase, ...]:
+    """Return the cases that find the next state of each state or, with ``state_tables``, of each shape.
+
+    If ``compact``, guards are tested with fewer literals.
+    """
+    reads_tables = state_tables is not None
+    code: StateCode
+    if compact:
+        code = CompactStateCode(monitor, atoms, reads_tables=reads_tables)
+    else:
+        code = StateCode(monitor, atoms.names, atoms.booleans, reads_tables=reads_tables)
+    if state_tables is None:
+        edges = [state_edges(monitor, state.id) for state in monitor.fspa.states]
+    else:
+        examples = {shape: state for state, shape in reversed([*enumerate(state_tables.state_shapes)])}
+        edges = [shape_edges(monitor, examples[shape]) for shape in range(len(examples))]
+    numbers: dict[tuple[Statement, ...], list[int]] = {}
+    for number, leaving in enumerate(edges):
+        numbers.setdefault(code.transition(leaving), []).append(number)
+    return tuple(TransitionCase(tuple(group), statements) for statements, group in numbers.items())
 
 
 def _state_code(monitor: MonitorTables, atoms: Sequence[str] | AtomVariables, *, reads_tables: bool) -> StateCode:

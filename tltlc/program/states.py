@@ -6,7 +6,7 @@ They find the edge to take, its robustness, and the progress. Begin with `StateC
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from functools import lru_cache, reduce
 from typing import Final
 
@@ -25,6 +25,7 @@ from tltlc.program.tree import (
     If,
     Int,
     Negate,
+    Not,
     NumericCall,
     ProgramExpression,
     ProgramVariable,
@@ -73,13 +74,15 @@ class StateCode:
     The statements find the edge to take, its robustness, the progress, and the limiting atom: the atom that
     determines how robust the most robust edge towards a goal is. If the code ``reads_tables``, they read the
     next state and its progress from tables. ``atoms`` are the names of the variables with the values of the
-    atoms.
+    atoms. Those in ``booleans`` are Booleans: true where the atom is above 0.
     """
 
-    def __init__(self, tables: MonitorTables, atoms: Sequence[str], *, reads_tables: bool) -> None:
+    def __init__(
+        self, tables: MonitorTables, atoms: Sequence[str], booleans: Collection[str] = (), *, reads_tables: bool
+    ) -> None:
         self._tables, self._reads_tables = tables, reads_tables
         # Large automata have millions of literals: equal ones share one expression.
-        self._values, self._literals = _literals(tuple(atoms))
+        self._values, self._literals = _literals(tuple(atoms), frozenset(booleans))
         self._at_goal = tables.fspa.judge == "goal"
 
     def statements(self, edges: Sequence[Edge]) -> tuple[Statement, ...]:
@@ -94,6 +97,11 @@ class StateCode:
         if len(edges) == 1:
             return bodies[0]
         return (If(tuple(zip(self._tests(edges), bodies[:-1], strict=True)), bodies[-1]),)
+
+    def transition(self, edges: Sequence[Edge]) -> tuple[Statement, ...]:
+        """Return statements like those of :meth:`statements` that find only the next state."""
+        bodies = [(Assign(TARGET, self._target(place, edge)),) for place, edge in enumerate(edges)]
+        return (If(tuple(zip(self._tests(edges), bodies[:-1], strict=True)), bodies[-1]),) if bodies[1:] else bodies[0]
 
     def _tests(self, edges: Sequence[Edge]) -> list[ProgramExpression]:
         """Return the tests of the guards of all edges but the last."""
@@ -220,18 +228,21 @@ _Literals = Mapping[tuple[int, bool], ProgramExpression]
 
 
 @lru_cache(maxsize=1)
-def _literals(atoms: tuple[str, ...]) -> tuple[_Literals, _Literals]:
+def _literals(atoms: tuple[str, ...], booleans: frozenset[str]) -> tuple[_Literals, _Literals]:
     """Return two tables with an expression for each literal over the variables ``atoms``.
 
     An expression in the first table computes the value of the literal, and an expression in the
-    second table tests whether the literal is true.
+    second table tests whether the literal is true. The variables in ``booleans`` are tests themselves.
     """
     values: dict[tuple[int, bool], ProgramExpression] = {}
     tests: dict[tuple[int, bool], ProgramExpression] = {}
     for index, name in enumerate(atoms):
         variable = ProgramVariable(name)
         values[index, True], values[index, False] = variable, Negate(variable)
-        tests[index, True], tests[index, False] = Compare(">", variable, _ZERO), Compare("<=", variable, _ZERO)
+        if name in booleans:
+            tests[index, True], tests[index, False] = variable, Not(variable)
+        else:
+            tests[index, True], tests[index, False] = Compare(">", variable, _ZERO), Compare("<=", variable, _ZERO)
     return values, tests
 
 

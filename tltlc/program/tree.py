@@ -7,6 +7,7 @@ has no value.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final, Literal, Union
 
 from tltlc.core.record import record
@@ -134,6 +135,41 @@ class TableEntry:
 ProgramExpression = Union[
     Real, Int, Bool, ProgramVariable, Negate, BinaryNumber, NumericCall, Compare, Not, All, Any, Choice, TableEntry
 ]
+
+
+def operands(node: ProgramExpression) -> tuple[ProgramExpression, ...]:
+    """Return the expressions of which an expression is made, in order."""
+    match node:
+        case BinaryNumber(_, left, right) | Compare(_, left, right):
+            return left, right
+        case NumericCall(_, args) | All(args) | Any(args):
+            return args
+        case Choice(test, value, otherwise):
+            return test, value, otherwise
+        case Negate(operand) | Not(operand) | TableEntry(_, operand):
+            return (operand,)
+    return ()
+
+
+def with_operands(node: ProgramExpression, new: Iterable[ProgramExpression]) -> ProgramExpression:
+    """Return an expression like ``node`` that is made of ``new`` expressions, as many as :func:`operands` returns."""
+    made = tuple(new)
+    match node:
+        case BinaryNumber(op, _, _):
+            return BinaryNumber(op, *made)
+        case Compare(comparison, _, _):
+            return Compare(comparison, *made)
+        case NumericCall(function, _):
+            return NumericCall(function, made)
+        case All() | Any():
+            return All(made) if isinstance(node, All) else Any(made)
+        case Choice():
+            return Choice(*made)
+        case Negate() | Not():
+            return Negate(*made) if isinstance(node, Negate) else Not(*made)
+        case TableEntry(table, _):
+            return TableEntry(table, *made)
+    return node
 
 
 # --- statements -----------------------------------------------------------------------------------

@@ -9,28 +9,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from tltlc.program.tree import (
-    All,
-    Any,
     Assign,
-    BinaryNumber,
-    Choice,
-    Compare,
     Declare,
     If,
-    Negate,
-    Not,
     NumericCall,
     NumericFunction,
     ProgramExpression,
     ProgramVariable,
     Statement,
-    TableEntry,
+    operands,
 )
 
 
 def variables_read(statements: Iterable[Statement]) -> frozenset[str]:
     """Return the names of the variables that the statements read."""
-    return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, ProgramVariable))
+    return names_in(_values(statements))
+
+
+def names_in(expressions: Iterable[ProgramExpression]) -> frozenset[str]:
+    """Return the names of the variables in expressions."""
+    return frozenset(node.name for node in parts(expressions) if isinstance(node, ProgramVariable))
 
 
 def functions_called(statements: Iterable[Statement]) -> frozenset[NumericFunction]:
@@ -53,15 +51,7 @@ def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpressio
     while stack:
         node = stack.pop()
         yield node
-        match node:
-            case BinaryNumber(_, left, right) | Compare(_, left, right):
-                stack += (left, right)
-            case NumericCall(_, args) | All(args) | Any(args):
-                stack += args
-            case Choice(test, value, otherwise):
-                stack += (test, value, otherwise)
-            case Negate(operand) | Not(operand) | TableEntry(_, operand):
-                stack.append(operand)
+        stack += operands(node)
 
 
 def _values(statements: Iterable[Statement]) -> Iterator[ProgramExpression]:
