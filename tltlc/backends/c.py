@@ -8,39 +8,36 @@ does not specify the order in which operands are evaluated.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from functools import reduce
-from textwrap import wrap
 from typing import Final
 
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.c_names import RESERVED
-from tltlc.backends.languages.c_tables import tables_text
-from tltlc.backends.languages.c_text import bytes_of, escape, string_literal
+from tltlc.backends.languages.c_printer import CPrinter
+from tltlc.backends.languages.c_step import StepCode, refusal
+from tltlc.backends.languages.c_tables import levels_text, tables_text
+from tltlc.backends.languages.c_text import bytes_of, string_literal
+from tltlc.backends.languages.c_verdict_step import verdict_pieces
 from tltlc.backends.templates import fill_template, names_in
 from tltlc.monitor.samples import range_text
 from tltlc.program import reward_step, snippets, states
-from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import flat_enums
-from tltlc.program.names import printable_line
-from tltlc.program.printer import Printer
-from tltlc.program.tree import FAILING, Assign, Choice, Int
-from tltlc.program.used_names import functions_called, variables_read
-from tltlc.resolve.spec import Atom, Param, Signal
+from tltlc.program.tree import FAILING, Choice, Compare, ProgramExpression, ProgramVariable, Real
+from tltlc.program.used_names import variables_read
+from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target(
     "c", "a stand-alone monitor in C and C++, also for Unreal", ("_monitor.h",), ("c++", "cpp", "h", "unreal")
 )
 
-_INDENT = Printer.INDENT
+_INDENT = CPrinter.INDENT
 
 _RESERVED: Final = (
     *(*RESERVED, "monitor", "sample", "result", "states", "none"),
-    *("state_kinds", "state_shapes", "first_edges", *Printer.TABLES),
+    *("state_kinds", "state_shapes", "first_edges", *CPrinter.TABLES),
 )
 """Names that no variable may have: reserved names of C, and the names that the template uses.
 
@@ -54,39 +51,6 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {name: _Source(fspa, name).text()}
 
 
-class _C(Printer):
-    """Prints the program of a monitor (:mod:`tltlc.program`) as C code.
-
-    The names of its functions begin with ``prefix``, the name of the spec. ``atoms`` are the atoms
-    of the automaton.
-    """
-
-    def __init__(self, prefix: str, atoms: Sequence[Atom]) -> None:
-        self._prefix, self._atoms = prefix, atoms
-
-    def comment(self, text: str) -> list[str]:
-        """Return the lines of a comment, with only ASCII characters and no trigraphs: all compilers read it alike."""
-        return super().comment(re.sub(r"[^\x00-\x7f]", escape, printable_line(text)).replace("??", "? ?"))
-
-    def assignment(self, statement: Assign) -> str:
-        """Return the text of an assignment; the variable ``limiting`` gets the name of an atom instead of its index."""
-        match statement:
-            case Assign(states.LIMITING, Int(index)):
-                return f"{states.LIMITING} = {string_literal(self._atoms[index].name) if index >= 0 else 'NULL'};"
-        return super().assignment(statement)
-
-    def call(self, function: str, arguments: Sequence[str]) -> str:
-        """Return the text of a call of a numeric function.
-
-        Some functions have no value for some arguments, such as a division by 0. They also get the
-        monitor as an argument, and set its field ``problem`` in such a case.
-        """
-        if function in ("abs", "tanh"):
-            return super().call({"abs": "fabs"}.get(function, function), arguments)
-        monitor_argument = ["monitor"] if function in FAILING else []
-        return super().call(f"{self._prefix}_{function}_", [*monitor_argument, *arguments])
-
-
 class _Source:
     """Makes the C header of one monitor, by filling the template ``monitor.h.txt``."""
 
@@ -96,7 +60,8 @@ class _Source:
         constants = [f"{fspa.name}_{name}" for enum in self._enums for name in enum.constants]
         self._program = program(fspa, (*_RESERVED, *constants, *(("signs",) if fspa.registers else ())), has_bools=True)
         self._entered = states.TARGET if self._program.tables is None else f"state_kinds[{states.TARGET}]"
-        self._printer = _C(fspa.name, fspa.atoms)
+        self._printer = CPrinter(fspa.name, fspa.atoms)
+        self._code = StepCode(self._program, self._printer)
 
     def text(self) -> str:
         """Return the text of the header file."""
@@ -112,10 +77,12 @@ class _Source:
         present += ["registers"] if fspa.registers else []
         present += ["varies"] if fspa.clock_varies else []
         with recursion_room():
-            steps = self._compute(), self._check(), self._move(), self._judge()
+            exclusive = [(number, {atom: self._holds(atom) for atom in group}) for number, group in program_.exclusive]
+            steps = self._code.compute(), self._code.check(exclusive), self._move(), self._judge()
+            verdict = verdict_pieces(program_, self._printer)
             # With registers, what a step recalls stands between what it reads and the rest.
             read, before = (self._read(), []) if fspa.registers else ([], self._read())
-            step = _C.block(snippets.paragraphs(before, *steps))
+            step = CPrinter.block(snippets.paragraphs(before, *steps))
         places = {
             "p": self._prefix,
             "title": snippets.title_comment(fspa, self._printer.comment),
@@ -138,15 +105,15 @@ class _Source:
             "register_names": _list([string_literal(register.name) for register in fspa.registers], '""'),
             "register_starts": _list([snippets.number_literal(register.initial) for register in fspa.registers], "0.0"),
             "labels": _list([string_literal(str(state.label)) for state in fspa.states], '""'),
-            "signal_defaults": _C.block(
+            "signal_defaults": CPrinter.block(
                 [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
                 or ["sample.none = false;"]
             ),
-            "param_defaults": _C.block(
+            "param_defaults": CPrinter.block(
                 [f"params.{name} = {snippets.number_literal(param.value)};" for param, name in params]
                 or ["params.none = false;"]
             ),
-            "param_checks": _C.block([line for index in range(len(params)) for line in self._param_check(index)]),
+            "param_checks": CPrinter.block([line for index in range(len(params)) for line in self._param_check(index)]),
             "param_names": _list([string_literal(param.name) for param in fspa.params], '""'),
             "param_ranges": _list([string_literal(range_text(param.low, param.high)) for param in fspa.params], '""'),
             "members": _list(
@@ -154,13 +121,16 @@ class _Source:
             ),
             "states": "\n".join(self._states()),
             "entered": self._entered,
-            "tables": "" if program_.tables is None else tables_text(program_.tables, fspa.judge),
-            "read": _C.block(read),
-            "recall": _C.block(self._recall()),
+            "tables": "" if program_.tables is None else tables_text(program_.tables),
+            "levels": "" if program_.tables is None else levels_text(program_.tables, fspa.judge),
+            "numbers": CPrinter.block(self._code.numbers()),
+            "read": CPrinter.block(read),
+            "recall": CPrinter.block(self._recall()),
             "step": step,
-            "remember": _C.block(self._remember()),
+            "remember": CPrinter.block(self._remember()),
             **self._memory(),
-            "give": _C.block(self._give()),
+            **verdict,
+            "give": CPrinter.block(self._give()),
         }
         return fill_template("monitor.h.txt", places, present)
 
@@ -202,28 +172,17 @@ class _Source:
                 lines.append(f"{field}    {comments[0]}")
             else:
                 lines += [*comments, field]
-        return _C.block(lines or ["bool none;"])
+        return CPrinter.block(lines or ["bool none;"])
 
     def _param_check(self, index: int) -> list[str]:
         param, name = self._fspa.params[index], f"params->{self._program.params[index]}"
         tests = [f"isfinite({name})"]
         tests += [] if param.low is None else [f"{name} >= {snippets.number_literal(param.low)}"]
         tests += [] if param.high is None else [f"{name} <= {snippets.number_literal(param.high)}"]
-        lines = self._refusal(f"{self._prefix}_wrong_param", index)
+        lines = refusal(self._prefix, f"{self._prefix}_wrong_param", index)
         # The message shows the value.
         lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
         return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
-
-    def _refusal(self, problem: str, index: int) -> list[str]:
-        """Return the C lines that refuse a sample or params: they record the problem and return false.
-
-        ``problem`` is the name of the problem in C, and ``index`` the index of the param, atom or
-        exclusive group with the problem. Registers count from the number of atoms on. These lines
-        contain the ``return``, and not the function that records the problem, so that compilers see
-        that the step ends here.
-        """
-        call = f"{self._prefix}_refuse_(monitor, {problem}, {index});"
-        return [f"{_INDENT}{line}" for line in (call, "return false;")]
 
     def _states(self) -> list[str]:
         """Return a row for each state or, if there are tables, for each kind of states."""
@@ -256,17 +215,13 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _read(self) -> list[str]:
-        """Return the code that reads signals, clamped to their ranges, and params into local variables."""
+        """Return the code that reads bool signals and params into local variables."""
         program_ = self._program
-        signals = enumerate(zip(self._fspa.signals, program_.signals, strict=True))
-        numbers = [(index, signal, name) for index, (signal, name) in signals if signal.type != "bool"]
-        lines = [f"double {name} = sample->{name};" for _, _, name in numbers]
-        lines += self._checked_reads(numbers) if numbers else []
-        lines += self._bools(None)
-        lines += [] if program_.reads_sample else ["(void)sample;"]
-        used = program_.variables_used
-        lines += [f"const double {name} = monitor->params.{name};" for name in program_.params if name in used]
-        return lines
+        unread = [] if program_.reads_sample else ["(void)sample;"]
+        return [*self._bools(None), *unread, *self._code.params(program_.variables_used)]
+
+    def _holds(self, atom: int) -> ProgramExpression:
+        return Compare(">", ProgramVariable(self._program.atoms[atom]), Real(0.0))
 
     def _remembered(self) -> list[tuple[int, str, str]]:
         """Return the registers that a step reads: the number of each, its variable before the sample, and its type."""
@@ -296,123 +251,19 @@ class _Source:
         used = self._program.variables_used
         keep += [f"(void){name};" for index, name in enumerate(names) if index not in kept and name not in used]
         return {
-            "memory_fields": _C.block([f"{type_} {name};" for _, name, type_ in remembered] or ["bool none;"], 2),
-            "memory_starts": _C.block([f"monitor->memory.{name} = {starts[index]};" for index, name, _ in remembered]),
-            "memory_recall": _C.block(
+            "memory_fields": CPrinter.block([f"{type_} {name};" for _, name, type_ in remembered] or ["bool none;"], 2),
+            "memory_starts": CPrinter.block(
+                [f"monitor->memory.{name} = {starts[index]};" for index, name, _ in remembered]
+            ),
+            "memory_recall": CPrinter.block(
                 [f"const {type_} {name} = monitor->memory.{name};" for _, name, type_ in remembered]
             ),
-            "memory_keep": _C.block(keep),
+            "memory_keep": CPrinter.block(keep),
         }
 
     def _bools(self, case: int | None) -> list[str]:
-        """Return the code that converts bool signals to the numbers 0 and 1.
-
-        It converts the signals that only this case reads or, if ``case`` is None, those that every
-        step reads.
-        """
-        names, booleans = self._program.bools_read_in(case), self._program.booleans
-        return [
-            f"const bool {name} = sample->{name};"
-            if name in booleans
-            else f"const double {name} = sample->{name} ? 1.0 : 0.0;"
-            for name in names
-        ]
-
-    def _checked_reads(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
-        """Return the code that checks and clamps signals.
-
-        One test for all signals comes first. Only if it fails are the signals checked one by one.
-        """
-        tests = self._range_tests([(signal, name) for _, signal, name in numbers])
-        lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
-        for index, signal, name in numbers:
-            low, high = (
-                snippets.number_literal(signal.low, "-HUGE_VAL"),
-                snippets.number_literal(signal.high, "HUGE_VAL"),
-            )
-            lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {index}, {low}, {high}, {name});")
-            lines.append(f"{_INDENT}if (monitor->problem) return false;")
-        return [*lines, "}"]
-
-    def _range_tests(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
-        """Return C expressions that are all true only if every signal is finite and in its range.
-
-        Signals that lack a bound are tested by their sum, which is finite only if all of them are.
-        If the sum of finite values overflows, the test fails, although the signals are valid. Then
-        they are checked one by one.
-        """
-        bounded: list[str] = []
-        least: dict[float, list[str]] = {}
-        greatest: dict[float, list[str]] = {}
-        summed: list[str] = []
-        for signal, name in numbers:
-            low, high = signal.low, signal.high
-            if low is not None and high is not None:
-                bounded += [f"{name} >= {snippets.number_literal(low)}", f"{name} <= {snippets.number_literal(high)}"]
-                continue
-            summed.append(name)
-            if low is not None:
-                least.setdefault(low, []).append(name)
-            if high is not None:
-                greatest.setdefault(high, []).append(name)
-        tests = [f"{self._fold('min', names)} >= {snippets.number_literal(low)}" for low, names in least.items()]
-        tests += [f"{self._fold('max', names)} <= {snippets.number_literal(high)}" for high, names in greatest.items()]
-        tests += [f"isfinite({' + '.join(summed)})"] if summed else []
-        return tests + bounded
-
-    def _fold(self, function: str, names: Sequence[str]) -> str:
-        return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
-
-    def _compute(self) -> list[str]:
-        """Return the code that computes the atoms, clamped to [-1, 1], and the registers that every step needs."""
-        program_ = self._program
-        lines: list[str] = []
-        later: list[str] = []
-        for step in program_.every_step:
-            if step.kind == "register":
-                lines += self._register(step.index)
-                continue
-            name = program_.atoms[step.index]
-            lines += self._value(step.index)
-            if not program_.always_in_range[step.index]:
-                check = [
-                    f"if (!(fabs({name}) <= 1.0)) {{",
-                    f"{_INDENT}{name} = {self._prefix}_value_(monitor, {step.index}, {name});",
-                    *(f"{_INDENT}if (monitor->problem) return false;", "}"),
-                ]
-                (lines if program_.registers else later).extend(check)
-        return [*lines, *later]
-
-    def _value(self, index: int) -> list[str]:
-        """Return the code that computes the value of an atom, given its index."""
-        statements = self._program.values[index]
-        lines = self._printer.comment(self._program.atom_comments[index])
-        lines += self._printer.lines(with_declaration(self._program.atoms[index], statements))
-        if functions_called(statements) & FAILING:
-            lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", index), "}"]
-        return lines
-
-    def _register(self, index: int) -> list[str]:
-        """Return the code that computes the value of a register after the sample, given its index."""
-        program_, statements, place = self._program, self._program.updates[index], len(self._fspa.atoms) + index
-        name = program_.registers[index]
-        lines = self._printer.comment(program_.register_comments[index])
-        lines += self._printer.lines(with_declaration(name, statements, changes=False))
-        if functions_called(statements) & FAILING:
-            lines += ["if (monitor->problem) {", *self._refusal("monitor->problem", place), "}"]
-        if not program_.always_finite[index]:
-            lines += [f"if (!isfinite({name})) {{", *self._refusal(f"{self._prefix}_too_large", place), "}"]
-        return lines
-
-    def _check(self) -> list[str]:
-        """Return the code that ends a step with an error if two atoms of an ``exclusive`` group hold together."""
-        lines: list[str] = []
-        for index, group in self._program.exclusive:
-            tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
-            lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
-            lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
-            lines += [*self._refusal(f"{self._prefix}_together", index), "}"]
-        return lines
+        """Return the code that reads the bool signals that only this case reads; if it is None, every step."""
+        return self._code.bools(self._program.bools_read_in(case), self._program.booleans)
 
     def _move(self) -> list[str]:
         """Return the code that finds the next state of the automaton, with a case for each state or shape."""
@@ -426,7 +277,7 @@ class _Source:
             # A case that contains declarations needs braces.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(case.comment)]
             lines.append(f"{_INDENT}case {number}: {{")
-            values = [line for index in self._program.computed_in(number) for line in self._value(index)]
+            values = [line for index in self._program.computed_in(number) for line in self._code.value(index)]
             lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(number), *values)]
             lines += self._printer.lines(case.statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
@@ -461,14 +312,9 @@ class _Source:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _wrapped(line: str) -> list[str]:
-    """Break a line that begins with ``if (!(`` into lines of about 100 characters."""
-    return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
-
-
 def _list(items: Sequence[str], otherwise: str) -> str:
     """Return the text of the items of an array initializer.
 
     If there are no items, use ``otherwise`` as the only item, because C needs at least one.
     """
-    return _C.items(items or [otherwise], depth=1)
+    return CPrinter.items(items or [otherwise], depth=1)

@@ -139,7 +139,9 @@ def _output_by_trace(text: str) -> dict[str, str]:
     return dict(zip(pieces[1::2], pieces[2::2], strict=True))
 
 
-def output_differences(outcome: Outcome, expected: ExpectedOutput, tolerance: float) -> Iterator[str]:
+def output_differences(
+    outcome: Outcome, expected: ExpectedOutput, tolerance: float, columns: Sequence[str] = COLUMNS
+) -> Iterator[str]:
     """Yield the differences between a program's outcome and the expected one, on one trace."""
     error = expected.rejection and expected.rejection.document()
-    return differences(*outcome, [COLUMNS, *expected.rows], expected.warnings, error, tolerance)
+    return differences(*outcome, [columns, *expected.rows], expected.warnings, error, tolerance)

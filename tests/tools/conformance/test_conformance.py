@@ -20,10 +20,11 @@ from tests.tools.conformance.runner import (
     runners,
     write,
 )
-from tests.tools.conformance.runners.c import OPTIMIZED, WITHOUT_REGISTERS
+from tests.tools.conformance.runners.c import OPTIMIZED, VERDICT_ONLY, WITHOUT_REGISTERS
+from tltlc.core.record import replace
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES, is_exact
-from tltlc.tools.conformance.expected_output import ExpectedOutput, expected_output
+from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput, expected_output
 
 ALONE = ("by_zero", "exclusive_many", "names_of_code", "counting")
 """Cases whose programs are built one by one and started once per trace, as a user does;
@@ -79,6 +80,17 @@ def test_monitors_whose_registers_nobody_reads_match_the_expected_rows(runner: R
     names = [name for name in CASES if CASES[name]().fspa.registers]
     assert len(names) >= 5
     check_together(runner, names, tmp_path)
+
+
+@pytest.mark.parametrize("runner", list(_usable([VERDICT_ONLY])))
+def test_monitors_of_verdicts_match_the_first_columns_of_the_expected_rows(runner: Runner, tmp_path: Path) -> None:
+    cases = {name: case_and_expected(name) for name in CASES}
+    runs = [(name, trace) for name, (case, _) in cases.items() for trace in case.traces]
+    outcomes = build_program(runner, [case.fspa for case, _ in cases.values()], tmp_path)(runs)
+    expectations = [expectation for _, expectations in cases.values() for expectation in expectations]
+    for (name, _), outcome, expectation in zip(runs, outcomes, expectations, strict=True):
+        rows = tuple(row[:3] for row in expectation.rows)
+        assert not list(output_differences(outcome, replace(expectation, rows=rows), 0.0, COLUMNS[:3])), name
 
 
 @pytest.mark.slow

@@ -87,4 +87,8 @@ RUNNERS = (
 WITHOUT_REGISTERS = replace(
     RUNNERS[0], name="c -DTLTL_NO_REGISTERS", build_all=partial(link, (*C, "-DTLTL_NO_REGISTERS", *STRICT))
 )
+VERDICT_ONLY = replace(
+    RUNNERS[0], name="c -DTLTL_VERDICT_ONLY", build_all=partial(link, (*C, "-DTLTL_VERDICT_ONLY", *STRICT))
+)
+"""Its rows have only the columns step, state and verdict."""
 OPTIMIZED = replace(RUNNERS[0], name="c -O1", build_all=partial(link, (*C, "-O1", *STRICT)))
