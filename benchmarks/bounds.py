@@ -153,6 +153,9 @@ def compare_monitors(name: str) -> Record:
         "no_registers_to": {
             author: quartiles([rates["no_registers"] / rates[author] for rates in rounds]) for author in TIMED[2:]
         },
+        "generated_verdict_to": {
+            author: quartiles([rates["generated_verdict"] / rates[author] for rates in rounds]) for author in TIMED[3:]
+        },
     }
 
 

@@ -63,13 +63,17 @@ def test_the_report_says_which_goals_are_missed(tmp_path: Path) -> None:
         "c_steps_per_s": dict.fromkeys(TIMED, 5_000_000),
         "to": dict.fromkeys(TIMED[1:], (0.8, 0.85, 0.9)),
         "no_registers_to": dict.fromkeys(TIMED[2:], (0.8, 0.85, 0.9)),
+        "generated_verdict_to": dict.fromkeys(TIMED[3:], (0.9, 0.95, 1.0)),
         "left_out": {"RTAMT": "not installed"},
     }
     store.put(SECTION, "compile", compiled)
     for name in NAMES:
         store.put(SECTION, name, monitors)
     verdicts = [row[2] for row in bounds_report.goals(store)]
-    assert [verdict == "met" for verdict in verdicts] == [True, False, True, True, True, True, False, False, True]
+    assert [verdict == "met" for verdict in verdicts] == [True, False, True, True, True, True, False, True, True]
+    figures = " ".join(row[1] for row in bounds_report.goals(store))
+    assert "deadlines 0.85 (0.85 with them)" in figures
+    assert "deadlines 0.95 (0.85 with every field)" in figures
     text = bounds_report.section(store)
     assert "| Python, Reelay | 0.10 (Python generated 3.0 times as fast, C generated 50 times)" in text
     assert "Left out: RTAMT (not installed)." in text

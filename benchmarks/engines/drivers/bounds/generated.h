@@ -11,7 +11,11 @@ typedef @SPEC@_result Result;
 #define monitor_step @SPEC@_step
 
 static void print_result(const Result *result) {
+#ifdef TLTL_VERDICT_ONLY
+    printf("%s\t%d\n", @SPEC@_verdict_name(result->verdict), result->state);
+#else
     printf("%s\t%d\t%d\t", @SPEC@_verdict_name(result->verdict), result->accepting, result->done);
     printf("%.17g\t%.17g\t%.17g\t", result->progress, result->reward, result->robustness);
     printf("%d\t%s\t%s\n", result->state, result->label, result->limiting ? result->limiting : "");
+#endif
 }
