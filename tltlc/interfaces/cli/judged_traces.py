@@ -10,14 +10,15 @@ from typing import Any, Final
 
 import click
 
-from tltlc.core.record import record
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.core.record import record, replace
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.diagnostics.formats.json import entry
 from tltlc.diagnostics.formats.text import replace_unprintable
 from tltlc.interfaces.cli import exits
 from tltlc.interfaces.cli.inputs import Input, open_input
 from tltlc.interfaces.cli.report import Report
 from tltlc.interfaces.cli.settings import CompileSettings
+from tltlc.monitor import long_steps
 from tltlc.pipeline import CompileOptions
 from tltlc.tools.judge.clauses import Clauses, clauses_of
 from tltlc.tools.judge.pool import judge_files
@@ -75,7 +76,8 @@ def judge_traces(
             report.add(error.diagnostics)
         # Lines of traces and messages about them would be hard to read in turns.
         for trace in traces:
-            report.add(trace.diagnostics)
+            report.add(diagnostic for diagnostic in trace.diagnostics if diagnostic.code != long_steps.CODE)
+        report.add(_long_steps(traces))
         if options.as_json:
             _end_json(traces, len(files.traces), files.others)
         else:
@@ -99,6 +101,15 @@ def _clauses(spec_input: Input) -> Clauses:
 def _others_text(others: Sequence[str]) -> str:
     rest = f" and {len(others) - _MOST_NAMED} more" if len(others) > _MOST_NAMED else ""
     return replace_unprintable(f"not traces, by their names: {', '.join(others[:_MOST_NAMED])}{rest}")
+
+
+def _long_steps(traces: Iterable[JudgedTrace]) -> tuple[Diagnostic, ...]:
+    """Return the warning about the steps of the first trace that has one, with the number of other such traces."""
+    warnings = [item for trace in traces for item in trace.diagnostics if item.code == long_steps.CODE]
+    if len(warnings) < 2:
+        return tuple(warnings)
+    others = "1 other trace is" if len(warnings) == 2 else f"{len(warnings) - 1} other traces are"
+    return (replace(warnings[0], title=f"{warnings[0].title}; {others} alike"),)
 
 
 def _limit_note(traces: Iterable[JudgedTrace], limit: int | None) -> str:

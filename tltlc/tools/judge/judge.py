@@ -13,6 +13,7 @@ from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.errors import MonitorError
 from tltlc.monitor.guards import holds, prime_robustness
+from tltlc.monitor.long_steps import LongSteps, shortest_time
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.nearest_edge import nearest_edge
 from tltlc.monitor.parquet import as_text
@@ -48,6 +49,7 @@ class Judge:
         self._clause_runners = [TraceRunner(part.fspa) for part in clauses.parts] if clauses else []
         self._joint_runners: dict[tuple[int, ...], TraceRunner | None] = {}
         self._samples = Samples(fspa, None, [])
+        self._shortest_time_s = shortest_time(fspa)
 
     def judge(self, name: str, data: bytes) -> JudgedTrace:
         """Judge one trace. ``data`` is the content of its file, and ``name`` its name in messages.
@@ -57,6 +59,7 @@ class Judge:
         end of an episode does not count.
         """
         samples: list[TraceSample] = []
+        steps = LongSteps(self._shortest_time_s)
         try:
             text = as_text(data, name, self._fspa.signals)
             plain = self._plain_samples(text)
@@ -64,12 +67,12 @@ class Judge:
                 # This keeps the samples before an error.
                 fspa = self._fspa
                 read = read_trace(io.BytesIO(text), name, fspa.signals, fspa.clock_s, clock_varies=fspa.clock_varies)
-                samples.extend(read)
+                samples.extend(steps.watched(read))
             samples = plain or samples
             run, warnings = self._runner.run(samples)
         except TltlError as error:
             return self._unjudged(name, samples, error)
-        return self._judged(name, samples, run, warnings)
+        return self._judged(name, samples, run, (*warnings, *steps.warnings()))
 
     def verdict(self, samples: Sequence[TraceSample]) -> TraceVerdict:
         """Judge samples that are in memory, at least one.

@@ -91,6 +91,7 @@ def command(
 def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, *, as_json: bool) -> int:  # noqa: A002
     """Judge one trace, and print a row for each step while reading it; return the exit status."""
     from tltlc.monitor import Monitor
+    from tltlc.monitor.long_steps import LongSteps, shortest_time
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
 
@@ -99,22 +100,21 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
         spec_input = open_input(spec, settings)
         report.add(spec_input.diagnostics)
         fspa = spec_input.only_automaton()
-        monitor = Monitor(fspa)
+        monitor, steps = Monitor(fspa), LongSteps(shortest_time(fspa))
         with _open_trace(trace) as lines:
-            rows = run(
-                monitor,
-                read_trace(
-                    _as_text(lines, trace, fspa.signals),
-                    _trace_name(trace),
-                    fspa.signals,
-                    fspa.clock_s,
-                    input_kind(trace),
-                    clock_varies=fspa.clock_varies,
-                ),
+            samples = read_trace(
+                _as_text(lines, trace, fspa.signals),
+                _trace_name(trace),
+                fspa.signals,
+                fspa.clock_s,
+                input_kind(trace),
+                clock_varies=fspa.clock_varies,
             )
+            rows = run(monitor, steps.watched(samples))
             show = _show_json if as_json else _show_csv
             result = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
         (_end_json if as_json else _end_csv)(result)
+        report.add(steps.warnings())
     return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
 
 
