@@ -23,8 +23,11 @@ def _finding(spec: SpecView) -> RuleFinding:
         message = "it is judged at its limit, so without one an episode makes no progress by lasting"
     else:
         message = "an episode that never gets there never ends, and a fast player gets no more than a slow one"
-    clause = "limit 400 steps" if spec.spec.clock_s is None else "limit 30 s"
-    return RuleFinding(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), f"add `{clause}`")
+    if spec.spec.clock_varies:
+        help_ = "add `limit 2000 steps`: where the clock varies, a limit counts samples, whatever their length"
+    else:
+        help_ = f"add `{'limit 400 steps' if spec.spec.clock_s is None else 'limit 30 s'}`"
+    return RuleFinding(f"`{spec.spec.name}` has no limit", (spec.name_label(message),), help_)
 
 
 RULE = LintRule("TLT0419", "note", check)
