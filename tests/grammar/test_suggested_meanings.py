@@ -158,6 +158,12 @@ MEANINGS: Mapping[str, Meaning] = {
     "reach a twice within 2 s": begins_twice_in_time,
     "keep a == b": lambda t: a(t) == b(t),
     "keep a is 0": lambda t: not any(a(t)),
+    "keep a is not true": lambda t: not any(a(t)),
+    "keep a is not false": lambda t: all(a(t)),
+    "keep a is false": lambda t: not any(a(t)),
+    "keep a equals true": lambda t: all(a(t)),
+    "keep a is b": lambda t: a(t) == b(t),
+    "keep a is not b": lambda t: all(x != y for x, y in zip(a(t), b(t), strict=True)),
 }
 
 
@@ -239,6 +245,18 @@ def test_the_readings_of_an_unclear_formula_compile(clause: str, readings: list[
         ("phase is 2", [2]),
         ("phase is not 2", [0, 1, 3]),
         ("phase is last", [0]),
+        ("phase equals 2", [2]),
+        ("phase is equal to 2", [2]),
+        ("phase is not equal to 2", [0, 1, 3]),
+        ("phase is exactly 2", [2]),
+        ("phase is (2)", [2]),
+        ("phase + 1 is 3", [2]),
+        ("phase + 1 = 3", [2]),
+        ("2 * phase - 1 is not 3", [0, 1, 3]),
+        ("phase - 3 is -2", [1]),
+        ("phase / 2 is 1", [2]),
+        ("3 is phase", [3]),
+        ("not phase is 2", [0, 1, 3]),
         ("2 = phase", [2]),
         ("phase no more than 2", [0, 1, 2]),
         ("phase not more than 2", [0, 1, 2]),
@@ -251,6 +269,36 @@ def test_a_suggestion_for_an_int_holds_at_the_values_that_are_meant(clause: str,
     (fspa,) = compile_text(f"{NAMES}spec s {{ {suggestion} }}")
     samples = [{"phase": value, "last": 0} for value in range(4)]
     assert [sample["phase"] for sample in samples if Monitor(fspa).step(sample).accepting] == right
+
+
+@pytest.mark.parametrize(
+    ("clause", "right"),
+    [
+        ("charge is 1", [1.0]),
+        ("charge is not 1", [-1.0, 0.0, 0.5]),
+        ("charge is -1", [-1.0]),
+        ("charge is not -1", [0.0, 0.5, 1.0]),
+        ("charge equals 0.5", [0.5]),
+        ("2 * charge is 1", [0.5]),
+        ("charge is least", [0.0]),
+        ("charge is not least", [-1.0, 0.5, 1.0]),
+        ("a or charge is 1", [1.0]),
+        ("not charge is 1", [-1.0, 0.0, 0.5]),
+    ],
+)
+def test_a_suggestion_for_a_number_holds_at_the_values_that_are_meant(clause: str, right: list[float]) -> None:
+    names = f"{NAMES}signal charge: number in [-2, 2]\nsignal least: number in [-2, 2]\n"
+    (suggestion,) = suggestions(f"require {clause}", names)
+    (fspa,) = compile_text(f"{names}spec s {{ {suggestion} }}")
+    samples = [{"charge": value, "least": 0, "a": 0} for value in (-1.0, 0.0, 0.5, 1.0)]
+    assert [sample["charge"] for sample in samples if Monitor(fspa).step(sample).accepting] == right
+
+
+@pytest.mark.parametrize("clause", ["keep a is -3", "keep a is not -3", "keep coins is a", "keep phase is not a"])
+def test_a_truth_compared_with_a_number_gets_no_fix(clause: str) -> None:
+    _, error = error_of(clause)
+    assert error.fixes == ()
+    assert error.help is not None
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,10 @@ from tltlc.grammar.mistakes.rephrasing import (
 
 Range = tuple[int, int]
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
+_WHOLE_SIGNS: Final = {"PLUS", "MINUS", "TIMES_SIGN", "UNIT", "LPAR", "RPAR"}
+"""The tokens beside names and numbers with which whole numbers stay whole."""
+VERBS: Final = ("is", "are", "equals", "equal")
+_WORDS_OF_EQUALITY: Final = ("equal", "to", "exactly")
 _EQUAL_FORM, _UNEQUAL_FORM = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
 _EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>": _UNEQUAL_FORM}
 
@@ -149,9 +153,38 @@ def _value_of(failure: ParseFailure, side: Range, values: tuple[str, ...]) -> st
     return text if text in values else None
 
 
+def _types(failure: ParseFailure, side: Range) -> set[str]:
+    """Return the types of the names and numbers from which a side is computed: ``int``, ``number``, ``bool``, ….
+
+    The type is empty for names without a known type, and for what is no part of a computation.
+    """
+    tokens, (index, stop) = failure.tokens, side
+    types: set[str] = set()
+    while index < stop:
+        kind, end = tokens[index].type, operand_end(tokens, index)
+        if kind == "NAME" and end is not None:
+            types.add(declared_names(failure.source).type_of(tokens[index].text))
+            index = end
+            continue
+        if kind == "NUMBER":
+            types.add("int" if tokens[index].text.isdecimal() and tokens[index + 1].type != "UNIT" else "number")
+        elif kind in ("DIVIDE", "POWER"):
+            types.add("number")
+        elif kind not in _WHOLE_SIGNS:
+            types.add("")
+        index += 1
+    return types
+
+
 def _is_whole(failure: ParseFailure, side: Range) -> bool:
-    """Whether a side is a name that the text declares as an int, a count, or a whole number."""
-    return _declared_type(failure, side) == "int" or text_of(failure, *side).isdecimal()
+    """Whether a side is computed from ints, counts and whole numbers alone."""
+    return _types(failure, side) == {"int"}
+
+
+def _is_number(failure: ParseFailure, side: Range) -> bool:
+    """Whether a side is computed from numbers alone, as far as the text declares them."""
+    types = _types(failure, side)
+    return bool(types) and not types & {"", "bool", "enum"}
 
 
 def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
@@ -162,47 +195,65 @@ def _is_atom(failure: ParseFailure, start: int, stop: int) -> bool:
 
 
 def verb_is(failure: ParseFailure) -> Diagnostic | None:
-    """Return an error for the verb `is`, as in ``seen is true`` or ``seen is not true``, else None."""
-    at, after = failure.stop.index, [token.text for token in failure.tokens[failure.stop.index + 1 :]]
-    if (
-        failure.token.text not in ("is", "are")
-        or not failure.wants_operator
-        or failure.previous_token is None
-        or not after
-    ):
+    """Return an error for a verb of equality, as in ``seen is true`` or ``lives is not 3``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    is_after_value = failure.wants_operator or failure.allowed_terminals & COMPARISONS
+    if failure.token.text not in VERBS or not is_after_value or failure.previous_token is None:
         return None
+    is_unequal = tokens[at + 1].text == "not"
+    second = at + 1 + is_unequal
+    while tokens[second].text in _WORDS_OF_EQUALITY:
+        second += 1
+    start, stop = value_end(tokens, at, -1), value_end(tokens, second - 1, 1)
     title = f"{quote_token(failure.token)} is not an operator"
-    start = value_end(failure.tokens, at, -1)
-    value = text_of(failure, start, at)
-    words = {"true": "{}", "false": "not {}", "not": "not {}"}
-    diagnostic: Diagnostic | None = None
-    second = at + 1 + (after[0] == "not")
-    stop = value_end(failure.tokens, second - 1, 1)
-    if second + 1 < stop and failure.tokens[second].text in _enum_values(failure, (start, at)):
-        unfit, choice = failure.tokens[second + 1], text_of(failure, start, second + 1)
+    if second + 1 < stop and tokens[second].text in _enum_values(failure, (start, at)):
+        unfit, choice = tokens[second + 1], text_of(failure, start, second + 1)
         title = f"{quote_token(unfit)} is not an operator"
         return failure.error("TLT0101", title, f"put `{choice}` in brackets", span=unfit.span)
-    typed = _typed_equality(failure, (start, at), (second, stop), after[0] == "not", title, "TLT0101")
-    if typed is not None:
-        return typed
-    if failure.tokens[second].type == "NUMBER":
-        form = _UNEQUAL_FORM if after[0] == "not" else _EQUAL_FORM
-        text = form.format(a=value, b=text_of(failure, second, stop))
-        is_part = (start, stop) != (formula_start(failure), formula_stop(failure))
-        diagnostic = suggest_rewrite(failure, start, stop, f"({text})" if is_part else text, title)
-    elif after[0] in words:
-        stop = at + 2 + (after[0] == "not" and after[1:2] in (["true"], ["false"]))
-        text = words[after[0]].format(value)
-        # `a or b is false` and `always a is false` may mean all that stands before.
-        is_clear = text == value or not has_token(
-            failure, formula_start(failure), start, INFIX | BEFORE_ONE | QUANTIFIERS
-        )
-        if is_clear:
-            diagnostic = suggest_rewrite(failure, start, stop, text, title, ": a `bool` signal is an atom by itself")
+    diagnostic = (
+        _typed_equality(failure, (start, at), (second, stop), is_unequal, title, "TLT0101")
+        or _equal_numbers(failure, (start, at), (second, stop), is_unequal, title)
+        or _truth(failure, start, title)
+    )
+    if diagnostic is not None:
+        return diagnostic
+    if _is_number(failure, (start, at)):
+        return failure.error("TLT0101", title, "compare numbers with `<`, `<=`, `>` or `>=`, whole ones also with `==`")
+    value = text_of(failure, start, at)
     help_ = (
         f"write `{value}` to say that it is true, `not {value}` to say that it is not; compare numbers with `<` or `>`"
     )
-    return diagnostic or failure.error("TLT0101", title, help_)
+    return failure.error("TLT0101", title, help_)
+
+
+def _equal_numbers(failure: ParseFailure, left: Range, right: Range, is_unequal: bool, title: str) -> Diagnostic | None:
+    """Return an error for ``health is 3``, which shows the two comparisons that mean the same; else None."""
+    has_name = any(token.type == "NAME" for token in failure.tokens[right[0] : right[1]])
+    is_computed = _is_number(failure, left) or not (has_name or _types(failure, left) & {"bool", "enum"})
+    if not is_computed or not _is_number(failure, right):
+        return None
+    form = _UNEQUAL_FORM if is_unequal else _EQUAL_FORM
+    text = form.format(a=text_of(failure, *left), b=text_of(failure, *right))
+    is_part = (left[0], right[1]) != (formula_start(failure), formula_stop(failure))
+    return suggest_rewrite(failure, left[0], right[1], f"({text})" if is_part else text, title)
+
+
+def _truth(failure: ParseFailure, start: int, title: str) -> Diagnostic | None:
+    """Return an error for ``seen is true`` or ``seen is not true``, else None; ``start`` is the index of the value."""
+    tokens, at = failure.tokens, failure.stop.index
+    is_negated = tokens[at + 1].text == "not"
+    word = tokens[at + 1 + is_negated].text
+    is_word = word in ("true", "false")
+    stop = at + 1 + is_negated + is_word
+    # What follows, as in `x is not -3`, would become a part of the value.
+    if stop == at + 1 or tokens[stop].type in _VALUE:
+        return None
+    value = text_of(failure, start, at)
+    text = f"not {value}" if is_negated != (word == "false") else value
+    # `a or b is false` and `always a is false` may mean all that stands before.
+    is_clear = text == value or not has_token(failure, formula_start(failure), start, INFIX | BEFORE_ONE | QUANTIFIERS)
+    reason = ": a `bool` signal is an atom by itself"
+    return suggest_rewrite(failure, start, stop, text, title, reason) if is_clear else None
 
 
 def value_end(tokens: Sequence[Token], at: int, step: int) -> int:

@@ -11,7 +11,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
-from tltlc.grammar.mistakes.equalities import equality, value_end
+from tltlc.grammar.mistakes.equalities import VERBS, equality, value_end
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import effective_clause
 from tltlc.grammar.mistakes.parse_failure import (
@@ -95,6 +95,8 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     number, token = failure.previous_token, failure.token
     if number is None or number.type != "NUMBER" or token.type != "NAME" or "UNIT" not in failure.allowed_terminals:
         return None
+    if token.text in VERBS and failure.allowed_terminals & COMPARISONS:
+        return None  # `x + 1 is 3`
     title = f"{quote_token(token)} is not a unit"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
