@@ -130,6 +130,11 @@ SENTENCES = [
     ),
     ("keep historically for 3 s hidden implies not seen", "Whenever hidden for the last 3 s, avoid seen at that step."),
     ("reach near(key) then within 20 s near(door)", "Reach near(key), then near(door) within 20 s after near(key)."),
+    (
+        "reach alarm then within 20 s seen then within 30 s hidden then within 40 s near(door)",
+        "Reach alarm, then seen within 20 s after alarm, then hidden within 30 s after seen, "
+        "then near(door) within 40 s after hidden.",
+    ),
     ("require always for 20 s hidden", "Keep hidden for 20 s."),
     ("require always for 20 s not hidden", "Avoid hidden for 20 s."),
     ("require not (always for 20 s hidden)", "Reach not hidden within 20 s."),

@@ -15,19 +15,20 @@ from tltlc.automaton.remembered_formulas import (
     Answer,
     broken_rule,
     counted,
-    from_robustness,
+    goal_in_time,
     kept_rules,
     names_read,
     opposite,
+    past_operands,
     remembered,
     rules_of_every_sample,
     waited_for,
     window_of,
     with_rules,
 )
-from tltlc.automaton.value_phrases import COMPARED, TIMES, VALUES, Phrase, value_phrase
+from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase
 from tltlc.core.names import ComparisonName, SpokenName
-from tltlc.expression.tree import Before, Op, SignalValue
+from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
@@ -89,6 +90,7 @@ class Speaker:
         self._registers = {register.name: register for register in fspa.registers}
         self._atoms = {item.name: item for item in fspa.atoms}
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
+        self.timers = frozenset(name for name, item in self._atoms.items() if item.timer is not None and item.arguments)
         self._phrases: dict[str, Phrase | None] = {}
         self._rules = {**kept_rules(fspa), **rules_of_every_sample(fspa)}
         self._chains = chains(fspa)
@@ -132,7 +134,7 @@ class Speaker:
         for operand, verb, members in self._edges():
             if all(part in parts for part in members):
                 parts = [part for part in parts if part not in members]
-                edges.append(atom(f"{self._object(operand)} {verb}s"))
+                edges.append(atom(f"{self.object_text(operand)} {verb}s"))
         if not edges:
             return None
         rest = [done[part] for part in parts]
@@ -153,7 +155,7 @@ class Speaker:
             ends = [other for other, owed in due.items() if answer is not None and self._answer(owed) == answer]
             if answer is None or answer.request is TRUE or not ends:
                 continue
-            answered = SpokenName(f"{self._noun(answer.goal)} within {item.arguments[0]}", "reach")
+            answered = SpokenName(f"{self.noun_text(answer.goal)} within {item.arguments[0]}", "reach")
             answers[part] = always(implies(self.spoken(answer.request), atom(answered)))
             answers.update(dict.fromkeys(ends, TRUE))
         if not answers:
@@ -173,8 +175,8 @@ class Speaker:
     def _lasting(self, rule: Formula, time: str) -> Formula:
         """Return "keep hidden for 5 s", or "avoid seen for 5 s"."""
         if rule.op == "not":
-            return not_(atom(SpokenName(f"{self._noun(rule.args[0])} {time}")))
-        return atom(SpokenName(f"{self._noun(rule)} {time}", "keep"))
+            return not_(atom(SpokenName(f"{self.noun_text(rule.args[0])} {time}")))
+        return atom(SpokenName(f"{self.noun_text(rule)} {time}", "keep"))
 
     def _in_time(self, node: Formula, done: Mapping[Formula, Formula]) -> Formula | None:
         """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
@@ -200,7 +202,7 @@ class Speaker:
                 return None
             state = and_(*present)
             in_words = self.spoken(state)
-            words = self._noun(state) if in_words.op == "atom" else object_phrase(in_words)
+            words = self.noun_text(state) if in_words.op == "atom" else object_phrase(in_words)
             text = f"{words} within {self._passed[passed]}"
             return eventually(and_(atom(text), *(done[part] for part in parts if part not in present)))
         kept = or_(*(part for part in (goal.args if goal.op == "or" else (goal,)) if part is not timer))
@@ -258,9 +260,11 @@ class Speaker:
         if isinstance(item.base, ComparisonName):
             if item.base.left != register.name:
                 return None
-            sentence = self._count if register.kind == "times" else self._time
+            words, number = self.object_text(operand), item.base.right
             holds, fails = (
-                sentence(register, operand, operator, item.base.right)
+                count_text(words, operator, number)
+                if register.kind == "times"
+                else time_text(words, register, operator, number)
                 for operator in (item.base.operator, item.base.opposite_operator)
             )
             return Phrase(SpokenName(holds), SpokenName(fails))
@@ -275,9 +279,9 @@ class Speaker:
         if register.unit == "s":
             time = f"{border:g} s"
         if is_recent:
-            return Phrase(SpokenName(f"{self._object(operand)} in the last {time}"))
-        fails = SpokenName(f"a step with {self._object(operand)} in the last {time}", "have")
-        return Phrase(SpokenName(f"{self._object(opposite(operand))} for the last {time}"), fails)
+            return Phrase(SpokenName(f"{self.object_text(operand)} in the last {time}"))
+        fails = SpokenName(f"a step with {self.object_text(operand)} in the last {time}", "have")
+        return Phrase(SpokenName(f"{self.object_text(opposite(operand))} for the last {time}"), fails)
 
     def _timer_phrase(self, item: Atom, register: Register, texts: tuple[str, str]) -> Phrase:
         arguments = self.arguments(item, register)
@@ -287,7 +291,7 @@ class Speaker:
             if broken is None or any(map(self._is_timed, broken)):
                 arguments = (*arguments, f"not {arguments[-1]}")
             else:
-                arguments = (*arguments, self._object(opposite(broken[1])))
+                arguments = (*arguments, self.object_text(opposite(broken[1])))
         elif register.kind in ("waiting", "due") and len(arguments) < 2 + (item.base == "late"):
             texts = _ALWAYS[item.base]
         elif counted(register, self._registers) is TRUE:
@@ -306,13 +310,15 @@ class Speaker:
             if rule.op == "not" and self._turn(rule.args[0]) is None:
                 rule = negation_normal_form(rule)
             formulas = (rule,) if event is TRUE and len(item.arguments) == 2 else (event, rule)
+        elif (goal := goal_in_time(register, self._registers, self.timers)) is not None:
+            return (*item.arguments[:-1], f"{self.object_text(goal)} in time")
         elif (operand := counted(register, self._registers)) is not None:
             formulas = (operand,)
         first = item.base != "due"
         written = item.arguments[first:]
         if formulas is None or len(formulas) != len(written) or any(map(self._is_timed, formulas)):
             return item.arguments
-        words = [self._object(formula) for formula in formulas]
+        words = [self.object_text(formula) for formula in formulas]
         if item.base == "due" and waited_for(register).strict:  # type: ignore[union-attr]
             words[-1] = f"next {words[-1]}"
         return (*item.arguments[:first], *words)
@@ -323,55 +329,39 @@ class Speaker:
             operand = self._before[item.name]
             occurred = self._occurred(operand)
             when = "at the step before" if occurred is None else "at an earlier step"
-            return Phrase(SpokenName(f"{self._object(operand if occurred is None else occurred)} {when}"))
-        if not isinstance(register.update, Op):
+            return Phrase(SpokenName(f"{self.object_text(operand if occurred is None else occurred)} {when}"))
+        formulas = past_operands(register)
+        if formulas is None:
             return None
-        parts = register.update.args
-        operands = parts if register.kind != "since" or not isinstance(parts[1], Op) else (parts[1].args[0], parts[0])
-        formulas = [from_robustness(part) for part in operands if not isinstance(part, Before)]
-        words = [self._object(formula) for formula in formulas if formula is not None]
-        if len(words) != len(formulas):
-            return None
+        words = [self.object_text(formula) for formula in formulas]
         form = {"once": "{0} now or before", "historically": "{0} all along", "since": "{0} since {1}"}[register.kind]
         return Phrase(SpokenName(form.format(*words)))
 
     def _occurred(self, state: Formula) -> Formula | None:
         """Return the formula p of an atom ``once p``; None for any other formula."""
         register = self._registers.get(state.name) if state.op == "atom" else None
-        if register is None or register.kind != "once" or not isinstance(register.update, Op):
-            return None
-        formulas = [from_robustness(part) for part in register.update.args if not isinstance(part, Before)]
-        return formulas[0] if len(formulas) == 1 else None
+        formulas = past_operands(register) if register is not None and register.kind == "once" else None
+        return None if formulas is None else formulas[0]
 
-    def _count(self, _: Register, operand: Formula, operator: str, number: str) -> str:
-        if (operator, number) in ((">", "0"), (">=", "1")):
-            return f"{self._object(operand)} at least once"
-        if (operator, number) in (("<=", "0"), ("<", "1"), ("==", "0")):
-            return f"{self._object(operand)} 0 times so far"
-        return f"{self._object(operand)} {COMPARED[operator]} {TIMES.get(number, f'{number} times')}"
-
-    def _time(self, register: Register, operand: Formula, operator: str, number: str) -> str:
-        length = f"{COMPARED[operator]} {number} s"
-        words = self._object(operand)
-        return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
-
-    def _object(self, state: Formula) -> str:
+    def object_text(self, state: Formula) -> str:
         """Return a formula without temporal operators as a phrase, in brackets unless it is short."""
         if state is TRUE:
             return "any step"
         in_words = self.spoken(state)
         return phrase(in_words) if is_literal(in_words) else bracketed_phrase(in_words)
 
-    def _noun(self, state: Formula) -> str:
+    def noun_text(self, state: Formula) -> str:
         """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""
         turn = self._turn(state)
-        return self._object(state) if turn is None else f"the {'start' if turn[1] == 'begin' else 'end'} of {turn[0]}"
+        return (
+            self.object_text(state) if turn is None else f"the {'start' if turn[1] == 'begin' else 'end'} of {turn[0]}"
+        )
 
     def _turn(self, state: Formula) -> tuple[str, str] | None:
         """Return what begins or ends in a state, and "begin" or "end"; None for other states."""
         for operand, verb, members in self._edges() if state.op == "and" else ():
             if set(state.args) == set(members):
-                return self._object(operand), verb
+                return self.object_text(operand), verb
         return None
 
     def _edges(self) -> Iterator[tuple[Formula, str, tuple[Formula, ...]]]:
@@ -395,7 +385,7 @@ class Speaker:
 
     def _is_timed(self, formula: Formula) -> bool:
         """Whether a formula reads a timer, as the later goals of a chain do."""
-        return any(name in self._atoms and self._atoms[name].timer is not None for name in formula.atoms())
+        return not self.timers.isdisjoint(formula.atoms())
 
     def _previous_operand(self, name: str) -> Formula | None:
         """Return the formula p of an atom ``previously p``; None for any other atom."""
@@ -411,5 +401,9 @@ class Speaker:
         for item in self._atoms.values():
             kinds = {register.kind for register in self._read(item)}
             if item.timer is not None and item.base in _UNTIL and kinds & _COUNTING:
-                times[item.name] = " after ".join(self.arguments(item, self._register_of(item)))
+                register = self._register_of(item)
+                goal = goal_in_time(register, self._registers, self.timers)
+                # In a chain it goes without saying that the goal before has come in time.
+                event = self.arguments(item, register)[1:] if goal is None else (self.object_text(goal),)
+                times[item.name] = " after ".join((item.arguments[0], *event))
         return times

@@ -6,7 +6,7 @@ robustness; this module does the reverse.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple, cast
 
 from tltlc.automaton.fspa import Fspa
@@ -63,6 +63,30 @@ def remembered(name: str, registers: Mapping[str, Register]) -> Formula | None:
     """Return the formula whose robustness a register keeps for the next sample; None for other registers."""
     register = registers.get(name)
     return from_robustness(register.update) if register is not None and register.kind == "last" else None
+
+
+def goal_in_time(register: Register, registers: Mapping[str, Register], timers: Collection[str]) -> Formula | None:
+    """Return b of a register that counts from ``b & recent(5 s, a)``, a goal of a chain that came in time; else None.
+
+    ``timers`` are the names of the atoms that are timers.
+    """
+    operand = counted(register, registers)
+    if operand is None or operand.op != "and":
+        return None
+    goal = [part for part in operand.args if (part.args[0] if part.op == "not" else part).name not in timers]
+    is_timed = any(name in timers for part in goal for name in part.atoms())
+    return None if is_timed or len(goal) in (0, len(operand.args)) else and_(*goal)
+
+
+def past_operands(register: Register) -> tuple[Formula, ...] | None:
+    """Return p of a register of ``once p`` or ``historically p``, p and q of ``p since q``; None for others."""
+    if register.kind not in ("once", "historically", "since") or not isinstance(register.update, Op):
+        return None
+    parts = register.update.args
+    operands = parts if register.kind != "since" or not isinstance(parts[1], Op) else (parts[1].args[0], parts[0])
+    formulas = [from_robustness(part) for part in operands if not isinstance(part, Before)]
+    known = tuple(formula for formula in formulas if formula is not None)
+    return known if len(known) == len(formulas) else None
 
 
 def waited_for(register: Register) -> Answer | None:

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 from tltlc.core.names import ComparisonName, split_name
 from tltlc.resolve.spec import Register
 
-COMPARED: Final = {
+_COMPARED: Final = {
     ">": "more than",
     "<": "less than",
     ">=": "at least",
@@ -15,7 +15,7 @@ COMPARED: Final = {
     "==": "exactly",
     "!=": "not exactly",
 }
-TIMES: Final = {"1": "once", "2": "twice"}
+_TIMES: Final = {"1": "once", "2": "twice"}
 _MIRRORED: Final = {">": "<", "<": ">", ">=": "<=", "<=": ">=", "==": "==", "!=": "!="}
 VALUES: Final = {
     "previous": "the previous {0}",
@@ -48,6 +48,21 @@ def value_phrase(name: str, register: Register) -> Phrase | None:
         return None
     comparison = ComparisonName(left, operator, right)
     return Phrase(comparison, comparison.opposite)
+
+
+def count_text(words: str, operator: str, number: str) -> str:
+    """Return a comparison of ``times(p)`` with a number in words; ``words`` are p."""
+    if (operator, number) in ((">", "0"), (">=", "1")):
+        return f"{words} at least once"
+    if (operator, number) in (("<=", "0"), ("<", "1"), ("==", "0")):
+        return f"{words} 0 times so far"
+    return f"{words} {_COMPARED[operator]} {_TIMES.get(number, f'{number} times')}"
+
+
+def time_text(words: str, register: Register, operator: str, number: str) -> str:
+    """Return a comparison of ``time_since(p)`` or ``time_holding(p)`` with a number in words; ``words`` are p."""
+    length = f"{_COMPARED[operator]} {number} s"
+    return f"{length} after {words}" if register.kind == "time_since" else f"{words} for {length}"
 
 
 def _is_number(text: str) -> bool:
