@@ -262,12 +262,34 @@ def test_values_that_are_remembered_are_listed_and_no_trace_is_called_the_shorte
         "spec s { keep times(seen) <= 1  reach time_holding(hidden) >= 0.5 s }"
     )
     explanation = explain(fspa)
-    assert [(value.name, value.unit, value.maximum) for value in explanation.memory] == [
-        ("times(seen)", "", 3.0),
-        ("time_holding(hidden)", "steps", 10.0),
+    assert [(value.name, value.words, value.unit, value.maximum) for value in explanation.memory] == [
+        ("times(seen)", "how often seen has begun", "", 3.0),
+        ("time_holding(hidden)", "how long hidden has held", "steps", 10.0),
     ]
     assert explanation.succeed is not None
     assert [(step.times, step.what) for step in explanation.succeed.steps] == [(6, "hidden and not seen")]
     headings = [section.heading for section in sections(explanation)]
     assert headings[-2:] == ["A way to succeed", "A way to fail"]
     assert "What it remembers" in headings
+
+
+def test_a_long_chain_is_a_numbered_list_and_no_sentence() -> None:
+    signals = " ".join(f"signal {name}: bool" for name in "abcde")
+    chain = "a then within 5 s b then within 3 s c then within 2 s d then e"
+    (fspa,) = compiler.compile_text(f"clock 60 Hz {signals} spec s {{ reach {chain} }}")
+    explanation = explain(fspa)
+    goals = "a, then b within 5 s after a, then c within 3 s after b, then d within 2 s after c, then e"
+    assert explanation.english == f"Reach {goals}."
+    assert text(explanation).startswith(
+        "s\n=\n\nWhat it asks for\n  Reach, in this order:\n"
+        "    1. a\n    2. b within 5 s after a\n    3. c within 3 s after b\n    4. d within 2 s after c\n    5. e\n\n"
+        "What it remembers\n"
+        "  - the time since a, up to 599 steps\n"
+        "  - the time since a at an earlier step, up to 601 steps\n"
+        "  - the time since b in time, up to 359 steps\n"
+    )
+
+
+def test_a_short_chain_is_a_sentence_too() -> None:
+    (fspa,) = compiler.compile_text("signal a: bool signal b: bool signal c: bool spec s { reach a then b then c }")
+    assert text(explain(fspa)).startswith("s\n=\n  Reach a, then b, then c.\n")

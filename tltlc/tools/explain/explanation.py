@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
-from tltlc.automaton.memory import breaches_now, given_atoms
+from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.register_phrases import register_phrases
 from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
 from tltlc.automaton.work import OutOfWork
 from tltlc.backends.drawing.folding import fold_runs
@@ -19,7 +20,6 @@ from tltlc.logic.text.outline import Outline, outline
 from tltlc.logic.text.phrases import phrase
 from tltlc.resolve.registers import SATURATING, following_atoms
 from tltlc.resolve.sources import sources
-from tltlc.resolve.spec import Register
 from tltlc.tools.explain.ending import ending
 from tltlc.tools.explain.next_steps import edges_leading_on
 from tltlc.tools.witness.step_lengths import length_of
@@ -108,13 +108,14 @@ class ExampleTrace:
 
 @record
 class Remembered:
-    """A value of the trace so far that the monitor keeps.
+    """A value of the trace so far that the monitor keeps: the ``name`` of its register, and ``words`` for it.
 
     ``maximum`` is where a count or a time stops, in ``unit``: ``steps``, an SI unit, or empty for a
     plain number. It is None for values that do not stop.
     """
 
     name: str
+    words: str
     unit: str
     maximum: float | None
 
@@ -187,16 +188,17 @@ def explain(fspa: Fspa) -> Explanation:
 
 def _memory(fspa: Fspa) -> tuple[Remembered, ...]:
     """Return what the monitor remembers, without registers that only serve others or forget at once."""
-    forgotten = breaches_now(fspa)
+    words = register_phrases(fspa)
     return tuple(
-        _remembered(register)
+        Remembered(
+            register.name,
+            words[register.name],
+            register.unit,
+            register.high if register.kind in SATURATING else None,
+        )
         for register in fspa.registers
-        if register.kind not in ("last", "first") and register.name not in forgotten
+        if register.kind not in ("last", "first", "breach")
     )
-
-
-def _remembered(register: Register) -> Remembered:
-    return Remembered(register.name, register.unit, register.high if register.kind in SATURATING else None)
 
 
 def _outline(fspa: Fspa, formula: Formula) -> Outline:

@@ -18,6 +18,8 @@ _MOST_LEADS = 4
 _MOST_FAILURES = 12
 _MOST_STATES = 8
 _MOST_STEPS = 60
+_MOST_GOALS = 3
+"""The most goals of a chain in a sentence."""
 
 
 @record
@@ -50,7 +52,7 @@ def sections(explanation: Explanation) -> tuple[Section, ...]:
     # Over infinite traces and with memory, the search finds short traces, but not always the shortest.
     article = "A way" if explanation.semantics == "infinite" or explanation.memory else "The shortest way"
     return (
-        Section(explanation.name, tuple(filter(None, (explanation.doc, explanation.english)))),
+        Section(explanation.name, tuple(filter(None, (explanation.doc, _sentence(explanation))))),
         *_requirements(explanation),
         *_memory(explanation),
         Section("What breaks it", _failures(explanation)),
@@ -59,6 +61,12 @@ def sections(explanation: Explanation) -> tuple[Section, ...]:
         Section(f"{article} to succeed", _trace_blocks(explanation.succeed, _no_success(explanation))),
         Section(f"{article} to fail", _trace_blocks(explanation.fail, _no_failure(explanation))),
     )
+
+
+def _sentence(explanation: Explanation) -> str:
+    """Return the formula as a sentence; empty if it has a long chain of goals, which a list says better."""
+    rows = explanation.outline.goals if explanation.outline is not None else ()
+    return "" if any(len(goals) > _MOST_GOALS for goals in rows) else explanation.english
 
 
 def _requirements(explanation: Explanation) -> tuple[Section, ...]:
@@ -83,7 +91,7 @@ def _requirements(explanation: Explanation) -> tuple[Section, ...]:
 
 def _memory(explanation: Explanation) -> tuple[Section, ...]:
     items = tuple(
-        value.name if value.maximum is None else f"{value.name}, up to {value.maximum:g} {value.unit}".rstrip()
+        value.words if value.maximum is None else f"{value.words}, up to {value.maximum:g} {value.unit}".rstrip()
         for value in explanation.memory
     )
     return (Section("What it remembers", (SectionList("", items),)),) if items else ()
