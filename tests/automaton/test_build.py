@@ -16,6 +16,7 @@ from tests.automaton.letters import holds, letters, minimal_size, named, run, ta
 from tests.fuzzing import times
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
+from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.text import label_text
@@ -98,6 +99,25 @@ def test_the_initial_state_rejects_the_empty_trace_unless_that_costs_a_state(tex
     assert compiled(text).states[0].accepting is empty
 
 
+@pytest.mark.parametrize("clock", ["60 Hz", "varies"])
+@pytest.mark.parametrize(
+    ("clauses", "verdict"),
+    [
+        ("keep within 9 s of a, b", "holding"),
+        ("keep eventually within 9 s b", "holding"),
+        ("keep within 9 s of a, b  keep eventually c", "holding"),
+        ("keep within 9 s of a, b  reach c", "pending"),
+        # The last sample must have c: the obligation is the same before and after it.
+        ("keep within 9 s of a, b  require F(c & !X true)", "pending"),
+        ("keep within 9 s of a, b  require c", "pending"),
+    ],
+)
+def test_no_answer_is_due_in_the_initial_state(clauses: str, verdict: str, clock: str) -> None:
+    (fspa,) = compile_text(f"clock {clock} signal a: bool signal b: bool signal c: bool spec s {{ {clauses} }}")
+    assert "due" in [register.kind for register in fspa.registers]
+    assert fspa.states[0].verdict == verdict
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -160,6 +180,7 @@ def test_equal_input_gives_equal_output(formula: Formula) -> None:
 def test_output_does_not_depend_on_the_hash_seed() -> None:
     program = """
 from tests.reference_formulas import corpus
+from tltlc import compile_text
 from tltlc.automaton.finite.build import build, spec_from_formula
 small = [entry.formula for entry in corpus() if entry.states is not None and entry.states <= 12]
 print([build(spec_from_formula(formula)) for formula in small])

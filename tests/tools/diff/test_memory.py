@@ -113,7 +113,7 @@ def test_a_shorter_deadline_is_compared_exactly_with_a_shortest_trace() -> None:
     nothing = frozenset[str]()
     assert comparison.only_a.prefix == (frozenset({"alarm"}), *[nothing] * 240, frozenset({"hidden"}))
     report = text(FileDiff("a", "b", (pair,)))
-    assert "This is exact: what the specs remember was unfolded to 303 states in A and 243 in B." in report
+    assert "This is exact: what the specs remember was unfolded to 302 states in A and 242 in B." in report
     assert "    step 1: alarm\n    steps 2 to 241 (4 s): nothing holds\n    step 242: hidden\n" in report
     assert document(FileDiff("a", "b", (pair,)))["specs"][0]["method"] == "unfolded"
 

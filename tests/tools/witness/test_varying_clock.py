@@ -55,7 +55,7 @@ def test_explanations_say_when_steps_come(tltlc: Run, inside: Path) -> None:
     lines = tltlc("explain", "s.tltl").out.splitlines()
     assert lines[2] == "  Whenever alarm, reach hidden within 2 s."
     fail = lines.index("A way to fail")
-    assert lines[fail + 1] == "  1. alarm and not hidden (to state 0)"
+    assert lines[fail + 1] == "  1. alarm and not hidden (to state 1)"
     assert lines[fail + 2].startswith("  2. not hidden")
     assert lines[fail + 2].endswith(" steps in 2.5 s (to state 2)")
 

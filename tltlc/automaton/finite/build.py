@@ -96,7 +96,8 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 
     with bounded_steps():
         successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive, diagrams)
-    targets = _targets(minimal, diagrams)
+    has_answers = any(register.kind == "due" for register in spec.registers)
+    targets = _targets(minimal, diagrams, has_answers and _holds_before_samples(spec.formula))
     distance = distances(targets, accepting=lambda leaf: diagrams.value[leaf][1] == 1)
     order = breadth_first(next(iter(targets)), targets, distance)
     verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.value[leaf][1] == 1)
@@ -141,29 +142,42 @@ def _build_in_order(spec: Spec, state_budget: int, steps: int | None = None) -> 
 # A state of the automaton is a leaf of the machine: the obligation that remains, and whether the state is accepting.
 
 
-def state_leaves(minimal: Machine, diagrams: TransitionDiagrams) -> list[int]:
+def state_leaves(minimal: Machine, diagrams: TransitionDiagrams, accept: bool = False) -> list[int]:
     """Return the states of the automaton, the initial state first.
 
     Each state is a leaf of ``diagrams``: an obligation (what remains to be done), and whether the
     state accepts. Since no trace is empty, the initial state may accept or reject. It accepts if
     transitions lead back to the initial obligation, and all of them accept. These transitions then
-    lead to the initial state, which saves a second state with the same obligation. Otherwise the
-    initial state rejects.
+    lead to the initial state, which saves a second state with the same obligation. If only some of them
+    accept, there are two such states, and the initial state is the one that accepts if ``accept``.
+    Otherwise the initial state rejects.
     """
     reached = diagrams.leaves(*minimal.transitions.values())
     rejecting, accepting = diagrams.leaf((minimal.initial, 0)), diagrams.leaf((minimal.initial, 1))
-    initial = accepting if accepting in reached and rejecting not in reached else rejecting
+    initial = accepting if accepting in reached and (accept or rejecting not in reached) else rejecting
     return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
 
 
-def _targets(minimal: Machine, diagrams: TransitionDiagrams) -> dict[int, list[int]]:
-    """Map each state to its successors; the initial state comes first.
+def _holds_before_samples(formula: Formula) -> bool:
+    """Whether a formula holds while there is no sample yet: ``G a`` does, ``F a`` and ``a`` do not."""
+    done: dict[Formula, bool] = {}
+    for node in negation_normal_form(formula).bottom_up():
+        parts = [done[part] for part in node.args]
+        if node.op in ("and", "or"):
+            done[node] = all(parts) if node.op == "and" else any(parts)
+        else:
+            done[node] = node.op in ("true", "N", "G", "W", "R")
+    return done[node]
+
+
+def _targets(minimal: Machine, diagrams: TransitionDiagrams, accept: bool) -> dict[int, list[int]]:
+    """Map each state to its successors; the initial state comes first. ``accept`` is as for :func:`state_leaves`.
 
     Raises :class:`TooManyPrimes` if there are more edges than ``WORK["edges"]``.
     """
     targets: dict[int, list[int]] = {}
     remaining = WORK["edges"]
-    for leaf in state_leaves(minimal, diagrams):
+    for leaf in state_leaves(minimal, diagrams, accept):
         reached = diagrams.leaves(minimal.transitions[diagrams.value[leaf][0]])
         targets[leaf] = [target for target in reached if target != IMPOSSIBLE]
         remaining -= len(targets[leaf])
