@@ -26,6 +26,7 @@ from tltlc.automaton.remembered_formulas import (
     window_of,
     with_rules,
 )
+from tltlc.automaton.timer_phrases import ALWAYS, FROM_START, TIMERS
 from tltlc.automaton.value_phrases import VALUES, Phrase, count_text, time_text, value_phrase
 from tltlc.core.names import ComparisonName, SpokenName
 from tltlc.expression.tree import Before, SignalValue
@@ -33,45 +34,12 @@ from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, i
 from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
-from tltlc.resolve.spec import Atom, Register, RegisterKind
+from tltlc.resolve.spec import Atom, Register
 
-_TIMERS: Final[Mapping[RegisterKind, Mapping[str, tuple[str, str]]]] = {
-    "waiting": {"late": ("{2} later than {0} after {1}", "{2} within {0} after {1}")},
-    "due": {"due": ("{1} is due after {0}", "{1} is not due after {0}")},
-    "breach": {"breach": ("{3} within {0} after {1}", "{2} for {0} after {1}")},
-    "samples": {
-        "passed": ("{0} have passed", "less than {0} have passed"),
-        "lasted": ("{0} are over", "less than {0} have passed"),
-        "over": ("more than {0} have passed", "at most {0} have passed"),
-    },
-    "elapsed": {
-        "lasted": ("{0} are over", "less than {0} have passed"),
-        "over": ("more than {0} have passed", "at most {0} have passed"),
-    },
-    "time_since": {
-        "lately": ("{1} in the last {0}", "no {1} in the last {0}"),
-        "passed": ("{0} have passed since {1}", "less than {0} have passed since {1}"),
-    },
-    "age": {"recent": ("{1} in the {0} before", "no {1} in the {0} before")},
-    "time_holding": {"held": ("{1} for {0}", "{1} for less than {0}")},
-    "run": {"held": ("{1} for {0}", "{1} for less than {0}")},
-}
-"""What is said of the timers that :mod:`tltlc.resolve.timers` makes: where they hold, and where they do not.
-
-The keys are the kind of the register that a timer reads, and the base of its name. The numbers stand
-for the arguments of the atom.
-"""
-_ALWAYS: Final[Mapping[str, tuple[str, str]]] = {
-    "late": ("no {1} for more than {0}", "{1} again within {0}"),
-    "due": ("{0} is due", "{0} is not due"),
-}
-"""The same for an answer that is due at all times, which has no event before it."""
 _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
 """The bases of the names of timers that say until when something must happen, or how long it must last."""
 _COUNTING: Final = frozenset({"samples", "elapsed", "time_since", "age"})
 """The kinds of the registers that these timers read."""
-_FROM_START: Final = ("{2} in the first {0}", "{1} for the first {0}")
-"""The same for a rule that applies from the first sample on."""
 
 
 def spoken(formula: Formula, fspa: Fspa) -> Formula:
@@ -91,6 +59,9 @@ class Speaker:
         self._atoms = {item.name: item for item in fspa.atoms}
         self._before = {name: operand for name in self._atoms if (operand := self._previous_operand(name)) is not None}
         self.timers = frozenset(name for name, item in self._atoms.items() if item.timer is not None and item.arguments)
+        nodes = fspa.formula.walk() if isinstance(fspa.formula, Formula) else ()
+        waits = (node.args[0] for node in nodes if node.op == "U")
+        self._waits = {(wait.args[0] if wait.op == "not" else wait).name for wait in waits}
         self._phrases: dict[str, Phrase | None] = {}
         self._rules = {**kept_rules(fspa), **rules_of_every_sample(fspa)}
         self._chains = chains(fspa)
@@ -240,7 +211,7 @@ class Speaker:
         """Return the phrase of an atom that reads one register; None if it has none."""
         if register.kind == "breach" and len(item.arguments) == 1:
             return None
-        timer = _TIMERS.get(register.kind, {}).get(item.base)
+        timer = TIMERS.get(register.kind, {}).get(item.base)
         if item.timer is not None and timer is not None:
             return self._timer_phrase(item, register, timer)
         if register.kind == "last":
@@ -287,13 +258,13 @@ class Speaker:
         arguments = self.arguments(item, register)
         if register.kind == "breach":
             broken = broken_rule(register, self._registers)
-            texts = _FROM_START if len(arguments) == 2 else texts
+            texts = FROM_START if len(arguments) == 2 else texts
             if broken is None or any(map(self._is_timed, broken)):
                 arguments = (*arguments, f"not {arguments[-1]}")
             else:
                 arguments = (*arguments, self.object_text(opposite(broken[1])))
         elif register.kind in ("waiting", "due") and len(arguments) < 2 + (item.base == "late"):
-            texts = _ALWAYS[item.base]
+            texts = ALWAYS[item.base]
         elif counted(register, self._registers) is TRUE:
             texts = (texts[0], texts[1].replace("no {1}", "no step"))
         return Phrase(*(text.format(*arguments) for text in texts))
@@ -310,7 +281,7 @@ class Speaker:
             if rule.op == "not" and self._turn(rule.args[0]) is None:
                 rule = negation_normal_form(rule)
             formulas = (rule,) if event is TRUE and len(item.arguments) == 2 else (event, rule)
-        elif (goal := goal_in_time(register, self._registers, self.timers)) is not None:
+        elif item.name in self._waits and (goal := self._goal_in_time(register)) is not None:
             return (*item.arguments[:-1], f"{self.object_text(goal)} in time")
         elif (operand := counted(register, self._registers)) is not None:
             formulas = (operand,)
@@ -383,6 +354,9 @@ class Speaker:
     def _answer(self, item: Atom) -> Answer | None:
         return waited_for(self._register_of(item))
 
+    def _goal_in_time(self, register: Register) -> Formula | None:
+        return goal_in_time(register, self._registers, self.timers)
+
     def _is_timed(self, formula: Formula) -> bool:
         """Whether a formula reads a timer, as the later goals of a chain do."""
         return not self.timers.isdisjoint(formula.atoms())
@@ -402,7 +376,7 @@ class Speaker:
             kinds = {register.kind for register in self._read(item)}
             if item.timer is not None and item.base in _UNTIL and kinds & _COUNTING:
                 register = self._register_of(item)
-                goal = goal_in_time(register, self._registers, self.timers)
+                goal = self._goal_in_time(register) if item.name in self._waits else None
                 # In a chain it goes without saying that the goal before has come in time.
                 event = self.arguments(item, register)[1:] if goal is None else (self.object_text(goal),)
                 times[item.name] = " after ".join((item.arguments[0], *event))
