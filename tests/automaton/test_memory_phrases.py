@@ -306,3 +306,25 @@ predicate passed(x: entity) in [-1, 1] = clamp((time_since(near(x), 4 s) - 2 s) 
 predicate held(x: entity) in [-1, 1] = clamp((time_holding(near(x), 4 s) - 2 s) / 2 s, -1, 1)
 predicate chain(x: entity, y: entity) in [-1, 1] = clamp(previous(health) / 10, -1, 1)
 """
+
+
+@pytest.mark.parametrize(
+    ("outside", "inside"),
+    [
+        ("not previously seen", "previously not seen"),
+        ("not once seen", "once not seen"),
+        ("not (seen since alarm)", "(not seen) since alarm"),
+        ("not once within 5 s seen", "once within 5 s not seen"),
+        ("not historically for 5 s seen", "historically for 5 s not seen"),
+        ("not (time_holding(seen) >= 2 s)", "time_holding(not seen) >= 2 s"),
+        ("times(once within 5 s seen) <= 2", "times(seen) <= 2 and once within 5 s seen"),
+        ("not (always for 20 s seen)", "always for 20 s not seen"),
+        ("not (eventually within 20 s seen)", "eventually within 20 s not seen"),
+    ],
+)
+def test_a_negation_outside_and_one_inside_read_differently(outside: str, inside: str) -> None:
+    texts = set()
+    for formula in (outside, inside):
+        (fspa,) = compile_text(f"{GAME}spec s {{ require {formula} }}")
+        texts.add(formula_text(fspa))
+    assert len(texts) == 2

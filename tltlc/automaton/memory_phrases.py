@@ -33,7 +33,7 @@ from tltlc.expression.tree import Before, SignalValue
 from tltlc.logic.formula import TRUE, Formula, always, and_, atom, eventually, implies, not_, or_, rebuild
 from tltlc.logic.implication import complement
 from tltlc.logic.normal_form import negation_normal_form
-from tltlc.logic.text.phrases import bracketed_phrase, is_literal, is_state, object_phrase, phrase
+from tltlc.logic.text.phrases import bracketed_phrase, is_state, object_phrase, phrase
 from tltlc.resolve.spec import Atom, Register
 
 _UNTIL: Final = ("passed", "lasted", "over", "recent", "lately")
@@ -319,7 +319,8 @@ class Speaker:
         if state is TRUE:
             return "any step"
         in_words = self.spoken(state)
-        return phrase(in_words) if is_literal(in_words) else bracketed_phrase(in_words)
+        is_long = isinstance(in_words.name, SpokenName) and " " in in_words.name
+        return f"({phrase(in_words)})" if is_long else bracketed_phrase(in_words)
 
     def noun_text(self, state: Formula) -> str:
         """Return a formula as the object of a sentence: "the start of damage" where it begins to hold."""

@@ -38,10 +38,14 @@ def with_opposites(formula: Formula) -> Formula:
 
 
 def _opposite(node: Formula) -> Formula | None:
-    """Return the negation of a comparison as a comparison; None for any other formula."""
-    if node.op != "not" or not isinstance(name := node.args[0].name, ComparisonName):
-        return None
-    return atom(name.opposite)
+    """Return the negation of a comparison as a comparison, and that of a phrase with brackets; else None.
+
+    "not a at the step before" would say as well that a did not hold there.
+    """
+    name = node.args[0].name if node.op == "not" else ""
+    if isinstance(name, ComparisonName):
+        return atom(name.opposite)
+    return atom(SpokenName(f"not ({name})")) if isinstance(name, SpokenName) and " " in name else None
 
 
 def bracketed_phrase(state: Formula) -> str:
