@@ -29,6 +29,7 @@ RULES = {
     "a negation": "require not (eventually within {n} steps a)",
     "a response": "keep a implies eventually within {n} steps b",
     "a response at a later step": "keep a implies next eventually within {n} steps b",
+    "a response at a later step, at the end": "keep a implies weak_next eventually within {n} steps b",
     "a response to either": "keep (a or c) implies eventually within {n} steps b",
     "two responses to one": "keep a implies (eventually within {n} steps b and eventually within {m} steps c)",
     "a response with an exception": "keep a implies (c or eventually within {n} steps b)",

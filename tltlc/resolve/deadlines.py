@@ -13,6 +13,7 @@ at the first sample       ``G[m,n] f`` is ``passed(n) R (passed(m) -> f)``, or `
 at the first sample       ``F G[0,n] p`` is ``F(p has held for n steps | p & !X true)``
 at the first sample       ``F(p & X F G[0,n] q)`` is ``F(p & X F G[0,n] (q & previously once p))``
 at the first sample       ``G(p -> F[0,n] q)`` is ``G !late & G(due -> X true)``
+at the first sample       ``G(p -> N F[0,n] q)`` is the same for ``previously p``
 at the first sample       ``G(p -> G[0,n] q)`` is ``G !breach``: a p is at most n steps old, and not q
 at the first sample       ``G !F(p & X F[0,n-1] q)`` is ``G !(q & p at most n steps ago)``, also for more goals
 anywhere                  ``F(p & X F[0,n-1] f)`` is ``F(p & X(!passed(n, p) U f))``
@@ -279,10 +280,15 @@ class _StepRewriting(Rewriting):
         temporal = [part for part in clause if not is_present(part)]
         if len(clause) == 1 and clause[0].op == "not" and clause[0].args[0].op == "F":
             return self._never(clause[0].args[0])
-        window = window_of(temporal[0]) if len(temporal) == 1 else None
-        if window is None or window.low > 1 or window.high == 0:
+        if len(temporal) != 1:
             return None
         request = and_(*(negated(part) for part in clause if part is not temporal[0]))
+        window = window_of(temporal[0])
+        if window is None and temporal[0].op == "N" and self.fits(request):
+            # A request at the last sample asks for nothing, so it counts from the sample after it.
+            window, request = window_of(temporal[0].args[0]), self._timers.previous(request)
+        if window is None or window.low > 1 or window.high == 0:
+            return None
         if window.op == "G" and window.body.op == "not" and not is_present(window.body) and not window.exists:
             goal = bounded("F[]", window.low, window.high, window.body.args[0])
             return self._never(eventually(and_both(goal, request)))

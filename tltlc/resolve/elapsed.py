@@ -52,12 +52,6 @@ class ElapsedTimers(TimerAtoms):
         self._register(registers.run(register, self.kept(state)))
         return self._timer("held", self.at_least(register, length), self.time(length), self.text(state))
 
-    def previous(self, state: Formula) -> Formula:
-        """Return the atom of "``state`` held at the sample before this one"."""
-        name = f"previously {self.operand_text(state)}"
-        self._register(registers.previously(name, self.kept(state)))
-        return self._atom(name, SignalValue(name))
-
     def response(self, request: Formula, goal: Formula, length: float) -> tuple[Formula, Formula]:
         """Return the atoms of "a request waits for its goal" and "it has waited for more than ``length``"."""
         pair = (self.text(goal),) if request is TRUE else (self.text(request), self.text(goal))

@@ -110,10 +110,12 @@ class TimerAtoms:
         once = f"once {operand_text(event)}"
         self._register(registers.once(once, self._value(event)))
         has_held = self._timer(once, SignalValue(once))
-        if low == 0:
-            return has_held
-        name = f"previously {operand_text(has_held)}"
-        self._register(registers.previously(name, self.kept(has_held)))
+        return self.previous(has_held) if low else has_held
+
+    def previous(self, state: Formula) -> Formula:
+        """Return the atom of "``state`` held at the sample before this one"."""
+        name = f"previously {self.operand_text(state)}"
+        self._register(registers.previously(name, self.kept(state)))
         return self._timer(name, SignalValue(name))
 
     def chain(self, goals: Sequence[TimedGoal]) -> Formula:
