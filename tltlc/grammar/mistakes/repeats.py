@@ -1,0 +1,97 @@
+"""Explain rules about an event that repeats: `avoid hit within 1 s of hit`, `keep dash implies not dash for 2 s`.
+
+The event itself is within that time, so a rule about each step of the time would forbid it altogether.
+"""
+
+from __future__ import annotations
+
+from tltlc.core.record import record
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
+from tltlc.grammar.mistakes.parse_failure import CLOSING, OPENING, ParseFailure, quote_token
+from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite
+
+TokenRange = tuple[int, int]
+"""The indices of the first token, and after the last token."""
+
+
+@record
+class Happening:
+    """What a rule says of a formula: that it holds, begins to hold if ``begins``, or not if ``is_negated``."""
+
+    text: str
+    begins: bool
+    is_negated: bool
+
+
+def happening(failure: ParseFailure, part: TokenRange) -> Happening:
+    """Return what the tokens of a part say, such as `not hit`, `begins hit` and `(hit)`."""
+    tokens = failure.tokens
+    begin, end = _without_brackets(failure, *part)
+    is_negated = tokens[begin].type == "NOT"
+    begin, end = _without_brackets(failure, begin + is_negated, end)
+    begins = tokens[begin].type == "BEGINS"
+    begin, end = _without_brackets(failure, begin + begins, end)
+    return Happening(operand_text(failure, begin, end), begins, is_negated)
+
+
+def begun_again(operand: str, time: str, head: str = "") -> str:
+    """Return the clause that forbids an operand to begin again within a time.
+
+    ``head`` is that of a quantifier over the clause, without the quantifier, such as ``p in pits:``.
+    """
+    event = operand if operand.startswith("begins ") else f"begins {operand}"
+    return f"avoid {f'any {head} ' if head else ''}({event}) then within {time} ({event})"
+
+
+def repeat_error(
+    failure: ParseFailure,
+    keyword: str,
+    head: str,
+    parts: tuple[TokenRange, TokenRange],
+    time: str,
+    *,
+    word: int,
+    lasting: bool,
+) -> Diagnostic | None:
+    """Return an error if what follows an event within a time, or for a time, is the event itself, else None.
+
+    ``parts`` are the event and what follows it. ``keyword`` is that of the clause, and ``head`` that of a
+    quantifier over it, without the quantifier. ``word`` is the index of the English word.
+    """
+    event, again = (happening(failure, part) for part in parts)
+    if event.text != again.text or event.is_negated or (keyword == "avoid" and again.is_negated):
+        return None
+    title, span = f"{quote_token(failure.tokens[word])} is not an operator", failure.tokens[word].span
+    if failure.lacks_fixed_clock(time):
+        return failure.error("TLT0101", title, FIXED_CLOCK, span=span)
+    operand, is_absent = event.text, keyword == "avoid" or again.is_negated
+    one_by_one = f"all {head} " if head else ""
+    text, reason = "", ""
+    if is_absent and keyword != "reach":
+        text = begun_again(operand, time, head)
+        if lasting and not again.begins:
+            steps = f"keep {one_by_one}begins {operand} implies weak_next always for {time} not {operand}"
+            reason = f" if it must not begin again, `{steps}` if it must also end at the next step"
+    elif keyword == "reach" and not (is_absent or lasting or head):
+        text = f"reach begins {operand} then within {time} begins {operand}"
+    elif lasting and keyword != "reach":
+        text = f"keep {one_by_one}begins {operand} implies always for {time} {operand}"
+    if text and event.begins and again.begins:
+        return suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title)
+    help_ = f"write `{text}`{reason}" if text else f"`{operand}` holds at that step itself: say what must follow it"
+    return failure.error("TLT0101", title, help_, span=span)
+
+
+def _without_brackets(failure: ParseFailure, begin: int, end: int) -> TokenRange:
+    """Return the range of the tokens without brackets around all of them."""
+    while begin < end and failure.tokens[begin].type == "LPAR":
+        depth = 0
+        for index in range(begin, end):
+            depth += (failure.tokens[index].type in OPENING) - (failure.tokens[index].type in CLOSING)
+            if depth == 0:
+                break
+        if index + 1 < end:
+            break
+        begin, end = begin + 1, end - 1
+    return begin, end
