@@ -70,7 +70,8 @@ def repeat_error(
     text, reason = "", ""
     if is_absent and keyword != "reach":
         text = begun_again(operand, time, head)
-        if lasting and not again.begins:
+        # Where frames differ, a time behind `weak_next` does not count from the event.
+        if lasting and not again.begins and not failure.clock_varies:
             steps = f"keep {one_by_one}begins {operand} implies weak_next always for {time} not {operand}"
             reason = f" if it must not begin again, `{steps}` if it must also end at the next step"
     elif keyword == "reach" and not (is_absent or lasting or head):

@@ -66,19 +66,61 @@ def test_the_two_sides_of_a_reported_implication_never_hold_together(drawn: tupl
 @pytest.mark.parametrize(
     ("clause", "advice"),
     [
-        ("keep a implies always for 1 s not a", "for the steps after it, write `a implies next always for 1 s not a`"),
+        (
+            "keep a implies always for 1 s not a",
+            "for the steps after it, write `avoid a then within 1 s a`",
+        ),
         (
             "keep begins a implies (always for 10 s not begins a)",
-            "for the steps after it, write `begins a implies next always for 10 s not begins a`",
+            "for the steps after it, write `avoid (begins a) then within 10 s (begins a)`",
         ),
-        ("keep a implies always not a", "for the steps after it, write `a implies next always not a`"),
+        (
+            "keep a implies always for 1 s (b and not a)",
+            "for the steps after it, write `a implies weak_next always for 1 s (b and not a)`",
+        ),
+        ("keep a implies always not a", "for the steps after it, write `a implies weak_next always not a`"),
+        (
+            "keep a implies not eventually within 1 s a",
+            "for the steps after it, write `avoid a then within 1 s a`",
+        ),
+        (
+            "keep begins a implies not (F begins a)",
+            "for the steps after it, write `begins a implies weak_next not (F begins a)`",
+        ),
+        ("keep a implies not eventually within 1 s b", None),
+        ("keep a implies eventually within 1 s a", None),
+        *(
+            (
+                f"keep {condition} implies {timer} >= 2 s",
+                f"`{timer}` is 0 s at that step; to forbid a second beginning so soon, write "
+                "`avoid (begins a) then within 2 s (begins a)`",
+            )
+            for condition in ("a", "begins a")
+            for timer in ("time_since(a)", "time_holding(not a)")
+        ),
+        ("keep a implies time_since(a) < 2 s", None),
+        ("keep not a implies time_since(a) >= 2 s", None),
+        ("keep a implies time_since(b) >= 2 s", None),
+        ("keep a implies time_holding(a) >= 2 s", None),
+        ("keep a implies time_holding(a and b) >= 2 s", None),
+        ("keep not a implies time_holding(a) < 2 s", None),
+        (
+            "keep not a implies time_holding(a and b) >= 2 s",
+            "`time_holding(a and b)` is 0 s at that step: compare it at another step",
+        ),
         ("keep a implies next always for 1 s not a", None),
         ("keep a implies always for 1 s not b", None),
-        ("keep a implies G[1,5] not a", None),
     ],
 )
-def test_a_rule_that_forbids_its_own_event_is_reported(clause: str, advice: str | None) -> None:
-    settings = "limit 60 s\n    judge at limit"
-    text = f"clock 60 Hz\nsignal a: bool\nsignal b: bool\nspec s {{\n    {settings}\n    {clause}\n}}\n"
+@pytest.mark.parametrize("clock", ["clock 60 Hz", "clock varies"])
+def test_a_rule_that_forbids_its_own_event_is_reported(clause: str, advice: str | None, clock: str) -> None:
+    settings = "limit 3600 steps\n    judge at limit"
+    text = f"{clock}\nsignal a: bool\nsignal b: bool\nspec s {{\n    {settings}\n    {clause}\n}}\n"
     found = [finding.diagnostic for finding in findings_in(text) if finding.diagnostic.code == "TLT0432"]
     assert [diagnostic.help for diagnostic in found] == ([] if advice is None else [advice])
+
+
+@pytest.mark.parametrize("clause", ["keep a implies G[1,5] not a", "keep a implies not F[1,5] a"])
+def test_a_bound_that_begins_later_is_not_reported(clause: str) -> None:
+    text = f"clock 60 Hz\nsignal a: bool\nspec s {{\n    limit 60 s\n    judge at limit\n    {clause}\n}}\n"
+    assert "TLT0432" not in codes(text)

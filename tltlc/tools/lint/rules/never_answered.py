@@ -1,6 +1,7 @@
 """TLT0432: `p implies q` where q never holds at the step of p, so p is forbidden.
 
-The same is true of `p implies always for 1 s q`, which begins at the step of p.
+The same is true of `p implies always for 1 s q` and `p implies not eventually within 1 s r`, which begin at the step
+of p, and of `p implies time_since(p) >= 1 s`, because the time is 0 s at that step.
 """
 
 from __future__ import annotations
@@ -10,16 +11,18 @@ from typing import Final
 
 from tltlc.automaton.finite.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, Clause, Unary
-from tltlc.logic.formula import Formula, always, and_
+from tltlc.grammar.tree import BinaryExpr, CallExpr, Clause, NameExpr, NumberExpr, Unary
+from tltlc.logic.formula import Formula, always, and_, not_
 from tltlc.logic.text.phrases import is_state
 from tltlc.resolve.spec import Conjunct
 from tltlc.tools.lint.atom_relations import relations
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, SpecView, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
+from tltlc.tools.lint.timer_relations import timer_relations
 
 _REQUIRING: Final = ("implies", "and", "G", "X", "N")
 """Implications, and the operators whose operands are all required to hold."""
+_TIMERS: Final = ("time_since", "time_holding")
 
 
 def check(view: FileView) -> Iterator[RuleFinding]:
@@ -53,10 +56,11 @@ def _implications(value: ScopedExpression) -> Iterator[ScopedExpression]:
 
 
 def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
-    condition, result = (part.formula() for part in _sides(implication))
+    condition, result = _condition(implication).formula(), _result(implication)
     if condition is None or result is None or not is_state(condition) or not is_state(result):
         return False
-    proved = relations(spec, and_(condition, result).atoms())
+    names = and_(condition, result).atoms()
+    proved = (*relations(spec, names), *timer_relations(spec, names))
 
     def can_be(state: Formula) -> bool:
         return not unsatisfiable((Conjunct(state, implication.source, implication.tree.span), *proved), spec.spec)
@@ -64,46 +68,91 @@ def _never_together(implication: ScopedExpression, spec: SpecView) -> bool:
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
 
 
-def _sides(implication: ScopedExpression) -> tuple[ScopedExpression, ScopedExpression]:
-    """Return the condition of an implication, and what it requires at the same step.
-
-    `always` requires its operand at this step, too, unless its bound begins later.
-    """
-    tree = implication.tree
-    assert isinstance(tree, BinaryExpr)
-    lasting = _lasting(implication)
-    result = tree.right if lasting is None else lasting.operand
-    return implication.with_tree(tree.left), implication.with_tree(result)
-
-
-def _lasting(implication: ScopedExpression) -> Unary | None:
-    """Return the `always` that an implication requires from its own step on, or None."""
+def _condition(implication: ScopedExpression) -> ScopedExpression:
     assert isinstance(implication.tree, BinaryExpr)
-    right = without_brackets(implication.tree.right)
-    if not isinstance(right, Unary) or right.op != "G":
-        return None
-    low = right.bound.low if right.bound is not None else None
-    return right if low is None or low.value == 0 else None
+    return implication.with_tree(implication.tree.left)
+
+
+def _required(implication: ScopedExpression) -> tuple[ScopedExpression, ScopedExpression | None, bool]:
+    """Return what an implication requires at the step of its condition, perhaps negated.
+
+    `always` requires its operand at this step, too, unless its bound begins later, and so does `not eventually`
+    with the negated operand. The three values are the operand, the expression with the bound, which is None if there
+    is none, and whether the operand is negated.
+    """
+    assert isinstance(implication.tree, BinaryExpr)
+    tree = lasting = without_brackets(implication.tree.right)
+    is_negated = isinstance(tree, Unary) and tree.op == "not"
+    if isinstance(tree, Unary) and is_negated:
+        lasting = without_brackets(tree.operand)
+    if isinstance(lasting, Unary) and lasting.op == ("F" if is_negated else "G"):
+        low = lasting.bound.low if lasting.bound is not None else None
+        if low is None or low.value == 0:
+            return implication.with_tree(lasting.operand), implication.with_tree(tree), is_negated
+    return implication.with_tree(implication.tree.right), None, False
+
+
+def _result(implication: ScopedExpression) -> Formula | None:
+    """Return the formula that an implication requires at the step of its condition."""
+    operand, _, is_negated = _required(implication)
+    formula = operand.formula()
+    return not_(formula) if formula is not None and is_negated else formula
 
 
 def _can_hold(clause: Clause, value: ScopedExpression, spec: SpecView) -> bool:
     formula = value.formula()
     if formula is None:
-        return False
+        # A bound on a clock that varies has no formula.
+        return True
     whole = Conjunct(always(formula) if clause.kind == "keep" else formula, value.source, value.tree.span)
     return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
 
 
 def _finding(implication: ScopedExpression) -> RuleFinding:
-    assert isinstance(implication.tree, BinaryExpr)
-    condition, result = _sides(implication)
+    condition, (result, lasting, is_negated) = _condition(implication), _required(implication)
     label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
-    help_ = f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
-    lasting = _lasting(implication)
+    text = f"not {operand_text(result)}" if is_negated else result.text
+    help_ = _timer_help(result) if lasting is None else None
     if lasting is not None:
-        after = f"next {implication.with_tree(lasting).text}"
-        help_ = f"for the steps after it, write `{operand_text(condition)} implies {after}`"
-    return RuleFinding(f"`{result.text}` never holds at the same step as `{condition.text}`", (label,), help_)
+        help_ = f"for the steps after it, write `{_later(condition, lasting)}`"
+    help_ = help_ or f"if it comes later, write `{operand_text(condition)} implies eventually {operand_text(result)}`"
+    return RuleFinding(f"`{text}` never holds at the same step as `{condition.text}`", (label,), help_)
+
+
+def _later(condition: ScopedExpression, lasting: ScopedExpression) -> str:
+    """Return the text of the rule that begins after the step of its condition."""
+    outer = lasting.tree
+    assert isinstance(outer, Unary)
+    inner = without_brackets(outer.operand)
+    timed = outer if outer.op == "G" else inner
+    assert isinstance(timed, Unary)
+    if timed.bound is None or not isinstance(inner, Unary) or "not" not in (outer.op, inner.op):
+        # `next` would ask for another step.
+        return f"{operand_text(condition)} implies weak_next {lasting.text}"
+    high, avoided = timed.bound.high, without_brackets(inner.operand)
+    time = f"{' '.join(condition.source.slice(high.span).split())}{'' if high.unit else ' steps'}"
+    return f"avoid {_goal_text(condition)} then within {time} {_goal_text(condition.with_tree(avoided))}"
+
+
+def _goal_text(part: ScopedExpression) -> str:
+    is_name = isinstance(without_brackets(part.tree), (NameExpr, CallExpr))
+    return part.text if is_name else f"({part.text})"
+
+
+def _timer_help(result: ScopedExpression) -> str | None:
+    """Return the help for a comparison of a timer with a time, else None."""
+    tree = without_brackets(result.tree)
+    if not isinstance(tree, BinaryExpr) or not isinstance(tree.left, CallExpr) or tree.left.name not in _TIMERS:
+        return None
+    event, may_repeat = result.with_tree(without_brackets(tree.left.arguments[0].value)), True
+    if tree.left.name == "time_holding":
+        may_repeat = isinstance(event.tree, Unary) and event.tree.op == "not"
+        event = event.with_tree(event.tree.operand) if isinstance(event.tree, Unary) else event
+    help_ = f"`{result.with_tree(tree.left).text}` is 0 s at that step"
+    if may_repeat and isinstance(tree.right, NumberExpr) and tree.op in (">", ">="):
+        begins, time = f"begins {operand_text(event)}", result.with_tree(tree.right).text
+        return f"{help_}; to forbid a second beginning so soon, write `avoid ({begins}) then within {time} ({begins})`"
+    return f"{help_}: compare it at another step"
 
 
 RULE = LintRule("TLT0432", "warning", check)
