@@ -166,6 +166,8 @@ def _joined_meaning(
 
 
 def _order_meaning(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
+    if word == "before" and clause == "keep" and not is_negated:
+        return None
     if word == "before" and clause in ("keep", "avoid"):
         return (until(left if clause == "keep" else negation(left), b),)
     if word == "after" and clause in ("keep", "avoid"):
@@ -185,6 +187,9 @@ def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     if prefix == "c then ":
         return _next_goal_meaning(word) if clause == "reach" else None
     if clause == "reach" and prefix == "c implies ":
+        return None
+    if clause == "avoid" and prefix == "c and " and word in ("within", "in"):
+        # The time may be that between the two.
         return None
     has_form = clause in ("reach", "avoid") or (clause == "keep" and word in ("for", "after"))
     if has_form:
@@ -262,6 +267,10 @@ CASES = {
     "reach a without b then c": None,
     "reach a without b and c": None,
     "reach c then a after 0 steps": None,
+    "avoid within 2 steps a and b": None,
+    "reach (a then b) within 2 steps": None,
+    "reach (not a until b) within 2 steps": None,
+    "reach not a until b within 2 steps": None,
     "require a then b before c": None,
     "require a implies b before c": None,
     "require a until b within 2 steps": None,

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.core.source import SourceFile, Span
-from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, bracket_edits
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, Label, bracket_edits
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
 from tltlc.grammar.walk import children, operands
@@ -43,6 +43,10 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
             bounds = _bounds(part)
             for position in range(len(sequence)):
                 # The bound of the `then` after an operand, or before the last one.
+                timed = _bound_of_goal(source, sequence, position, lenient, bounds)
+                if timed is not None:
+                    yield timed
+                    continue
                 yield from _check_operand(source, sequence, position, lenient, bounds[min(position, len(bounds) - 1)])
             pending += [(operand, False) for operand in reversed(sequence)]
         else:
@@ -59,6 +63,38 @@ def _bounds(chain: Expr) -> list[tree.TemporalInterval | None]:
             bounds[part.op_span.start] = part.bound
             pending += (part.left, part.right)
     return [bounds[start] for start in sorted(bounds)]
+
+
+def _bound_of_goal(
+    source: SourceFile,
+    sequence: list[Expr],
+    position: int,
+    lenient: bool,
+    bounds: list[tree.TemporalInterval | None],
+) -> Diagnostic | None:
+    """Return the error for a goal such as ``then eventually within 5 s b``, whose bound `then` takes, else None."""
+    operand = sequence[position]
+    if not position or bounds[position - 1] is not None or not isinstance(operand, tree.Unary) or operand.op != "F":
+        return None
+    bound = operand.bound
+    if bound is None or (bound.low is not None and bound.low.value) or not bound.high.value:
+        return None
+    if _leading_operator(operand.operand) is not None or not _is_plain(operand.operand):
+        return None
+    high = f"{_slice(source, bound.high.span)}{'' if bound.high.unit else ' steps'}"
+    before, after = _text(source, sequence[position - 1]), _text(source, operand.operand)
+    if len(before) + len(after) > _SHORT or _lacks_brackets(sequence[position - 1], lenient):
+        before = "a"
+    text = f"{before} then within {high} {after}"
+    edit = Edit(Span(operand.span.start, operand.operand.span.start), f"within {high} ")
+    is_alone = sum(_lacks_brackets(element, lenient) for element in sequence) == 1
+    return Diagnostic(
+        "TLT0102",
+        f"`then` takes the bound itself, without `{source.slice(operand.op_span)}`",
+        (Label(source, operand.op_span),),
+        f"write `{text}`: the time counts from `{before}` on",
+        fixes=(Fix(f"Write `{text}`", (edit,)),) if is_alone else (),
+    )
 
 
 def _check_operand(

@@ -9,8 +9,17 @@ from tltlc.core.record import replace
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import CASES, OPERATORS
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.mistakes.english_forms import FORMS, PREFIXES, REVERSED_SEQUENCE, SEQUENCE, TIMES, Form, Forms
-from tltlc.grammar.mistakes.english_rewrite import Parts, clause_keyword, goal_starts, rewrite_error
+from tltlc.grammar.mistakes.english_forms import (
+    FORMS,
+    KEPT_BEFORE,
+    PREFIXES,
+    REVERSED_SEQUENCE,
+    SEQUENCE,
+    TIMES,
+    Form,
+    Forms,
+)
+from tltlc.grammar.mistakes.english_rewrite import Parts, clause_keyword, goal_starts, kept_before_help, rewrite_error
 from tltlc.grammar.mistakes.english_times import prefix_time_error, time_error
 from tltlc.grammar.mistakes.one_reading import TEMPORAL, UNCLEAR, has_token, is_clear_here, is_clear_word
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, outer_indices, quote_token
@@ -98,7 +107,9 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     )
     form = forms.get(kind, forms[""])
     parts = Parts(operand_text(failure, begin, at), operand_text(failure, second, end))
-    word = failure.token.text
+    word, first = failure.token.text, failure.tokens[begin].type
+    if form == KEPT_BEFORE and first == "ONCE":
+        form = Form("{b} implies {a}", "keep")
     is_clear = (
         (end == stop or (kind == "reach" and word not in _OF_THE_REST))
         and (begin == formula_start(failure) or word != "unless")
@@ -106,6 +117,11 @@ def _infix_word_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         and is_clear_word(failure, word, (begin, at), (second, end), kind)
         and is_clear_here(failure, word)
     )
+    if is_clear and form == KEPT_BEFORE and first != "NOT":
+        # It may ask that a comes first, or that a holds all the time before.
+        return failure.error(
+            "TLT0101", f"{quote_token(failure.token)} is not an operator", kept_before_help(parts.a, parts.b)
+        )
     return rewrite_error(failure, at, (begin, end), form, parts if is_clear else None)
 
 

@@ -14,8 +14,8 @@ class Form:
     """A way to write an English phrase in the language: ``{b} implies {a}`` for ``a if b``.
 
     In ``formula``, ``{a}``, ``{b}`` and ``{c}`` stand for the parts of the phrase. If ``clause`` is not
-    empty, a clause with this keyword must replace the whole clause: ``keep a before b`` becomes
-    ``require a weak_until b``.
+    empty, a clause with this keyword must replace the whole clause: ``keep not a before b`` becomes
+    ``require not a weak_until b``.
     """
 
     formula: str
@@ -31,11 +31,13 @@ The key "" is for all clauses that are not listed.
 CONDITION: Final = {"reach": Form("{a} and {b}"), "avoid": Form("{a} and {b}"), "": Form("{b} implies {a}")}
 SEQUENCE: Final = {"": Form("{a} then {b}")}
 REVERSED_SEQUENCE: Final = {"": Form("{b} then {a}")}
+KEPT_BEFORE: Final = Form("{a} weak_until {b}", "require")
+"""How to write `keep a before b` if it asks for `a` at every step until `b`."""
 FORMS: Final[dict[str, Forms]] = {
     **dict.fromkeys((*CONDITIONS, "during"), CONDITION),
     # Use the weak operators: a `keep` or `avoid` must not turn into a goal.
     "before": {
-        "keep": Form("{a} weak_until {b}", "require"),
+        "keep": KEPT_BEFORE,
         "avoid": Form("(not {a}) weak_until {b}", "require"),
         **SEQUENCE,
     },

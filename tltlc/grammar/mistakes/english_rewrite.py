@@ -119,6 +119,8 @@ def _general_help(failure: ParseFailure, at: int, form: Form, written: Time | No
             f"for `{english}`, write `b implies a` if it is about one step, a clause `keep b implies a` if it is about "
             "every step, or `a and b` if both must hold"
         )
+    if word == "before" and not is_timed and effective_clause(failure, at) == "keep":
+        return kept_before_help("a", "b")
     if word == "before" and form == SEQUENCE[""]:
         return (
             "write `a then b` to require `a` and later `b`; if `b` is not required, write `require (not b) until a` to "
@@ -136,6 +138,14 @@ def _general_help(failure: ParseFailure, at: int, form: Form, written: Time | No
     if at and form.clause:
         english = f"{kind} {english}"
     return f"write `{text}` for `{english}`"
+
+
+def kept_before_help(first: str, second: str) -> str:
+    """Return the help for `keep a before b`, with both readings."""
+    return (
+        f"write `keep {second} implies once {first}` if `{first}` must come first, "
+        f"`require {first} weak_until {second}` if it must hold at every step until then"
+    )
 
 
 def clause_keyword(failure: ParseFailure) -> str:

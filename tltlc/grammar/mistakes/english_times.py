@@ -30,6 +30,7 @@ from tltlc.grammar.mistakes.one_reading import (
 )
 from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, quote_token
 from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text, suggest_rewrite
+from tltlc.grammar.mistakes.shared_times import bracketed_time_error, shared_time_error
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
 
@@ -45,6 +46,10 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     begin = goals[-1]
     time, end, is_clear_unit = _read_time(failure, at + 1)
     written = time if is_clear_unit else None
+    if forms is IN_TIME and is_clear_unit and end == stop and len(goals) == 1:
+        diagnostic = shared_time_error(failure, at, (begin, at), time)
+        if diagnostic is not None:
+            return diagnostic
     if len(goals) > 1:
         before = operand_text(failure, goals[-2], begin - 1)
         is_clear = not has_token(failure, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
@@ -87,6 +92,14 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     written = time if is_clear_unit else None
     before, start = "", at
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
+    if forms is IN_TIME and is_clear_unit:
+        diagnostic = (
+            shared_time_error(failure, at, (second, stop), time)
+            if at == first and kind
+            else bracketed_time_error(failure, at)
+        )
+        if diagnostic is not None:
+            return diagnostic
     if at == first:
         form = forms.get(kind, forms[""])
         if form == FOR_TIME["reach"] and time.is_real:

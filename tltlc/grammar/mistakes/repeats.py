@@ -8,8 +8,8 @@ from __future__ import annotations
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
-from tltlc.grammar.mistakes.parse_failure import CLOSING, OPENING, ParseFailure, quote_token
-from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite
+from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
+from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, without_brackets
 
 TokenRange = tuple[int, int]
 """The indices of the first token, and after the last token."""
@@ -27,11 +27,11 @@ class Happening:
 def happening(failure: ParseFailure, part: TokenRange) -> Happening:
     """Return what the tokens of a part say, such as `not hit`, `begins hit` and `(hit)`."""
     tokens = failure.tokens
-    begin, end = _without_brackets(failure, *part)
+    begin, end = without_brackets(failure, *part)
     is_negated = tokens[begin].type == "NOT"
-    begin, end = _without_brackets(failure, begin + is_negated, end)
+    begin, end = without_brackets(failure, begin + is_negated, end)
     begins = tokens[begin].type == "BEGINS"
-    begin, end = _without_brackets(failure, begin + begins, end)
+    begin, end = without_brackets(failure, begin + begins, end)
     return Happening(operand_text(failure, begin, end), begins, is_negated)
 
 
@@ -82,17 +82,3 @@ def repeat_error(
         return suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title)
     help_ = f"write `{text}`{reason}" if text else f"`{operand}` holds at that step itself: say what must follow it"
     return failure.error("TLT0101", title, help_, span=span)
-
-
-def _without_brackets(failure: ParseFailure, begin: int, end: int) -> TokenRange:
-    """Return the range of the tokens without brackets around all of them."""
-    while begin < end and failure.tokens[begin].type == "LPAR":
-        depth = 0
-        for index in range(begin, end):
-            depth += (failure.tokens[index].type in OPENING) - (failure.tokens[index].type in CLOSING)
-            if depth == 0:
-                break
-        if index + 1 < end:
-            break
-        begin, end = begin + 1, end - 1
-    return begin, end

@@ -131,6 +131,20 @@ def operand_start(tokens: Sequence[Token], stop: int) -> int | None:
     return index if index >= 0 and tokens[index].type == "NAME" else None
 
 
+def without_brackets(failure: ParseFailure, begin: int, end: int) -> tuple[int, int]:
+    """Return the range of the tokens without brackets around all of them."""
+    while begin < end and failure.tokens[begin].type == "LPAR":
+        depth = 0
+        for index in range(begin, end):
+            depth += (failure.tokens[index].type in OPENING) - (failure.tokens[index].type in CLOSING)
+            if depth == 0:
+                break
+        if index + 1 < end:
+            break
+        begin, end = begin + 1, end - 1
+    return begin, end
+
+
 def _can_be_read(failure: ParseFailure, start: int, stop: int, text: str) -> bool:
     """Whether the piece has no error if ``text`` replaces the tokens from ``start`` up to ``stop``."""
     tokens = failure.tokens

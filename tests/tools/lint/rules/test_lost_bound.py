@@ -55,3 +55,10 @@ def test_the_advice_names_the_right_form() -> None:
     assert helps("reach eventually within 2 s a") == ["write `require eventually within 2 s a`"]
     assert helps("reach a then (eventually within 2 s b)") == ["write `a then within 2 s b`"]
     assert helps("reach a then (F[0,7] (a or b))") == ["write `a then within 7 steps (a or b)`"]
+    assert helps("reach a then (eventually within 2 s b) then (eventually within 3 s a)") == [
+        "write `then within 2 s b then within 3 s a`"
+    ]
+    assert helps("reach (eventually within 2 s b) then (eventually within 3 s a)") == [
+        "write `(eventually within 2 s b) then within 3 s a`"
+    ]
+    assert helps("reach (always a) then (eventually within 3 s a)") == ["write `(always a) then within 3 s a`"]

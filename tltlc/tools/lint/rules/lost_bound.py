@@ -21,23 +21,33 @@ def check(view: FileView) -> Iterator[RuleFinding]:
                 advice = f"write `require eventually {bound} {awaited}`" if op == "F" else f"write `keep {awaited}`"
                 yield _finding(inner, f"`{clause.kind}`", advice)
         for formula in spec.formulas():
-            for part in formula.parts():
-                yield from _in_sequence(part)
+            parts = tuple(formula.parts())
+            sequences = [part.tree for part in parts if isinstance(part.tree, BinaryExpr) and part.tree.op == "then"]
+            rests = {without_brackets(sequence.right).span for sequence in sequences}
+            for part in parts:
+                yield from _in_sequence(part, is_rest=part.tree.span in rests)
                 yield from _in_operator(part)
 
 
-def _in_sequence(part: ScopedExpression) -> Iterator[RuleFinding]:
+def _in_sequence(part: ScopedExpression, *, is_rest: bool) -> Iterator[RuleFinding]:
     """Yield a finding for the last goal of a sequence, which may come at any later step.
 
     A bound of an earlier goal has an effect, if a strange one: the next goal must follow the step from
-    which the bound counts.
+    which the bound counts. ``is_rest`` says that the sequence follows another goal.
     """
     tree = part.tree
-    if isinstance(tree, BinaryExpr) and tree.op == "then" and tree.bound is None:
-        inner = _bounded(part.with_tree(tree.right), "F")
-        if inner is not None:
-            before, awaited = operand_text(part.with_tree(tree.left)), operand_text(_operand(inner))
-            yield _finding(inner, "`then`", f"write `{before} then {_bound_text(inner)} {awaited}`")
+    if not isinstance(tree, BinaryExpr) or tree.op != "then" or tree.bound is not None:
+        return
+    inner, left = _bounded(part.with_tree(tree.right), "F"), part.with_tree(tree.left)
+    if inner is None:
+        return
+    first, before = _bounded(left, "F"), operand_text(left)
+    if first is not None and is_rest:
+        # This bound belongs to the `then` before it, too.
+        before = f"then {_bound_text(first)} {operand_text(_operand(first))}"
+    elif isinstance(without_brackets(left.tree), Unary):
+        before = f"({before})"
+    yield _finding(inner, "`then`", f"write `{before} then {_bound_text(inner)} {operand_text(_operand(inner))}`")
 
 
 def _in_operator(part: ScopedExpression) -> Iterator[RuleFinding]:
