@@ -145,3 +145,20 @@ def test_any_bytes_are_read_or_rejected(data: bytes) -> None:
             read(start + data)
         except TltlError as error:
             assert error.diagnostics[0].code in ("TLT0620", "TLT0621", "TLT0622")
+
+
+@pytest.mark.parametrize(
+    ("header", "advice"),
+    [
+        ("falls_pit1,falls(pit2),falls(pit3)", "rename the column `falls_pit1` to `falls(pit1)`"),
+        ("Falls (pit1),falls(pit2),falls(pit3)", "rename the column `Falls (pit1)` to `falls(pit1)`"),
+        ("falls_pit2,falls(pit3)", "its columns are `falls_pit2` and `falls(pit3)`"),
+        ("falls_pit4,falls(pit2),falls(pit3)", "its columns are `falls_pit4`, `falls(pit2)` and `falls(pit3)`"),
+        ("fals(pit1),falls(pit2),falls(pit3)", "did you mean the column `fals(pit1)`?"),
+    ],
+)
+def test_a_missing_column_is_never_that_of_another_signal(header: str, advice: str) -> None:
+    signals = [Signal(f"falls(pit{number})", "bool", 0.0, 1.0) for number in (1, 2, 3)]
+    with pytest.raises(TltlError) as caught:
+        list(read_trace(io.BytesIO(f"{header}\n".encode()), "trace", signals))
+    assert caught.value.diagnostics[0].help == advice

@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 from tltlc.core.record import replace
 from tltlc.core.source import SourceKind
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.typos import likely_name
 from tltlc.monitor.sample_times import SampleTimes, lengths_name, times_name
 from tltlc.monitor.samples import STEP_LENGTH, name_list, values_advice
 from tltlc.monitor.trace_rows import (
@@ -153,7 +154,7 @@ def _columns(header: Sequence[str], lines: TraceLines, signals: Sequence[Signal]
     if missing:
         title = f"the trace has no column for {name_list(missing)}"
         listing = f"its columns are {name_list(header[:10])}" + (", …" if len(header) > 10 else "")
-        advice = _format_advice(lines.text, header) or _suggestion(missing[0], header) or listing
+        advice = _format_advice(lines.text, header) or _suggestion(missing[0], header, signals) or listing
         raise TltlError([Diagnostic("TLT0621", title, (lines.label(""),), advice)])
     for signal in signals:
         if signal.name in twice:
@@ -173,12 +174,23 @@ def _format_advice(line: str, header: Sequence[str]) -> str | None:
     return "separate the columns by commas" if ";" in line or "\t" in line else None
 
 
-def _suggestion(name: str, columns: Sequence[str]) -> str | None:
-    from difflib import get_close_matches
+def _suggestion(name: str, columns: Sequence[str], signals: Sequence[Signal]) -> str | None:
+    """Return advice about the column that is meant for a signal, or None if there is none.
 
-    squeezed = {"".join(column.split()): column for column in columns}
-    close = get_close_matches("".join(name.split()), list(squeezed), n=1)
-    return f"did you mean the column `{squeezed[close[0]]}`?" if close else None
+    A column that has the name of another signal, even with other brackets and underscores, is meant for that one.
+    """
+    others = {_letters(signal.name) for signal in signals if signal.name != name}
+    free = [column for column in columns if _letters(column) not in others]
+    same = next((column for column in free if _letters(column) == _letters(name)), None)
+    if same is not None:
+        return f"rename the column `{same}` to `{name}`"
+    close = likely_name(name, free)
+    return f"did you mean the column `{close}`?" if close else None
+
+
+def _letters(name: str) -> str:
+    """Return the letters and digits of a name alone, without the capitals."""
+    return "".join(character for character in name.lower() if character.isalnum())
 
 
 def _row_sample(row: Sequence[str], columns: Sequence[tuple[Signal, int]], lines: TraceLines) -> TraceSample:
