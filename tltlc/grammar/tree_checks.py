@@ -43,6 +43,25 @@ _VARYING_BOUND_HELP: Final = {
     "ends": "`once within 2 s ends p`, or `ends p` without a bound",
 }
 """How to write bounds where the clock varies."""
+_EACH_OR_SOME: Final = "write `{each}` if it must hold at each step of that time, `{some}` if at some step of it"
+_FUTURE: Final = _EACH_OR_SOME.format(each="always for {t} {p}", some="eventually within {t} {p}")
+_PAST: Final = _EACH_OR_SOME.format(each="historically for {t} {p}", some="once within {t} {p}")
+_FROM_NEXT: Final = "write `weak_next always for {t} {p}` if it must hold for that time from the next step on"
+_OTHER_WORD: Final = {
+    ("G", "within"): _FUTURE,
+    ("F", "for"): _FUTURE,
+    ("historically", "within"): _PAST,
+    ("once", "for"): _PAST,
+    ("X", "for"): _FROM_NEXT,
+    ("N", "for"): _FROM_NEXT,
+    ("X", "within"): "write `next eventually within {t} {p}`",
+}
+"""Helps for the bound of another operator, by the operator and the word of the bound.
+
+``{t}`` is the time, and ``{p}`` the formula.
+"""
+_LONGEST: Final = 60
+"""The most characters of a formula that a help repeats."""
 
 
 def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
@@ -91,8 +110,22 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalIn
     operator = source.slice(formula.op_span)
     form = f"with `{word}`" if bound.words else "in brackets"
     title = f"`{operator}` takes no bound {form}"
-    help_ = (_VARYING_BOUND_HELP if declared_names(source).clock_varies else _BOUND_HELP)[formula.op]
-    yield _error(source, "TLT0111", title, bound.span, f"write {help_}")
+    varies = declared_names(source).clock_varies
+    template, is_timed = _OTHER_WORD.get((formula.op, word)), bound.high.unit not in (None, "step", "steps")
+    help_ = f"write {(_VARYING_BOUND_HELP if varies else _BOUND_HELP)[formula.op]}"
+    if template is not None and bound.words and (is_timed or not varies):
+        operand = _on_one_line(source, formula.operand.span)
+        time, operand = _on_one_line(source, bound.high.span), operand if len(operand) <= _LONGEST else "p"
+        help_ = template.format(t=time, p=operand)
+        if word == "for" and formula.op in ("X", "N") and not varies:
+            help_ += (
+                f", `{'next' if formula.op == 'X' else 'weak_next'} after {time} {operand}` if at the step after it"
+            )
+    yield _error(source, "TLT0111", title, bound.span, help_)
+
+
+def _on_one_line(source: SourceFile, span: Span) -> str:
+    return " ".join(source.slice(span).split())
 
 
 def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:

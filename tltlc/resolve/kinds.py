@@ -84,6 +84,8 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
     if noun == "predicate" and constant in ("true", "false"):
         hint = f"did you mean `{constant}`?"
         raise problem("TLT0201", title, source, span, hint, fixes=(replacement_fix(source, span, constant),))
+    if noun == "predicate" and isinstance(use, NameExpr):
+        _refuse_enum_value(use, title, env)
     suggestion = closest_name(use.name, env.scope, kinds, env.local) if gets_help else None
     if suggestion:
         binding = env.scope.names.get(suggestion)
@@ -104,6 +106,31 @@ def lookup(use: NameExpr | CallExpr, env: Env, kinds: tuple[BindingKind, ...], n
 
 
 _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
+
+
+def _refuse_enum_value(use: NameExpr, title: str, env: Env) -> None:
+    """Raise ResolutionError (TLT0201) if an unknown name is a value of an enum: for `alert`, write `mode is alert`."""
+    enums = {
+        name: binding.declaration
+        for name, binding in env.scope.names.items()
+        if isinstance(binding.declaration, SignalDecl)
+        and use.name in (value.name for value in binding.declaration.values)
+    }
+    if not enums:
+        return
+    texts = [
+        f"{name}({', '.join(parameter.name for parameter in enum.parameters)})" if enum.parameters else name
+        for name, enum in enums.items()
+    ]
+    text, advice = f"{texts[0]} is {use.name}", f"`{use.name}` is a value of {' and of '.join(f'`{x}`' for x in texts)}"
+    is_clear = len(enums) == 1 and "(" not in text
+    before = env.scope.source.text[: use.span.start].split()
+    if before[-4:-2] == ["is", "not"]:
+        # `mode is not idle or alert` hardly means `mode is not idle or mode is alert`.
+        name = texts[0]
+        is_clear, text = False, f"{name} is not {before[-2]} and {name} is not {use.name}"
+    fixes = (replacement_fix(env.scope.source, use.span, text),) if is_clear else ()
+    raise problem("TLT0201", title, env.scope.source, use.span, advice=f"{advice}: write `{text}`", fixes=fixes)
 
 
 def _split_operator_letters(name: str, env: Env, kinds: tuple[BindingKind, ...]) -> str | None:

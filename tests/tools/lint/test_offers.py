@@ -81,7 +81,7 @@ CORRECTIONS = {
     "keep a -- why not b?": ["keep a // why not b?"],
     "keep a -- the player's": ["keep a // the player's"],
     "keep coins --3 > 1 a": [],
-    "keep coins ≠ 3": [],
+    "keep coins ≠ 3": ["keep coins < 3 or coins > 3"],
     "keep a – b": [],
     # Numbers.
     "keep coins > 1,5": ["keep coins > 1.5"],

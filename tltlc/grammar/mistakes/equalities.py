@@ -29,6 +29,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     suggest_rewrite,
     text_of,
 )
+from tltlc.grammar.typos import likely_name
 
 Range = tuple[int, int]
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
@@ -37,7 +38,7 @@ _WHOLE_SIGNS: Final = {"PLUS", "MINUS", "TIMES_SIGN", "UNIT", "LPAR", "RPAR"}
 VERBS: Final = ("is", "are", "equals", "equal")
 _WORDS_OF_EQUALITY: Final = ("equal", "to", "exactly")
 _EQUAL_FORM, _UNEQUAL_FORM = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
-_EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>": _UNEQUAL_FORM}
+_EQUAL: Final = {"==": _EQUAL_FORM, "=": _EQUAL_FORM, "!=": _UNEQUAL_FORM, "<>": _UNEQUAL_FORM, "≠": _UNEQUAL_FORM}
 
 
 def equality(failure: ParseFailure) -> Diagnostic | None:
@@ -108,13 +109,20 @@ def _typed_equality(
         text = f"{text_of(failure, *side)} is {'not ' * is_unequal}{value}"
         is_number = failure.tokens[other[0]].type == "NUMBER"
         reason = f": `{value}` is the value with the number {text_of(failure, *other)}" if is_number else ""
-        return suggest_rewrite(failure, left[0], right[1], text, title, reason, code)
+        return _rewrite(failure, left[0], right[1], text, title, reason, code)
     if _declared_type(failure, left) == "bool":
         return _bool_error(failure, left, right, is_unequal, title, code)
     if not (_is_whole(failure, left) and _is_whole(failure, right)):
         return None
     text = f"{text_of(failure, *left)} {'!=' if is_unequal else '=='} {text_of(failure, *right)}"
-    return suggest_rewrite(failure, left[0], right[1], text, title, code=code)
+    return _rewrite(failure, left[0], right[1], text, title, "", code)
+
+
+def _rewrite(failure: ParseFailure, start: int, stop: int, text: str, title: str, reason: str, code: str) -> Diagnostic:
+    """Return an error with the fix ``text``, even if the clause has another mistake, such as a second `=`."""
+    diagnostic = suggest_rewrite(failure, start, stop, text, title, reason, code)
+    span = span_of(failure.tokens[start:stop])
+    return diagnostic or failure.error(code, title, f"write `{text}`{reason}", span=span, write=text)
 
 
 def _bool_error(
@@ -214,6 +222,7 @@ def verb_is(failure: ParseFailure) -> Diagnostic | None:
         _typed_equality(failure, (start, at), (second, stop), is_unequal, title, "TLT0101")
         or _equal_numbers(failure, (start, at), (second, stop), is_unequal, title)
         or _truth(failure, start, title)
+        or _enum_error(failure, start, second, title)
     )
     if diagnostic is not None:
         return diagnostic
@@ -254,6 +263,27 @@ def _truth(failure: ParseFailure, start: int, title: str) -> Diagnostic | None:
     is_clear = text == value or not has_token(failure, formula_start(failure), start, INFIX | BEFORE_ONE | QUANTIFIERS)
     reason = ": a `bool` signal is an atom by itself"
     return suggest_rewrite(failure, start, stop, text, title, reason) if is_clear else None
+
+
+def _enum_error(failure: ParseFailure, start: int, second: int, title: str) -> Diagnostic | None:
+    """Return an error for a test of a misspelt enum, as in ``Mode is alert``, or of `previous`, else None.
+
+    ``start`` is the index of the first token, and ``second`` that of the value.
+    """
+    tokens, at = failure.tokens, failure.stop.index
+    declared, word = declared_names(failure.source), tokens[start].text
+    value = tokens[second].text
+    enums = {name: known.values for name, known in declared.names.items() if value in known.values}
+    is_previous = word == "previous" and word not in declared.names and at == start + 4
+    if is_previous and tokens[start + 2].text in enums:
+        test = f"{tokens[start + 2].text} {text_of(failure, at, second + 1)}"
+        return failure.error("TLT0101", title, f"write `previously ({test})`, which is false at the first step")
+    name = likely_name(word, enums) if at == start + 1 and word not in declared.names else None
+    if name is None:
+        return None
+    return failure.error(
+        "TLT0101", f"`{word}` is not declared", None, f"did you mean `{name}`?", tokens[start].span, write=name
+    )
 
 
 def value_end(tokens: Sequence[Token], at: int, step: int) -> int:

@@ -21,7 +21,6 @@ _SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
     "%": "write a number before `%`, as in `50%`",
-    "≠": "write `a < b or a > b`; a `bool` signal is an atom by itself",
 }
 
 
@@ -31,7 +30,7 @@ def unknown_sign(failure: ParseFailure) -> Diagnostic | None:
     if token.type != BAD:
         return None
     text = token.text
-    if text in ("==", "!="):
+    if text in ("==", "!=", "≠"):
         return equality(failure)
     if text.startswith('"'):
         return failure.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
