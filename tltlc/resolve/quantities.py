@@ -136,7 +136,8 @@ def _number(expr: NumberExpr, env: Env) -> Quantity:
             f"`{expr.unit}` cannot be used in arithmetic",
             env.scope.source,
             expr.span,
-            advice="steps count samples: use them only in bounds such as `within 20 steps` and in `limit`",
+            advice="steps count samples: use them only in bounds such as `within 20 steps` and in `limit`, and compare "
+            "times with seconds",
         )
     value, dimension = in_si
     if isinf(value):

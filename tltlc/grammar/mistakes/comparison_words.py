@@ -9,14 +9,27 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.counts_in_words import COMPARISONS
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
-from tltlc.grammar.mistakes.rephrasing import formula_start, operand_end, span_of, suggest_rewrite, text_of
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    operand_end,
+    operand_start,
+    phrase_at,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 
-_COMPARISONS: Final[Mapping[tuple[str, ...], str]] = {
+COMPARISON_WORDS: Final[Mapping[tuple[str, ...], str]] = {
     **COMPARISONS,
     **dict.fromkeys((("greater", "than"), ("above",), ("over",), ("exceeds",)), ">"),
     **dict.fromkeys((("below",), ("under",)), "<"),
 }
-
+"""Maps English words between a value and a number to the sign of the comparison."""
+_EQUALITIES: Final[Mapping[tuple[str, ...], str]] = {
+    **dict.fromkeys((("not", "equal", "to"), ("not", "equals"), ("not", "equal"), ("unequal", "to")), "!="),
+    **dict.fromkeys((("equal", "to"), ("equals",), ("equal",)), "=="),
+}
+"""Maps English words for equality to the signs for integers; an enum takes `is`."""
 _NUMBERS: Final = ("number", "int", "ratio")
 """The types of what is counted with a number without a unit."""
 
@@ -34,23 +47,33 @@ def comparison_in_words(failure: ParseFailure) -> Diagnostic | None:
         return number_first
     words = [token.text for token in failure.tokens[at : at + 4]]
     has_verb = words[0] in ("is", "are")
-    for phrase, sign in _COMPARISONS.items():
+    for phrase, sign in {**COMPARISON_WORDS, **_EQUALITIES}.items():
         length = has_verb + len(phrase)
         if tuple(words[has_verb:length]) != phrase:
             continue
         value = failure.tokens[at + length].type
+        if phrase in _EQUALITIES:
+            kind = _type_before(failure, at)
+            if kind not in ("int", "enum"):
+                continue
+            sign = sign if kind == "int" else "is" if sign == "==" else "is not"
         if value == "NUMBER" or (value == "NAME" and phrase[0] not in ("at", "up")):
             title, span = f"{quote_token(failure.token)} is not an operator", span_of(failure.tokens[at : at + length])
             return failure.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
 
+def _type_before(failure: ParseFailure, stop: int) -> str:
+    """Return the declared type of the name before an index, or "" if there is none."""
+    start = operand_start(failure.tokens, stop)
+    return "" if start is None else declared_names(failure.source).type_of(failure.tokens[start].text)
+
+
 def _number_first(failure: ParseFailure) -> Diagnostic | None:
     """Return an error for a comparison with its number before the name, as in ``at most 3 coins``, else None."""
     tokens, at = failure.tokens, failure.stop.index
     for start in range(max(formula_start(failure), at - 2), at):
-        words = tuple(token.text for token in tokens[start : start + 3])
-        phrase = next((phrase for phrase in COMPARISONS if words[: len(phrase)] == phrase), ())
+        phrase = phrase_at(tokens, start, COMPARISONS)
         number = start + len(phrase)
         if not phrase or tokens[number].type != "NUMBER":
             continue

@@ -12,10 +12,12 @@ from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, clause_keyword
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.parse_failure import INFIX, ParseFailure, quote_token
+from tltlc.grammar.mistakes.repeats import begun_again, quantified_body
 from tltlc.grammar.mistakes.rephrasing import (
     formula_start,
     operand_end,
     operand_start,
+    phrase_at,
     span_of,
     suggest_rewrite,
     text_of,
@@ -78,7 +80,9 @@ def count_in_words(failure: ParseFailure) -> Diagnostic | None:
             if diagnostic is not None:
                 return diagnostic
     operand = operand_start(tokens, at)
-    return None if operand is None else _count_after(failure, keyword if operand == first else "", operand, at)
+    if operand is None:
+        return _timed_comparison(failure)
+    return _count_after(failure, keyword if operand == first else "", operand, at)
 
 
 def never_counted(failure: ParseFailure) -> Diagnostic | None:
@@ -124,7 +128,8 @@ def _error(
     if count.time:
         help_ = FIXED_CLOCK
         if not failure.lacks_fixed_clock(count.time):
-            help_ = _within_time(keyword if is_whole else "", operand, sign or ">=", count)
+            role, head = _role(failure, start) if is_whole else ("", "")
+            help_ = _within_time(keyword if is_whole and keyword else role, operand, sign or ">=", count, head)
     elif count.number == "1" and (sign or ">=") == ">=" and keyword in ("keep", "reach", "require") and is_whole:
         help_ = f"write `reach {operand}`"
     elif (form := _CLAUSES.get((keyword, sign))) and is_whole:
@@ -142,20 +147,48 @@ def _error(
     return failure.error("TLT0101", title, help_, span=span)
 
 
-def _within_time(keyword: str, operand: str, sign: str, count: _Count) -> str:
+def _role(failure: ParseFailure, start: int) -> tuple[str, str]:
+    """Return the keyword for an operand after `not` or a quantifier, and the head of the quantifier.
+
+    `not seen twice` in a rule is `never seen twice`. The keyword is empty if other words stand before the operand.
+    """
+    keyword = clause_keyword(failure)
+    body, head = quantified_body(failure, keyword)
+    is_negated = start > body and failure.tokens[start - 1].type == "NOT"
+    if start - is_negated != body or (is_negated and keyword not in ("keep", "require")):
+        return "", ""
+    return "never" if is_negated else keyword, head
+
+
+def _timed_comparison(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a time after a comparison of `times`, as in ``times(p) <= 2 within 5 s``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    time = time_at(tokens, at + 1) if tokens[at].text in ("within", "in") else None
+    begin = operand_start(tokens, at - 2) if time is not None and at > 2 else None
+    if time is None or begin is None or tokens[begin].text != "times" or tokens[at - 1].type != "NUMBER":
+        return None
+    title, help_ = f"{quote_token(tokens[at])} is not an operator", FIXED_CLOCK
+    if not failure.lacks_fixed_clock(time[0].text):
+        operand = text_of(failure, begin + 2, at - 3)
+        count = _Count(tokens[at - 2].text, tokens[at - 1].text, time[0].text, begin, at)
+        keyword, head = _role(failure, begin) if tokens[time[1]].type == END else ("", "")
+        help_ = _within_time(keyword, operand, count.sign, count, head)
+    return failure.error("TLT0101", title, help_, span=tokens[at].span)
+
+
+def _within_time(keyword: str, operand: str, sign: str, count: _Count, head: str) -> str:
     """Return the help for a count within a time, such as `never seen twice within 10 s`."""
     key, time = (sign, count.number), count.time
     if (keyword in ("avoid", "never") and key in _TWICE) or (keyword in ("keep", "require") and key in _AT_MOST_ONCE):
-        return f"write `avoid (begins {operand}) then within {time} (begins {operand})`"
-    if keyword == "reach" and key in _TWICE:
+        return f"write `{begun_again(operand, time, head)}`"
+    if keyword == "reach" and not head and key in _TWICE:
         return f"write `reach begins {operand} then within {time} begins {operand}`"
     return f"`times({operand})` counts from the first step on: let the game count within a time, and supply the number"
 
 
 def _count_at(tokens: Sequence[Token], start: int) -> _Count | None:
     """Return the count that begins at an index, else None; `once` alone is an operator, and no count."""
-    words = tuple(token.text for token in tokens[start : start + 3])
-    phrase = next((phrase for phrase in _COUNTED if words[: len(phrase)] == phrase), ())
+    phrase = phrase_at(tokens, start, _COUNTED)
     sign, at = _COUNTED.get(phrase, ""), start + len(phrase)
     number = _number(tokens, at)
     if number is None or (not sign and tokens[at].text == "once"):

@@ -37,13 +37,15 @@ class DeclaredName:
 class DeclaredNames:
     """The names that a text declares, and whether it declares a clock and imports names of other files.
 
-    ``has_clock`` is that of a clock with a rate, ``clock_varies`` that of `clock varies`.
+    ``has_clock`` is that of a clock with a rate, ``clock_varies`` that of `clock varies`. ``step_s`` is the length
+    of a step in seconds, 0 if no clock declares it.
     """
 
     names: Mapping[str, DeclaredName]
     has_clock: bool
     clock_varies: bool
     has_imports: bool
+    step_s: float = 0.0
 
     def type_of(self, name: str) -> str:
         """Return the type of a signal or param; ``int`` for ``times``, ``""`` for other names."""
@@ -62,14 +64,24 @@ def declared_names(source: SourceFile) -> DeclaredNames:
 def _declared_names(text: str) -> DeclaredNames:
     names: dict[str, DeclaredName] = {}
     has_clock = clock_varies = has_imports = False
+    step_s = 0.0
     for piece in declarations(SourceFile("", text, "text"), tokenize(text).tokens[:-1]):
         kind = piece[0].type
         has_imports |= kind == "IMPORT"
         has_clock |= kind == "CLOCK" and len(piece) > 1 and piece[1].type == "NUMBER"
+        if kind == "CLOCK" and len(piece) > 2 and piece[1].type == "NUMBER":
+            step_s = _step_length(float(piece[1].text), piece[2].text)
         clock_varies |= kind == "CLOCK" and len(piece) > 1 and piece[1].text == "varies"
         for name, declared in _declared_by(piece):
             names.setdefault(name, declared)
-    return DeclaredNames(names, has_clock, clock_varies, has_imports)
+    return DeclaredNames(names, has_clock, clock_varies, has_imports, step_s)
+
+
+def _step_length(number: float, unit: str) -> float:
+    """Return the length of a step in seconds of `clock 60 Hz` or `clock 20 ms`; 0 for another unit."""
+    if unit == "Hz":
+        return 1 / number if number else 0.0
+    return number * {"s": 1.0, "ms": 0.001}.get(unit, 0.0)
 
 
 def _declared_by(piece: Sequence[Token]) -> Iterator[tuple[str, DeclaredName]]:

@@ -29,7 +29,16 @@ from tltlc.grammar.mistakes.one_reading import (
     is_of_one_step,
 )
 from tltlc.grammar.mistakes.parse_failure import BEFORE_ONE, INFIX, ParseFailure, quote_token
-from tltlc.grammar.mistakes.rephrasing import formula_start, formula_stop, last_index_of, operand_text, suggest_rewrite
+from tltlc.grammar.mistakes.rephrasing import (
+    formula_start,
+    formula_stop,
+    last_index_of,
+    operand_end,
+    operand_text,
+    span_of,
+    suggest_rewrite,
+    text_of,
+)
 from tltlc.grammar.mistakes.shared_times import bracketed_time_error, shared_time_error
 
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
@@ -91,6 +100,14 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
     time, second, is_clear_unit = _read_time(failure, at + 1)
     written = time if is_clear_unit else None
     before, start = "", at
+    if failure.tokens[at - 1].type == "ONCE" and forms is IN_TIME and is_clear_unit:
+        # The formula after the time may be compared with others.
+        span, text = span_of(failure.tokens[at:second]), f"within {time.text}"
+        operand = text_of(failure, second, operand_end(failure.tokens, second) or second)
+        help_ = f"write `{f'once {text} {operand}'.strip()}`"
+        return failure.error(
+            "TLT0101", f"{quote_token(failure.tokens[at])} is not an operator", help_, span=span, write=text
+        )
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
     if forms is IN_TIME and is_clear_unit:
         diagnostic = (

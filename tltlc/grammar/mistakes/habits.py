@@ -11,6 +11,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.keywords import UNITS_ELSEWHERE
+from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.equalities import VERBS, equality, value_end
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.one_reading import effective_clause
@@ -43,6 +44,26 @@ def chained_comparison(failure: ParseFailure) -> Diagnostic | None:
         text = f"({text})"
     diagnostic = suggest_rewrite(failure, start, stop, text, title, code="TLT0110")
     return diagnostic or failure.error("TLT0110", title, "write `a < b and b < c`")
+
+
+_ARROWS: Final = {"==>": "implies", "-->": "implies", "<=>": "iff", "<==>": "iff", "<-->": "iff"}
+"""Maps arrows of other languages to the words of the language."""
+
+
+def long_arrow(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for an arrow that is read as several signs, as in ``a ==> b`` and ``a <=> b``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    for start in range(max(at - 2, 1), at + 1):
+        for stop in range(start + 2, min(start + 4, len(tokens))):
+            arrow = "".join(token.text for token in tokens[start:stop])
+            are_joined = all(map(are_adjacent, tokens[start : stop - 1], tokens[start + 1 : stop]))
+            if arrow in _ARROWS and are_joined:
+                # Between goals, an arrow may mean their order.
+                write = None if tokens[0].type == "REACH" and _ARROWS[arrow] == "implies" else _ARROWS[arrow]
+                help_ = f"write `{write}`" if write else "write `then` for an order, `implies` for a condition"
+                span = span_of(tokens[start:stop])
+                return failure.error("TLT0104", f"`{arrow}` means nothing here", help_, span=span, write=write)
+    return None
 
 
 def arrow_sign(failure: ParseFailure) -> Diagnostic | None:
@@ -97,6 +118,8 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
         return None
     if token.text in VERBS and failure.allowed_terminals & COMPARISONS:
         return None  # `x + 1 is 3`
+    if token.text.isupper() and token.text.lower() in load().words:
+        return None
     title = f"{quote_token(token)} is not a unit"
     known = UNITS_ELSEWHERE.get(token.text.lower())
     if known == "%":
@@ -109,6 +132,8 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
         return failure.error(
             "TLT0111", title, f"with `clock varies`, write a time: `{number.text} s`, `{number.text} ms`"
         )
+    if known == "steps" and failure.start != "test_item" and failure.tokens[failure.stop.index - 2].type in COMPARISONS:
+        return _compared_steps(failure, number.text, title)
     if known:
         text = f"{number.text} {known}"
         return failure.error("TLT0111", title, None, f"write `{text}`", span_of([number, token]), write=text)
@@ -122,6 +147,19 @@ def foreign_unit(failure: ParseFailure) -> Diagnostic | None:
     listed = ", ".join(f"`{name}`" for name in sorted(load().units))
     help_ = f"the units are {listed}; to compare a signal, write `{token.text} >= {number.text}`"
     return failure.error("TLT0111", title, help_)
+
+
+def _compared_steps(failure: ParseFailure, number: str, title: str) -> Diagnostic:
+    """Return the error for a comparison with a number of steps, as in ``time_holding(p) > 180 frames``."""
+    length = declared_names(failure.source).step_s
+    text = f"{float(number) * length:.6g} s" if length else ""
+    help_ = "compare a time with seconds; steps count samples"
+    span = span_of([failure.tokens[failure.stop.index - 1], failure.token])
+    if not text:
+        return failure.error("TLT0111", title, help_, span=span)
+    is_exact = abs(float(text.split()[0]) - float(number) * length) < 1e-12
+    help_ += f": `{number} {failure.token.text}` are {'' if is_exact else 'about '}`{text}` with this clock"
+    return failure.error("TLT0111", title, help_, span=span, write=text if is_exact else None)
 
 
 def doubled_operator(failure: ParseFailure) -> Diagnostic | None:

@@ -19,13 +19,14 @@ from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
 from tltlc.grammar.mistakes.comparison_words import comparison_in_words
 from tltlc.grammar.mistakes.counts_in_words import never_counted
 from tltlc.grammar.mistakes.declared_names import declared_names
+from tltlc.grammar.mistakes.durations import duration_in_words
 from tltlc.grammar.mistakes.english import plain_english
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
 from tltlc.grammar.mistakes.english_times import never_for_time, until_time
 from tltlc.grammar.mistakes.equalities import verb_is
 from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
-from tltlc.grammar.mistakes.habits import HABITS, dash_comment
+from tltlc.grammar.mistakes.habits import HABITS, dash_comment, long_arrow
 from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
 from tltlc.grammar.mistakes.one_reading import has_token
 from tltlc.grammar.mistakes.parse_failure import (
@@ -39,9 +40,11 @@ from tltlc.grammar.mistakes.parse_failure import (
 )
 from tltlc.grammar.mistakes.past import past_in_english
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
+from tltlc.grammar.mistakes.quantifier_words import quantifier_in_words
 from tltlc.grammar.mistakes.renaming import word_of_the_past
 from tltlc.grammar.mistakes.rephrasing import formula_stop, span_of, text_of
-from tltlc.grammar.mistakes.responses import response_in_english
+from tltlc.grammar.mistakes.responses import colon_after_event, response_in_english
+from tltlc.grammar.mistakes.rules_in_words import rule_in_words
 from tltlc.grammar.mistakes.unknown_signs import unknown_sign
 from tltlc.grammar.tables import load
 
@@ -327,13 +330,18 @@ def _operator_for_name(failure: ParseFailure) -> Diagnostic | None:
 
 
 _RULES: Final = (
+    long_arrow,
     dash_comment,
     unknown_sign,
     until_time,
+    quantifier_in_words,
+    colon_after_event,
     response_in_english,
+    duration_in_words,
     never_counted,
     never_for_time,
     past_in_english,
+    rule_in_words,
     plain_english,
     comparison_in_words,
     filler_word,

@@ -5,14 +5,18 @@ The event itself is within that time, so a rule about each step of the time woul
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.core.record import record
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK
-from tltlc.grammar.mistakes.parse_failure import ParseFailure, quote_token
-from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, without_brackets
+from tltlc.grammar.mistakes.parse_failure import ParseFailure, outer_indices, quote_token
+from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of, without_brackets
 
 TokenRange = tuple[int, int]
 """The indices of the first token, and after the last token."""
+_QUANTIFIED: Final = {"keep": "ALL", "require": "ALL", "": "ALL", "avoid": "ANY"}
+"""The quantifier with which a clause speaks of each entity by itself, by the keyword of the clause."""
 
 
 @record
@@ -82,3 +86,16 @@ def repeat_error(
         return suggest_rewrite(failure, 0, len(failure.tokens) - 1, text, title)
     help_ = f"write `{text}`{reason}" if text else f"`{operand}` holds at that step itself: say what must follow it"
     return failure.error("TLT0101", title, help_, span=span)
+
+
+def quantified_body(failure: ParseFailure, keyword: str) -> tuple[int, str]:
+    """Return the index after the keyword of a clause and its quantifier, and the head, such as ``p in pits:``.
+
+    The quantifier must speak of each entity by itself; else the head is empty.
+    """
+    tokens, start = failure.tokens, bool(keyword)
+    if tokens[start].type == _QUANTIFIED.get(keyword):
+        for index in outer_indices(tokens, start, len(tokens) - 1):
+            if tokens[index].type == "COLON":
+                return index + 1, text_of(failure, start + 1, index + 1)
+    return int(start), ""

@@ -5,7 +5,7 @@ Only a text that can be parsed is suggested.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any, Final
 
 from tltlc.core.source import SourceFile, Span
@@ -129,6 +129,13 @@ def operand_start(tokens: Sequence[Token], stop: int) -> int | None:
         if depth == 0:
             break
     return index if index >= 0 and tokens[index].type == "NAME" else None
+
+
+def phrase_at(tokens: Sequence[Token], at: int, phrases: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return the first of some phrases whose words stand at an index; empty if there is none."""
+    return next(
+        (words for words in phrases if tuple(token.text for token in tokens[at : at + len(words)]) == words), ()
+    )
 
 
 def without_brackets(failure: ParseFailure, begin: int, end: int) -> tuple[int, int]:

@@ -13,7 +13,7 @@ from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time
 from tltlc.grammar.mistakes.english_times import time_at
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL
 from tltlc.grammar.mistakes.parse_failure import INFIX, UNTILS, ParseFailure, outer_indices, quote_token
-from tltlc.grammar.mistakes.repeats import TokenRange, repeat_error
+from tltlc.grammar.mistakes.repeats import TokenRange, quantified_body, repeat_error
 from tltlc.grammar.mistakes.rephrasing import operand_text, suggest_rewrite, text_of
 
 _EVENTS: Final = ("after", "when", "whenever", "if")
@@ -34,8 +34,6 @@ _LASTING: Final = {
 }
 """How to write that ``b`` holds for the time ``t`` from ``a`` on."""
 _NO_STATES: Final = TEMPORAL | UNTILS | QUANTIFIERS | {"THEN", "ONCE", "HISTORICALLY", "PREVIOUSLY", "WHEN"}
-_QUANTIFIED: Final = {"keep": "ALL", "require": "ALL", "": "ALL", "avoid": "ANY"}
-"""The quantifier with which a clause speaks of each entity by itself, by the keyword of the clause."""
 
 
 @record
@@ -58,8 +56,8 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
     if failure.start != "clause" or tokens[-1].type != END or failure.open_brackets:
         return None
     keyword = tokens[0].text if tokens[0].text in CLAUSES else ""
-    start, stop = _body_start(failure, keyword), len(tokens) - 1
-    head = text_of(failure, bool(keyword) + 1, start) if start > bool(keyword) else ""
+    start, head = quantified_body(failure, keyword)
+    stop = len(tokens) - 1
     response = (
         _event_first(failure, start, stop)
         or _time_first(failure, start, stop)
@@ -77,6 +75,15 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
         title = f"{quote_token(tokens[response.word])} is not an operator"
         diagnostic = suggest_rewrite(failure, 0, stop, clause, title)
     return diagnostic or _unclear_error(failure, keyword, response)
+
+
+def colon_after_event(failure: ParseFailure) -> Diagnostic | None:
+    """Return an error for a colon in place of the comma, as in ``within 5 s of a: b``, else None."""
+    tokens, at = failure.tokens, failure.stop.index
+    is_after_event = any(time_at(tokens, i - 2) and tokens[i].text == "of" for i in range(3, at))
+    if failure.token.type != "COLON" or "COMMA" not in failure.allowed_terminals or not is_after_event:
+        return None
+    return failure.error("TLT0101", "a comma stands between an event and what answers it", "write `,`", write=",")
 
 
 def _repeat_error(failure: ParseFailure, keyword: str, head: str, response: _Response) -> Diagnostic | None:
@@ -129,15 +136,6 @@ def _unclear_error(failure: ParseFailure, keyword: str, response: _Response) -> 
             f"`keep b implies not eventually within {time} a` if it must not"
         )
     return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
-
-
-def _body_start(failure: ParseFailure, keyword: str) -> int:
-    """Return the index after the keyword of a clause, and after a quantifier that speaks of each entity by itself."""
-    tokens, start = failure.tokens, bool(keyword)
-    if tokens[start].type != _QUANTIFIED.get(keyword):
-        return start
-    outer = outer_indices(tokens, start, len(tokens) - 1)
-    return next((index + 1 for index in outer if tokens[index].type == "COLON"), start)
 
 
 def _event_first(failure: ParseFailure, start: int, stop: int) -> _Response | None:
