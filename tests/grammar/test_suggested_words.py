@@ -34,6 +34,9 @@ MEANINGS: dict[str, Meaning] = {
     "keep a only if b": lambda t: not any(x and not y for x, y in t),
     "keep a only when b": lambda t: not any(x and not y for x, y in t),
     "keep a only after b": holds_only_after,
+    "avoid a for longer than 2 s": lambda t: longest(t) <= 2,
+    "avoid a again within 2 s": lambda t: not any(0 < j - i <= 2 for i in starts(t) for j in starts(t)),
+    "keep a requires once b": holds_only_after,
     "keep a ==> b": lambda t: not any(x and not y for x, y in t),
     "keep a --> b": lambda t: not any(x and not y for x, y in t),
     "keep a <=> b": lambda t: a(t) == b(t),
@@ -76,6 +79,7 @@ def test_a_rule_that_requires_something_gets_both_readings(verb: str) -> None:
 @pytest.mark.parametrize(
     ("clause", "readings"),
     [
+        ("avoid b implies a for the next 3 s", ["always for 3 s a"]),
         ("keep b implies a for at least 3 s", ["always for 3 s a", "time_holding(a) >= 3 s"]),
         ("avoid phase falls by more than 2", ["previous(phase) - phase > 2", "highest(phase) - phase > 2"]),
         ("avoid phase rises by 2", ["phase - previous(phase) >= 2", "phase - lowest(phase) >= 2"]),
@@ -87,6 +91,18 @@ def test_the_readings_of_an_unclear_formula_compile(clause: str, readings: list[
     assert re.findall("`([^`]*)`", error.help or "") == readings
     for reading in readings:
         compile_text(f"{NAMES}spec s {{ avoid {reading} }}")
+
+
+@pytest.mark.parametrize("clause", ["keep phase never falls by more than 1", "keep phase never falls more than 1"])
+def test_a_change_that_must_not_happen_is_no_limit_of_the_value(clause: str) -> None:
+    error = error_of(clause)[1]
+    assert error.fixes == ()
+    step, since = re.findall("`([^`]*)`", error.help or "")
+    for reading, right in ((step, [3, 2, 1, 0]), (since, [3, 2, 3, 2])):
+        (fspa,) = compile_text(f"{NAMES}spec s {{ {reading} }}")
+        for phases, is_kept in ((right, True), ([3, 1], False), ([0, 3], True)):
+            monitor = Monitor(fspa)
+            assert [monitor.step({"phase": phase}).accepting for phase in phases][-1] == is_kept
 
 
 @pytest.mark.parametrize(
@@ -154,3 +170,29 @@ def test_a_number_of_frames_that_is_no_round_time_gets_no_fix() -> None:
     assert error.help == (
         "compare a time with seconds; steps count samples: `100 frames` are about `1.66667 s` with this clock"
     )
+
+
+@pytest.mark.parametrize(
+    ("clause", "help_"),
+    [
+        ("avoid phase drops below 2", "compare the value itself: `phase < 2`"),
+        ("avoid phase drops by 2 within 5 s", "let the game supply how much `phase` has changed in that time"),
+        ("keep always within 2 s of a, b", "write `keep within 2 s of a, b`"),
+        (
+            "keep a implies eventually within 2 s of b",
+            "write `eventually within 2 s a`: only an event stands after `of`, and what answers it after a comma",
+        ),
+        (
+            "avoid a for less than 2 s",
+            "`time_holding(a)` is how long it has held: compare it, as in `time_holding(a) < 2 s`",
+        ),
+    ],
+)
+def test_a_sentence_that_has_no_one_form_says_what_to_write(clause: str, help_: str) -> None:
+    error = error_of(clause)[1]
+    assert error.fixes == ()
+    assert error.help == help_
+
+
+def test_no_before_an_absence_has_its_own_fix() -> None:
+    assert next(suggestions("keep no a for 2 s after b")).strip() == "keep not a for 2 s after b"

@@ -21,6 +21,7 @@ from tltlc.grammar.mistakes.rephrasing import (
     without_brackets,
 )
 
+_COMPARISONS: Final = {**COMPARISONS, ("longer", "than"): ">", ("no", "longer", "than"): "<=", ("over",): ">"}
 _FORMS: Final = {
     **{("reach", sign): "reach time_holding({p}) {sign} {t}" for sign in (">=", ">")},
     **{
@@ -50,14 +51,14 @@ def duration_in_words(failure: ParseFailure) -> Diagnostic | None:
     """Return an error for a formula with a time for which it holds, as in ``hidden for at least 3 s``, else None."""
     tokens, stop = failure.tokens, len(failure.tokens) - 1
     at = next((index for index in range(1, stop) if tokens[index].text == "for"), 0)
-    phrase = phrase_at(tokens, at + 1, COMPARISONS)
+    phrase = phrase_at(tokens, at + 1, _COMPARISONS)
     written = time_at(tokens, at + 1 + len(phrase))
     if not at or not phrase or written is None or written[1] != stop or failure.start != "clause":
         return None
     keyword = tokens[0].text.lower()
     begin, head = quantified_body(failure, tokens[0].text)
     time, title = _in_seconds(failure, written[0]), f"{quote_token(tokens[at])} is not an operator"
-    sign, condition = COMPARISONS[phrase], last_index_of(failure, {"IMPLIES"}, begin)
+    sign, condition = _COMPARISONS[phrase], last_index_of(failure, {"IMPLIES"}, begin)
     second = begin if condition is None else condition + 1
     is_one = second < at and is_of_one_step(failure, begin, at)
     is_one = is_one and not has_token(failure, second, at, {*INFIX, *QUANTIFIERS})

@@ -67,7 +67,10 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
     if response is None:
         response = _implication(failure, start, stop)
         return None if response is None else _repeat_error(failure, keyword, head, response)
-    if tokens[response.word].text in declared_names(failure.source).names:
+    names = declared_names(failure.source).names
+    first = tokens[response.answer[0]].text
+    # `no a` has its own error.
+    if tokens[response.word].text in names or (first == "no" and first not in names):
         return None
     diagnostic = _repeat_error(failure, keyword, head, response)
     clause = _clause(failure, keyword, head, response)
@@ -120,8 +123,18 @@ def _clause(failure: ParseFailure, keyword: str, head: str, response: _Response)
 def _unclear_error(failure: ParseFailure, keyword: str, response: _Response) -> Diagnostic | None:
     """Return the error for an answer after its time that has several readings; None if the time comes last."""
     word, time = failure.tokens[response.word], response.time.text
+    before = failure.tokens[response.word - 1].type
     if word.text in _EVENTS:
         return None
+    if not response.lasting and before in ("EVENTUALLY", "IMPLIES"):
+        help_ = (
+            f"write `eventually within {time} a`: only an event stands after `of`, and what answers it after a comma"
+        )
+        return failure.error("TLT0101", f"`within {time} of` begins a clause", help_, span=word.span)
+    if not response.lasting and before in TEMPORAL:
+        return failure.error(
+            "TLT0101", f"`within {time} of` begins a clause", f"write `keep within {time} of a, b`", span=word.span
+        )
     if failure.lacks_fixed_clock(time):
         help_ = FIXED_CLOCK
     elif response.lasting:
