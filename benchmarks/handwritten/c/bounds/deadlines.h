@@ -6,7 +6,7 @@ typedef struct { bool alarm, hidden, out; } Signals;
 typedef struct { uint16_t alarm, hidden; Verdict verdict; } Monitor;
 
 static inline void monitor_reset(Monitor *monitor) {
-    *monitor = (Monitor){0, 0, PENDING};
+    *monitor = (Monitor){0, 0, HOLDING};
 }
 
 static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result *result) {

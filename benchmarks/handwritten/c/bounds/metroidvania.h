@@ -19,7 +19,7 @@ typedef struct {
 #define HURT "(begins damage)"
 
 static inline void monitor_reset(Monitor *monitor) {
-    *monitor = (Monitor){.falls = {1201, 1201, 1201}, .damage = 121, .verdict = PENDING};
+    *monitor = (Monitor){.falls = {1201, 1201, 1201}, .damage = 121, .verdict = HOLDING};
 }
 
 static inline bool monitor_step(Monitor *monitor, const Signals *sample, Result *result) {

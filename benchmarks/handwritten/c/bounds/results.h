@@ -17,7 +17,7 @@ typedef struct {
     const char *limiting;    // NULL for none
 } Result;
 
-static const int states[] = {1, 0, 2};    // of the verdicts
+static const int states[] = {0, 1, 2};    // of the verdicts
 
 // No progress and no reward can be earned: the rules are never satisfied for good.
 static inline void result_set(Result *result, Verdict verdict, double robustness, const char *label) {
