@@ -52,24 +52,53 @@ def candidates(
     among them those in ``further``. Values of signals that only ``view`` has are left out: they stand
     for ``registers``.
     """
-    finder = SampleFinder(view)
+    finder = LiteralSamples(view, signals, registers)
     names = [signal.name for signal in signals]
-    unread = {signal.name: _least(signal) for signal in signals}
     samples: dict[tuple[float, ...], None] = {}
     count = len(view.atoms)
     are_all = count <= MOST_FREE and {signal.name for signal in view.signals} <= set(names)
     for literals in all_literals(count) if count <= MOST_FREE else (*_few_literals(count), *further):
-        sample = finder.sample_for_literals(literals)
-        if not isinstance(sample, UnsatisfiedLiterals):
-            for chosen in ({**unread, **sample}, *_samples_before(sample, registers, names, unread)):
-                samples[tuple(chosen[name] for name in names)] = None
-        elif not _breaks_exclusive(literals, view):
+        found = finder.samples(literals)
+        for chosen in found:
+            samples[tuple(chosen[name] for name in names)] = None
+        if not found and not _breaks_exclusive(literals, view):
             are_all = False
     read = {name for register in registers for name in names_read(register.update)}
     levels = list(_levels(signals, read, list(samples)))
     samples |= dict.fromkeys(levels)
     first = tuple(dict(zip(names, values, strict=True)) for values in islice(samples, _MOST_SAMPLES))
     return CandidateSamples(first, are_all and not levels and len(first) == len(samples))
+
+
+class LiteralSamples:
+    """Finds samples at which literals of the atoms of ``view`` are true, with a value for each of ``signals``.
+
+    ``view`` is an automaton without registers. Signals that only ``view`` has stand for ``registers``.
+    """
+
+    def __init__(self, view: Fspa, signals: Collection[Signal], registers: Iterable[Register]) -> None:
+        self._finder = SampleFinder(view)
+        self._unread = {signal.name: _least(signal) for signal in signals}
+        self._registers = tuple(registers)
+
+    def samples(self, literals: Implicant) -> list[TraceSample]:
+        """Return a sample for literals, and samples that may come before it; empty if none is found.
+
+        Those before have the values of signals that the registers of the sample remember.
+        """
+        sample = self._finder.sample_for_literals(literals)
+        if isinstance(sample, UnsatisfiedLiterals):
+            return []
+        found = [self._own(sample)]
+        for register in self._registers:
+            if register.name in sample:
+                for name in names_read(register.update):
+                    if name in self._unread:
+                        found.append({**found[0], name: sample[register.name]})
+        return found
+
+    def _own(self, sample: TraceSample) -> TraceSample:
+        return {name: sample.get(name, value) for name, value in self._unread.items()}
 
 
 def without_registers(fspa: Fspa) -> Fspa:
@@ -117,17 +146,6 @@ def _few_literals(count: int) -> Iterator[Implicant]:
 def _breaks_exclusive(literals: Implicant, view: Fspa) -> bool:
     holding = {atom for atom, holds in literals if holds}
     return any(len(holding.intersection(group)) > 1 for group in view.exclusive)
-
-
-def _samples_before(
-    sample: TraceSample, registers: Iterable[Register], names: Collection[str], unread: TraceSample
-) -> Iterator[TraceSample]:
-    """Yield samples that may come before ``sample``: with the values of signals that its registers remember."""
-    for register in registers:
-        if register.name in sample:
-            for name in names_read(register.update):
-                if name in names:
-                    yield {**unread, **sample, name: sample[register.name]}
 
 
 def _levels(

@@ -8,7 +8,7 @@ trace although there is one.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import islice
 from typing import TYPE_CHECKING, Final, NamedTuple, Union
@@ -34,25 +34,28 @@ if TYPE_CHECKING:
     TraceInput = Union[TraceSample, Letter]
     """A sample, or the names of the atoms that hold."""
 
-_SINGLE_STEPS: Final = 8_000
+SINGLE_STEPS: Final = 8_000
 """The most steps that the search takes one by one, in all sequences together."""
-_HELD_STEPS: Final = 60_000
+HELD_STEPS: Final = 60_000
 """The most steps that the search takes after that, while it repeats each input until something changes."""
 _FINAL: Final = ("satisfied", "violated")
 _FAR: Final = 1_000_000
 
 
-class _Configuration(NamedTuple):
+class Configuration(NamedTuple):
     """The state and the values of the registers of each automaton."""
 
     states: tuple[int, ...]
     registers: tuple[tuple[float, ...], ...]
 
 
-class _Step(NamedTuple):
+class Step(NamedTuple):
+    """The edge that each automaton takes, the atoms that hold, their values in each automaton, and what follows."""
+
     edges: tuple[int, ...]
     letter: Letter
-    after: _Configuration
+    after: Configuration
+    values: tuple[tuple[float, ...], ...]
 
 
 @record
@@ -66,7 +69,7 @@ class Position:
     number: int
     times: int
     edges: tuple[int, ...]
-    configuration: _Configuration
+    configuration: Configuration
 
     def trace(self) -> tuple[int, ...]:
         """Return the indices of the inputs of the whole trace."""
@@ -85,7 +88,8 @@ class MemorySearch:
     the atoms that hold; those that follow from others are computed. ``names`` has the names of the
     atoms of each automaton in letters, by default their own. No two atoms of a group in ``exclusive``
     may hold together. If the clock varies, each input is tried with some lengths of a step, which are
-    never all. ``tried_all`` is true once all traces over the inputs have been tried.
+    never all. ``has_ended`` is true once all traces over the inputs have been tried, and ``tried_all``
+    if these are all traces with this truth of atoms.
     """
 
     def __init__(
@@ -96,13 +100,26 @@ class MemorySearch:
         exclusive: Sequence[Collection[str]] = (),
     ) -> None:
         self._varies = any(fspa.clock_varies for fspa in automata)
-        self.inputs = tuple(_with_lengths(inputs, automata) if self._varies else inputs)
-        self.tried_all = False
+        self.inputs = list(_with_lengths(inputs, automata) if self._varies else inputs)
+        self.tried_all = self.has_ended = False
+        self._numbers = range(len(self.inputs))
+        self._added: dict[object, int] = {}
         self._automata = tuple(automata)
         self._names = names or [[atom.name for atom in fspa.atoms] for fspa in automata]
         self._exclusive = exclusive
         self._values = tuple(Samples(fspa, None, []) for fspa in automata)
         self._leaving = tuple(_leaving(fspa) for fspa in automata)
+
+    def add(self, given: TraceInput) -> list[int]:
+        """Add an input for :meth:`step` alone, and return its numbers: one for each length of a step."""
+        numbers = []
+        for each in _with_lengths((given,), self._automata) if self._varies else (given,):
+            key = frozenset(each.items()) if isinstance(each, Mapping) else each
+            if key not in self._added:
+                self._added[key] = len(self.inputs)
+                self.inputs.append(each)
+            numbers.append(self._added[key])
+        return numbers
 
     def positions(self) -> Iterator[Position]:
         """Yield the ends of traces: at first in the order of their lengths, until the work is done.
@@ -110,42 +127,82 @@ class MemorySearch:
         If that leaves traces untried, also yield traces that repeat each input until the truth of an
         atom or the state of an automaton changes.
         """
-        count = 0
-        for count, position in enumerate(self._single_steps(), start=1):
+        yield from self.short_positions()
+        if not self.has_ended:
+            yield from self.held_positions()
+
+    def short_positions(self, most: int = SINGLE_STEPS) -> Iterator[Position]:
+        """Yield the ends of traces in the order of their lengths, at most ``most``."""
+        for number, position in enumerate(self._single_steps(), start=1):
             yield position
-            if count == _SINGLE_STEPS:
-                yield from islice(self._held_steps(), _HELD_STEPS)
+            if number == most:
                 return
-        self.tried_all = not self._varies
+        self.has_ended, self.tried_all = True, not self._varies
+
+    def held_positions(self, most: int = HELD_STEPS) -> Iterator[Position]:
+        """Yield the ends of traces that repeat each input until something changes, at most ``most``."""
+        yield from islice(self._held_steps(), most)
 
     def first_positions(self) -> Iterator[Position]:
         """Yield the ends of all traces with one step."""
-        start = self._start()
-        for number in range(len(self.inputs)):
-            if step := self._step(start.configuration, number):
+        start = self.start()
+        for number in self._numbers:
+            if step := self.step(start.configuration, number):
                 yield Position(start, number, 1, step.edges, step.after)
+
+    def shorter(self, end: Position, is_end: Callable[[tuple[int, ...]], bool]) -> Position:
+        """Return the end of a trace without those inputs, each with its repetitions, that are not needed.
+
+        ``is_end`` says whether a trace may end with these edges of the automata.
+        """
+        kept: list[tuple[int, int]] = [(end.number, end.times)]
+        before = end.parent
+        while before is not None and before.parent is not None:
+            other = self._after(before.parent, kept, is_end)
+            if other is None:
+                kept = [(before.number, before.times), *kept]
+            else:
+                end = other
+            before = before.parent
+        return end
+
+    def _after(
+        self, position: Position, runs: Iterable[tuple[int, int]], is_end: Callable[[tuple[int, ...]], bool]
+    ) -> Position | None:
+        """Return where a trace from a position may end, with inputs that each come so often; None if it may not."""
+        for number, times in runs:
+            before = position
+            for count in range(1, times + 1):
+                step = self.step(position.configuration, number)
+                if step is None:
+                    return None
+                position = Position(before, number, count, step.edges, step.after)
+                if is_end(step.edges):
+                    return position
+        return None
 
     def letters(self, position: Position) -> tuple[Letter, ...]:
         """Return the names of the atoms that hold at each step of the trace to a position."""
-        configuration, letters = self._start().configuration, []
+        configuration, letters = self.start().configuration, []
         for number in position.trace():
-            step = self._step(configuration, number)
+            step = self.step(configuration, number)
             assert step is not None, "the search has taken this step"
             letters.append(step.letter)
             configuration = step.after
         return tuple(letters)
 
-    def _start(self) -> Position:
+    def start(self) -> Position:
+        """Return the position before the first step."""
         states = tuple(0 for _ in self._automata)
-        return Position(None, -1, 0, (), _Configuration(states, tuple(values.initial for values in self._values)))
+        return Position(None, -1, 0, (), Configuration(states, tuple(values.initial for values in self._values)))
 
     def _single_steps(self) -> Iterator[Position]:
-        start = self._start()
+        start = self.start()
         seen, queue = {self._key(start.configuration)}, deque([start])
         while queue:
             before = queue.popleft()
-            for number in range(len(self.inputs)):
-                step = self._step(before.configuration, number)
+            for number in self._numbers:
+                step = self.step(before.configuration, number)
                 if step is None:
                     continue
                 position = Position(before, number, 1, step.edges, step.after)
@@ -157,11 +214,11 @@ class MemorySearch:
 
     def _held_steps(self) -> Iterator[Position]:
         """Yield positions while inputs repeat; those nearest to acceptance are continued first."""
-        start, count = self._start(), 0
+        start, count = self.start(), 0
         seen, heap = {self._key(start.configuration)}, [(0, count, start)]
         while heap:
             _, _, before = heappop(heap)
-            holds = [self._held(before, number) for number in range(len(self.inputs))]
+            holds = [self._held(before, number) for number in self._numbers]
             while holds:
                 # All inputs repeat side by side, so that none uses up the work.
                 for hold in list(holds):
@@ -183,7 +240,7 @@ class MemorySearch:
         """
         configuration, previous, times = before.configuration, None, 0
         while True:
-            step = self._step(configuration, number)
+            step = self.step(configuration, number)
             if step is None:
                 return
             times += 1
@@ -195,15 +252,15 @@ class MemorySearch:
                 return
             configuration, previous = step.after, (step.letter, step.after.states)
 
-    def _distance(self, configuration: _Configuration) -> int:
+    def _distance(self, configuration: Configuration) -> int:
         """Return the sum of the distances of all automata to acceptance; a large number in a trap."""
         pairs = zip(self._automata, configuration.states, strict=True)
         distances = [fspa.states[state].distance for fspa, state in pairs]
         return sum(_FAR if distance is None else distance for distance in distances)
 
-    def _step(self, before: _Configuration, number: int) -> _Step | None:
+    def step(self, before: Configuration, number: int) -> Step | None:
         """Return a step, or None if a monitor rejects the input."""
-        edges, registers = [], []
+        edges, registers, atoms = [], [], []
         letter: set[str] = set()
         for index, fspa in enumerate(self._automata):
             try:
@@ -215,12 +272,13 @@ class MemorySearch:
             edges.append(next(edge for edge in leaving if holds(fspa.edges[edge].guard, values.atoms)))
             letter.update(name for name, value in zip(self._names[index], values.atoms, strict=True) if value > 0.0)
             registers.append(values.registers)
+            atoms.append(values.atoms)
         if any(len(letter.intersection(group)) > 1 for group in self._exclusive):
             return None
         if self._varies:
             letter.update(length_names(self.inputs[number]))
         states = tuple(fspa.edges[edge].target for fspa, edge in zip(self._automata, edges, strict=True))
-        return _Step(tuple(edges), frozenset(letter), _Configuration(states, tuple(registers)))
+        return Step(tuple(edges), frozenset(letter), Configuration(states, tuple(registers)), tuple(atoms))
 
     def _sample_values(self, index: int, given: TraceInput, registers: tuple[float, ...]) -> SampleValues:
         samples = self._values[index]
@@ -231,11 +289,11 @@ class MemorySearch:
         length = samples.step_length(length_of(given, self._automata[index]), 1)
         return samples.from_atoms(values, registers, length, 1)
 
-    def _key(self, configuration: _Configuration) -> object:
+    def _key(self, configuration: Configuration) -> object:
         """Return what two positions share if only one of them needs a continuation."""
         return configuration.states if self._is_final(configuration) else configuration
 
-    def _is_final(self, configuration: _Configuration) -> bool:
+    def _is_final(self, configuration: Configuration) -> bool:
         pairs = zip(self._automata, configuration.states, strict=True)
         return all(fspa.states[state].verdict in _FINAL for fspa, state in pairs)
 
