@@ -35,8 +35,11 @@ def method_sentence(comparison: Comparison) -> str:
         a, b = comparison.unfolded_states
         return f"This is exact: what the specs remember was unfolded to {a:,} states in A and {b:,} in B."
     if comparison.method == "clauses":
-        text = "This is exact: what the clauses remember was unfolded to states, group by group."
+        text = "This is exact: groups of clauses were compared with each other."
         return text + (" A trace below may not be a shortest one." if comparison.only_a or comparison.only_b else "")
+    if comparison.method == "search" and comparison.relation not in ("undecided", "equivalent"):
+        text = "This is exact: both monitors have run on each trace below."
+        return f"{text} It may not be a shortest one."
     if comparison.method == "search":
         text = "Traces were searched, with a bounded number of steps: "
         text += "what the specs remember has too many values to be unfolded to states."

@@ -52,13 +52,15 @@ def confirm(
     named: tuple[Fspa, Fspa],
     only: tuple[Trace | None, Trace | None],
     exclusive: Sequence[Collection[str]],
+    known: tuple[Trace | None, Trace | None] = (None, None),
     *,
     by_name: bool,
 ) -> Confirmed:
     """Replace traces over all atoms of A and B by traces that a game can produce.
 
     ``named`` are the two automata with the names that atoms have in traces. ``only`` are a trace that
-    only A accepts and one that only B accepts; where it is None, there is no such trace. No two atoms
+    only A accepts and one that only B accepts; where it is None, there is no such trace. ``known`` are those
+    that are known already. No two atoms
     of a group in ``exclusive`` hold together. With ``by_name``, atoms that do not follow from others
     may hold in any combination.
     """
@@ -67,9 +69,9 @@ def confirm(
     inputs, are_all = _letters(named, only) if by_name else _samples(named)
     names = [[atom.name for atom in fspa.atoms] for fspa in named]
     search = MemorySearch(automata, inputs, names, exclusive)
-    missing = {side for side in (0, 1) if only[side] is not None}
-    found: dict[int, Trace] = {}
-    for position in search.positions():
+    found = {side: trace for side, trace in enumerate(known) if trace is not None and only[side] is not None}
+    missing = {side for side in (0, 1) if only[side] is not None and side not in found}
+    for position in search.positions() if missing else ():
         accepts = [
             fspa.states[state].accepting for fspa, state in zip(automata, position.configuration.states, strict=True)
         ]

@@ -115,15 +115,22 @@ def compare(
         raise OutOfWork
     if a.registers or b.registers:
         from tltlc.tools.diff.broken_rules import conflicts
+        from tltlc.tools.diff.timer_order import timer_conflicts
 
         sides = zip(originals, (OF_A, OF_B), strict=True)
         never += tuple(conflict for fspa, suffix in sides for conflict in conflicts(fspa, split_names, suffix))
+        never += tuple(timer_conflicts(originals, split_names, (OF_A, OF_B)))
     only_a, only_b = separating(a, b, work, never), separating(b, a, work, never)
     if (a.registers or b.registers) and (only_a or only_b):
         # The automata take atoms that follow from others for free. So they may differ where the specs do not.
-        exact = _compare_unfolded(
-            *originals, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive
-        )
+        unfolding = _Unfolding(originals, by_name, feasible_only, work, exclusive)
+        exact = unfolding.quick()
+        if exact is not None:
+            return exact
+        found = _search_guided(originals, (a, b), (only_a, only_b), groups, by_name=by_name)
+        if all((trace is None) == (only is None) for trace, only in zip(found, (only_a, only_b), strict=True)):
+            return Comparison(_relation(*found), *found, split_names, (), groups, method="search")
+        exact = unfolding.complete()
         if exact is not None:
             return exact
     impossible: dict[NamedLiterals, None] = {}
@@ -143,73 +150,105 @@ def compare(
         from tltlc.tools.diff.real_traces import confirm
 
         exclusive_names = [group.names for group in groups]
-        only_a, only_b, is_decided = confirm(originals, (a, b), (only_a, only_b), exclusive_names, by_name=by_name)
+        only_a, only_b, is_decided = confirm(
+            originals, (a, b), (only_a, only_b), exclusive_names, found, by_name=by_name
+        )
         method = "search"
         if not is_decided:
             return Comparison("undecided", only_a, only_b, split_names, tuple(impossible), groups, method=method)
     return Comparison(_relation(only_a, only_b), only_a, only_b, split_names, tuple(impossible), groups, method=method)
 
 
-def _compare_unfolded(
-    a: Fspa, b: Fspa, *, by_name: bool, feasible_only: bool, work: int, exclusive: tuple[ExclusiveGroup, ...]
-) -> Comparison | None:
-    """Compare two specs with registers unfolded into states; None if that is not possible, or takes too much work."""
-    from tltlc.tools.diff.real_traces import follows_in_one
-
-    # With `by_name`, no letter gives an atom that follows from others in one of the two specs only.
-    if by_name and follows_in_one((a, b)):
-        return None
-
-    def compared(one: Fspa, other: Fspa) -> Comparison:
-        return compare(one, other, by_name=by_name, feasible_only=feasible_only, work=work, exclusive=exclusive)
-
-    # A small unfolding of the whole specs gives shortest traces. A large one takes longer than one of each clause.
-    for share in (_QUICK, 1):
-        unfolded = unfolded_pair(a, b, work // share)
-        if unfolded is not None:
-            one, other = unfolded
-            return replace(
-                compared(one, other), method="unfolded", unfolded_states=(len(one.states), len(other.states))
-            )
-        if share == _QUICK and a.semantics == "finite":
-            by_clauses = _compare_clauses(
-                a, b, compared, by_name=by_name, feasible_only=feasible_only, exclusive=exclusive
-            )
-            if by_clauses is not None:
-                return by_clauses
-    return None
-
-
-def _compare_clauses(
-    a: Fspa,
-    b: Fspa,
-    compared: Callable[[Fspa, Fspa], Comparison],
+def _search_guided(
+    originals: tuple[Fspa, Fspa],
+    named: tuple[Fspa, Fspa],
+    only: tuple[Trace | None, Trace | None],
+    groups: Iterable[ExclusiveGroup],
     *,
     by_name: bool,
-    feasible_only: bool,
-    exclusive: tuple[ExclusiveGroup, ...],
-) -> Comparison | None:
-    """Compare two specs by groups of their clauses; None if that does not decide how they relate."""
-    from tltlc.tools.diff.clause_groups import compare_groups
+) -> tuple[Trace | None, Trace | None]:
+    """Return traces of monitors that only A and only B accept, in place of traces of the automata in ``only``."""
+    from tltlc.tools.diff.difference_search import DifferenceSearch
+    from tltlc.tools.diff.real_traces import follows_in_one
 
-    split_names = () if by_name else different_atoms(a, b)
+    if originals[0].semantics == "infinite" or (by_name and follows_in_one(named)):
+        return None, None
+    search = DifferenceSearch(originals, named, [group.names for group in groups], by_name=by_name)
+    only_a, only_b = (None if trace is None else search.trace(side, trace) for side, trace in enumerate(only))
+    return only_a, only_b
 
-    def own_part(fspa: Fspa, suffix: str) -> Callable[[Letter], Letter]:
-        return lambda letter: own_letter(letter, split_names, fspa, suffix)
 
-    named = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
+class _Unfolding:
+    """Compares two specs with registers unfolded into states."""
 
-    def is_possible(trace: Trace) -> bool:
-        from tltlc.tools.diff.real_traces import is_possible_without_numbers
+    def __init__(
+        self,
+        automata: tuple[Fspa, Fspa],
+        by_name: bool,
+        feasible_only: bool,
+        work: int,
+        exclusive: tuple[ExclusiveGroup, ...],
+    ) -> None:
+        from tltlc.tools.diff.real_traces import follows_in_one
 
-        return not feasible_only or is_possible_without_numbers(named, trace)
+        self._automata, self._work = automata, work
+        self._by_name, self._feasible_only, self._exclusive = by_name, feasible_only, exclusive
+        # With `by_name`, no letter gives an atom that follows from others in one of the two specs only.
+        self._is_possible = not (by_name and follows_in_one(automata))
 
-    result = compare_groups(a, b, compared, (own_part(a, OF_A), own_part(b, OF_B)), is_possible)
-    if result is None:
-        return None
-    groups = _merge((*_own_groups(a, b), *exclusive), {atom.name for fspa in (a, b) for atom in fspa.atoms})
-    relation = _relation(result.only_a, result.only_b)
-    return Comparison(relation, result.only_a, result.only_b, split_names, result.impossible, groups, method="clauses")
+    def quick(self) -> Comparison | None:
+        """Compare the whole specs if that is quick, else group by group; None if that does not decide."""
+        # A small unfolding of the whole specs gives shortest traces. A large one takes longer than one of each clause.
+        whole = self._whole(self._work // _QUICK)
+        return whole or (self._clauses() if self._is_possible and self._automata[0].semantics == "finite" else None)
+
+    def complete(self) -> Comparison | None:
+        """Compare the whole specs; None if that is not possible, or takes too much work."""
+        return self._whole(self._work)
+
+    def _whole(self, work: int) -> Comparison | None:
+        unfolded = unfolded_pair(*self._automata, work) if self._is_possible else None
+        if unfolded is None:
+            return None
+        states = len(unfolded[0].states), len(unfolded[1].states)
+        return replace(self._compared(*unfolded), method="unfolded", unfolded_states=states)
+
+    def _compared(self, one: Fspa, other: Fspa) -> Comparison:
+        return compare(
+            one,
+            other,
+            by_name=self._by_name,
+            feasible_only=self._feasible_only,
+            work=self._work,
+            exclusive=self._exclusive,
+        )
+
+    def _clauses(self) -> Comparison | None:
+        """Compare two specs by groups of their clauses; None if that does not decide how they relate."""
+        from tltlc.tools.diff.clause_groups import compare_groups
+        from tltlc.tools.diff.difference_search import DifferenceSearch
+
+        a, b = self._automata
+        split_names = () if self._by_name else different_atoms(a, b)
+
+        def own_part(fspa: Fspa, suffix: str) -> Callable[[Letter], Letter]:
+            return lambda letter: own_letter(letter, split_names, fspa, suffix)
+
+        named = _with_suffix(a, split_names, OF_A), _with_suffix(b, split_names, OF_B)
+
+        def is_possible(trace: Trace) -> bool:
+            from tltlc.tools.diff.real_traces import is_possible_without_numbers
+
+            return not self._feasible_only or is_possible_without_numbers(named, trace)
+
+        names = {atom.name for fspa in (a, b) for atom in fspa.atoms}
+        groups = _merge((*_own_groups(a, b), *self._exclusive), names)
+        search = DifferenceSearch((a, b), named, [group.names for group in groups], by_name=self._by_name)
+        result = compare_groups(a, b, self._compared, (own_part(a, OF_A), own_part(b, OF_B)), is_possible, search)
+        if result is None:
+            return None
+        only = result.only_a, result.only_b
+        return Comparison(_relation(*only), *only, split_names, result.impossible, groups, method="clauses")
 
 
 def _relation(only_a: Trace | None, only_b: Trace | None) -> Relation:

@@ -6,9 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
-from tltlc.automaton.compare import NamedLiterals, Trace
+from tltlc.automaton.compare import Trace
+from tltlc.automaton.memory_phrases import spoken
 from tltlc.automaton.text import label_text
 from tltlc.io.spec_file import STDIN, STDIN_NAME
+from tltlc.logic.formula import atom as atom_of
+from tltlc.logic.formula import not_
+from tltlc.logic.text.phrases import phrase
+from tltlc.resolve.registers import following_atoms
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
 from tltlc.tools.diff.differences import Difference
@@ -21,6 +26,7 @@ from tltlc.tools.diff.phrases import (
     value_text,
     values_text,
 )
+from tltlc.tools.diff.relation import OF_A, OF_B
 from tltlc.tools.diff.traces import difference_test, step_lines, trace_description
 
 if TYPE_CHECKING:
@@ -50,6 +56,8 @@ The key is ``Comparison.beginnings.relation``, which compares the beginnings tha
 _WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
 _MOST_ATOMS: Final = 10
+_MOST_REMAINS: Final = 500
+"""The most characters of what remains: the rules of a large spec would hide what the trace shows."""
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
 """Titles of printed tests, by the spec that accepts the trace."""
 _TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
@@ -96,7 +104,7 @@ def _pair(pair: SpecPair) -> Iterator[str]:
     if comparison.split_names:
         yield _split(comparison.split_names)
     if comparison.impossible:
-        yield _left_out(comparison.impossible)
+        yield _left_out(pair)
     trace_comparison = comparison.beginnings or comparison
     if trace_comparison.only_a is not None:
         yield from _trace(pair, trace_comparison.only_a, "A", "B")
@@ -126,14 +134,29 @@ def _split(names: tuple[str, ...]) -> str:
     )
 
 
-def _left_out(impossible: Sequence[NamedLiterals]) -> str:
+def _left_out(pair: SpecPair) -> str:
+    impossible = pair.comparison.impossible
     lines = ["  no values of the signals were found that give these, so traces with them are left out:"]
-    for literals in impossible[:_MOST_LEFT_OUT]:
-        terms = [f"{'' if holds else 'not '}`{name}`" for name, holds in literals]
-        lines.append(f"    {' and '.join(terms)}")
+    lines += [
+        f"    {' and '.join(_literal(pair, name, holds) for name, holds in literals)}"
+        for literals in impossible[:_MOST_LEFT_OUT]
+    ]
     if len(impossible) > _MOST_LEFT_OUT:
         lines.append(f"    and {len(impossible) - _MOST_LEFT_OUT} more")
     return "\n".join(lines)
+
+
+def _literal(pair: SpecPair, name: str, holds: bool) -> str:
+    """Return a literal of an atom over both specs: its name, or words for a timer."""
+    for fspa, suffix in ((pair.a, OF_A), (pair.b, OF_B)):
+        own = {
+            f"{atom}{suffix if atom in pair.comparison.split_names else ''}": atom
+            for atom in following_atoms(fspa.atoms, fspa.registers)
+        }
+        if name in own:
+            literal = atom_of(own[name])
+            return phrase(spoken(literal if holds else not_(literal), fspa))
+    return f"{'' if holds else 'not '}`{name}`"
 
 
 def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
@@ -166,7 +189,8 @@ def _trace(pair: SpecPair, trace: Trace, by: str, other: str) -> Iterator[str]:
 def _state(fspa: Fspa, state: State) -> str:
     if state.verdict in ("satisfied", "violated"):
         return state.verdict
-    return f"{state.verdict}; what remains: {label_text(fspa, state.id)}"
+    remains = label_text(fspa, state.id)
+    return f"{state.verdict}; what remains: {remains}" if len(remains) <= _MOST_REMAINS else state.verdict
 
 
 def _indent(text: str) -> str:

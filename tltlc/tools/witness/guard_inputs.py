@@ -124,15 +124,20 @@ def _lack(prime: Implicant, values: Sequence[float]) -> float:
 
 
 class EdgeAim:
-    """The aim to take one of the edges ``wanted`` of the only automaton of ``search``."""
+    """The aim to take one of the edges ``wanted`` of the only automaton of ``search``.
 
-    def __init__(self, search: MemorySearch, fspa: Fspa, wanted: Collection[int], inputs_for: InputsFor) -> None:
+    ``names`` and ``inputs_for`` are those of :class:`GuardInputs`.
+    """
+
+    def __init__(
+        self, search: MemorySearch, fspa: Fspa, names: Sequence[str], wanted: Collection[int], inputs_for: InputsFor
+    ) -> None:
         self._distance = distances_to(fspa, wanted)
 
         def rank(edge: int) -> int | None:
             return -1 if edge in wanted else self._distance.get(fspa.edges[edge].target)
 
-        self._guards = GuardInputs(search, fspa, [atom.name for atom in fspa.atoms], rank, inputs_for)
+        self._guards = GuardInputs(search, fspa, names, rank, inputs_for)
 
     def rank(self, states: tuple[int, ...]) -> int | None:
         """Return how many edges are between the state and the nearest wanted edge."""

@@ -38,6 +38,8 @@ SINGLE_STEPS: Final = 8_000
 """The most steps that the search takes one by one, in all sequences together."""
 HELD_STEPS: Final = 60_000
 """The most steps that the search takes after that, while it repeats each input until something changes."""
+_SMALL: Final = 16
+"""Up to twice as many atoms and registers have the size 1."""
 _FINAL: Final = ("satisfied", "violated")
 _FAR: Final = 1_000_000
 
@@ -89,7 +91,8 @@ class MemorySearch:
     atoms of each automaton in letters, by default their own. No two atoms of a group in ``exclusive``
     may hold together. If the clock varies, each input is tried with some lengths of a step, which are
     never all. ``has_ended`` is true once all traces over the inputs have been tried, and ``tried_all``
-    if these are all traces with this truth of atoms.
+    if these are all traces with this truth of atoms. ``size`` is at least 1; the search takes fewer steps
+    for larger automata, since each of their steps takes longer.
     """
 
     def __init__(
@@ -102,6 +105,8 @@ class MemorySearch:
         self._varies = any(fspa.clock_varies for fspa in automata)
         self.inputs = list(_with_lengths(inputs, automata) if self._varies else inputs)
         self.tried_all = self.has_ended = False
+        items = max((len(fspa.atoms) + len(fspa.registers) for fspa in automata), default=0)
+        self.size = max(1, items // _SMALL)
         self._numbers = range(len(self.inputs))
         self._added: dict[object, int] = {}
         self._automata = tuple(automata)
@@ -112,14 +117,15 @@ class MemorySearch:
 
     def add(self, given: TraceInput) -> list[int]:
         """Add an input for :meth:`step` alone, and return its numbers: one for each length of a step."""
-        numbers = []
-        for each in _with_lengths((given,), self._automata) if self._varies else (given,):
-            key = frozenset(each.items()) if isinstance(each, Mapping) else each
-            if key not in self._added:
-                self._added[key] = len(self.inputs)
-                self.inputs.append(each)
-            numbers.append(self._added[key])
-        return numbers
+        return list(map(self.add_one, _with_lengths((given,), self._automata) if self._varies else (given,)))
+
+    def add_one(self, given: TraceInput) -> int:
+        """Add an input for :meth:`step` alone, with its length if the clock varies, and return its number."""
+        key = frozenset(given.items()) if isinstance(given, Mapping) else given
+        if key not in self._added:
+            self._added[key] = len(self.inputs)
+            self.inputs.append(given)
+        return self._added[key]
 
     def positions(self) -> Iterator[Position]:
         """Yield the ends of traces: at first in the order of their lengths, until the work is done.
@@ -127,11 +133,11 @@ class MemorySearch:
         If that leaves traces untried, also yield traces that repeat each input until the truth of an
         atom or the state of an automaton changes.
         """
-        yield from self.short_positions()
+        yield from self.short_positions(SINGLE_STEPS // self.size)
         if not self.has_ended:
-            yield from self.held_positions()
+            yield from self.held_positions(HELD_STEPS // self.size)
 
-    def short_positions(self, most: int = SINGLE_STEPS) -> Iterator[Position]:
+    def short_positions(self, most: int) -> Iterator[Position]:
         """Yield the ends of traces in the order of their lengths, at most ``most``."""
         for number, position in enumerate(self._single_steps(), start=1):
             yield position
@@ -139,7 +145,7 @@ class MemorySearch:
                 return
         self.has_ended, self.tried_all = True, not self._varies
 
-    def held_positions(self, most: int = HELD_STEPS) -> Iterator[Position]:
+    def held_positions(self, most: int) -> Iterator[Position]:
         """Yield the ends of traces that repeat each input until something changes, at most ``most``."""
         yield from islice(self._held_steps(), most)
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from tltlc.monitor.traces import TraceSample
 
 
-_SMALL: Final = 16
-"""The search takes fewer steps for automata with more atoms and registers than this: each step takes longer."""
 _COVER: Final = 2
 """The searches for the edges of a cover share as many steps as this number of searches for a trace."""
 
@@ -38,9 +36,9 @@ class MemoryTraces:
     def __init__(self, fspa: Fspa) -> None:
         self._fspa = fspa
         self._search = MemorySearch((fspa,), candidate_samples(fspa).samples)
-        size = max(1, (len(fspa.atoms) + len(fspa.registers)) // _SMALL)
-        self._most_held = HELD_STEPS // size
-        self._short = self._search.short_positions(SINGLE_STEPS // size**2)
+        self._most_held = HELD_STEPS // self._search.size
+        # For large automata, what the guards ask for is found sooner than short traces.
+        self._short = self._search.short_positions(SINGLE_STEPS // self._search.size**2)
         self._held = self._search.held_positions(self._most_held)
         self._first: dict[int, Position] = {}
 
@@ -100,7 +98,7 @@ class MemoryTraces:
 
         They go on from ``starts``, and from the first sample.
         """
-        aim = EdgeAim(self._search, self._fspa, wanted, self._inputs_for)
+        aim = EdgeAim(self._search, self._fspa, [atom.name for atom in self._fspa.atoms], wanted, self._inputs_for)
         return islice(GuidedSearch(self._search, aim).positions((self._search.start(), *starts)), most)
 
     def _inputs_for(self, literals: Literals) -> list[TraceSample]:
