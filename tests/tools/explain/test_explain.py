@@ -16,6 +16,7 @@ from tests.calls import calls
 from tests.fuzzing import times
 from tests.interfaces.cli.conftest import EXAMPLE, Outcome, inside, tltlc
 from tests.logic.strategies import formulas
+from tests.tools.witness.test_guided_search import TOWER, spec_of
 from tests.unfolded import unfolded
 from tltlc.automaton.compare import Letter
 from tltlc.automaton.finite.build import build, spec_from_formula
@@ -293,3 +294,14 @@ def test_a_long_chain_is_a_numbered_list_and_no_sentence() -> None:
 def test_a_short_chain_is_a_sentence_too() -> None:
     (fspa,) = compiler.compile_text("signal a: bool signal b: bool signal c: bool spec s { reach a then b then c }")
     assert text(explain(fspa)).startswith("s\n=\n  Reach a, then b, then c.\n")
+
+
+def test_a_large_spec_is_explained_without_the_table_of_its_states() -> None:
+    explanation = explain(spec_of(TOWER))
+    (states,) = [section.blocks for section in sections(explanation) if section.heading == "States"]
+    count = len(explanation.states)
+    left_out = f"The table of the {count} states is left out, because it is long; `--format json` shows them."
+    assert states == (left_out,)
+    assert explanation.succeed is not None
+    assert explanation.fail is not None
+    assert len(text(explanation).splitlines()) < 200

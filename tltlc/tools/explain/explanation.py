@@ -5,11 +5,12 @@ All output formats of ``tltlc explain`` are written from it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
-from tltlc.automaton.memory import given_atoms
-from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.memory import breaches_now, given_atoms
+from tltlc.automaton.memory_phrases import Speaker, spoken
 from tltlc.automaton.register_phrases import register_phrases
 from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
 from tltlc.automaton.work import OutOfWork
@@ -212,7 +213,8 @@ def _outline(fspa: Fspa, formula: Formula) -> Outline:
 
 def _guards(fspa: Fspa) -> tuple[Formula, ...]:
     """Return the guard of each edge as a formula for people."""
-    return tuple(spoken(_formula(fspa, edge.guard), fspa) for edge in fspa.edges)
+    formulas = (_formula(fspa, edge.guard) for edge in fspa.edges)
+    return tuple(map(Speaker(fspa).spoken, formulas) if fspa.registers else formulas)
 
 
 def _formula(fspa: Fspa, guard: Guard) -> Formula:
@@ -299,8 +301,9 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
         return None
     steps: list[TraceStep] = []
     cycle: int | None = None
+    origins = _origins(fspa)
     for index, move in enumerate(witness.moves):
-        condition, state = _condition_text(_literals(fspa, _shown(fspa, move))), fspa.edges[move.edge].target
+        condition, state = _condition_text(_literals(fspa, _shown(fspa, move, origins))), fspa.edges[move.edge].target
         # At the first step, the length counts for nothing.
         seconds = length_of(move.letter, fspa) if index or not fspa.clock_varies else 0.0
         if index == witness.cycle:
@@ -314,17 +317,22 @@ def _example_trace(fspa: Fspa, witness: Witness | None) -> ExampleTrace | None:
     return ExampleTrace(tuple(steps), cycle)
 
 
-def _shown(fspa: Fspa, move: SampledEdge) -> Implicant:
+def _origins(fspa: Fspa) -> dict[str, tuple[str, ...]]:
+    """Map the name of each atom that follows from others to the names of those."""
+    derived = following_atoms(fspa.atoms, fspa.registers)
+    return {item.name: sources(item.name, fspa.atoms, fspa.registers) for item in fspa.atoms if item.name in derived}
+
+
+def _shown(fspa: Fspa, move: SampledEdge, origins: Mapping[str, Sequence[str]]) -> Implicant:
     """Return the literals of a step that a text shows: those that its edge needs.
 
-    With registers, literals of the atoms from which an atom follows replace that atom. All atoms that
-    hold and do not follow from others are shown.
+    With registers, literals of the atoms from which an atom follows, its ``origins``, replace that atom. All
+    atoms that hold and do not follow from others are shown.
     """
     if not fspa.registers:
         return move.prime
-    derived = following_atoms(fspa.atoms, fspa.registers)
     names = {fspa.atoms[atom].name for atom, _ in move.prime}
-    origins = {origin for name in names & derived for origin in sources(name, fspa.atoms, fspa.registers)}
-    needed = {index for index, item in enumerate(fspa.atoms) if item.name in names | origins}
+    names.update(*(origins.get(name, ()) for name in tuple(names)))
+    needed = {index for index, item in enumerate(fspa.atoms) if item.name in names}
     literals = ((atom, fspa.atoms[atom].name in move.letter) for atom in given_atoms(fspa))
     return tuple((atom, holds) for atom, holds in literals if holds or atom in needed)

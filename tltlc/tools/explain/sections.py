@@ -14,6 +14,10 @@ from tltlc.tools.explain.explanation import ANYTHING, CountingRun, ExampleTrace,
 
 _MOST_RANGES = 3
 _MOST_ROWS = 40
+_MOST_ROWS_OF_MEMORY = 12
+"""With timers and other memory, a table with more rows is left out: their guards are long."""
+_MOST_LETTERS = 600
+"""A table with a longer cell is left out."""
 _MOST_LEADS = 4
 _MOST_FAILURES = 12
 _MOST_STATES = 8
@@ -127,7 +131,8 @@ def _failure_text(failure: TrapCondition, everywhere: str) -> str:
 def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
     """Return a table with a row for each state, and a sentence on the rows that are left out.
 
-    States that differ only in a count share a row. There are at most ``_MOST_ROWS`` rows.
+    States that differ only in a count share a row. There are at most ``_MOST_ROWS`` rows. A sentence replaces
+    the table if it is long.
     """
     runs = {run.states[0]: run for run in explanation.counting}
     continued = {state for run in explanation.counting for state in run.states[1:]}
@@ -137,6 +142,10 @@ def _states(explanation: Explanation) -> tuple[str | SectionTable, ...]:
         if state.id not in continued
     ]
     rows = tuple(_row(explanation, run) for run in shared_rows[:_MOST_ROWS])
+    is_long = bool(explanation.memory) and len(shared_rows) > _MOST_ROWS_OF_MEMORY
+    if is_long or any(len(row[-1]) > _MOST_LETTERS for row in rows):
+        count = len(explanation.states)
+        return (f"The table of the {count} states is left out, because it is long; `--format json` shows them.",)
     table = SectionTable(("State", "Verdict", "To go", "What remains", "What leads on"), rows)
     rest = sum(len(run.states) for run in shared_rows[_MOST_ROWS:])
     return (table, f"And {rest} more state{'s' * (rest > 1)}; `--format json` shows all of them.") if rest else (table,)
