@@ -83,8 +83,8 @@ def compare_groups(
         return trace if _accepts(b, trace, own_letters[1]) and is_possible(trace) else search.trace(1, trace)
 
     try:
-        only_a = _difference(groups_a, groups_b, lambda i, j: (found := compared(i, j)) and found.only_a, of_a)
-        only_b = _difference(groups_b, groups_a, lambda j, i: (found := compared(i, j)) and found.only_b, of_b)
+        only_a = _difference(groups_a, groups_b, lambda i, j: _trace(compared(i, j), 0), of_a)
+        only_b = _difference(groups_b, groups_a, lambda j, i: _trace(compared(i, j), 1), of_b)
     except (OutOfWork, _Undecided):
         return None
     impossible = dict.fromkeys(literals for comparison in known.values() for literals in comparison.impossible)
@@ -128,6 +128,10 @@ def _difference(
     if not is_decided:
         raise _Undecided
     return None
+
+
+def _trace(comparison: Comparison | None, side: int) -> Trace | None:
+    return None if comparison is None else (comparison.only_a, comparison.only_b)[side]
 
 
 def _are_same(one: Fspa, other: Fspa) -> bool:

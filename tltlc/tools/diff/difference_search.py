@@ -17,7 +17,7 @@ from tltlc.tools.witness.candidate_samples import LiteralSamples, without_regist
 from tltlc.tools.witness.guard_inputs import EdgeAim, GuardInputs, Literals, distances_to
 from tltlc.tools.witness.guided_search import GuidedSearch
 from tltlc.tools.witness.memory_search import Configuration, MemorySearch, Position
-from tltlc.tools.witness.step_lengths import atoms_of, length_names, letter_with_length, sample_with_length
+from tltlc.tools.witness.step_lengths import atoms_of, length_of, letter_with_length, sample_with_length
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -136,9 +136,10 @@ class DifferenceSearch:
     def _after(self, before: Position, letter: Letter) -> Position | None:
         """Return where a letter leads, the atoms of which are held by a sample; None if there is none."""
         atoms = atoms_of(letter)
+        seconds = length_of(letter, self._automata[0])
         exact = self._inputs_for({name: name in atoms for name in self._given})
         for given in (*exact, *self._inputs_for(dict.fromkeys(atoms & self._given, True))):
-            number = self._search.add_one(_with_length(given, letter))
+            number = self._search.add_one(_with_length(given, seconds))
             step = self._search.step(before.configuration, number)
             if step is not None:
                 return Position(before, number, 1, step.edges, step.after)
@@ -195,10 +196,8 @@ class _DifferenceAim:
         return (number for turn in zip_longest(*numbers) for number in turn if number is not None)
 
 
-def _with_length(given: TraceInput, letter: Letter) -> TraceInput:
-    """Return an input that comes as long after the one before as a letter does."""
-    for length in length_names(letter):
-        if isinstance(given, Mapping):
-            return sample_with_length(given, length.seconds)
-        return letter_with_length(given, length.seconds)
-    return given
+def _with_length(given: TraceInput, seconds: float | None) -> TraceInput:
+    """Return an input that comes so many seconds after the one before, if the clock varies."""
+    if seconds is None:
+        return given
+    return sample_with_length(given, seconds) if isinstance(given, Mapping) else letter_with_length(given, seconds)
