@@ -45,9 +45,14 @@ EXAMPLES = {
     "G F a": "At every step, reach a at that step or later.",
     "G G a": "Keep a throughout.",
     "G G G(a -> F b)": "Whenever a, reach b at that step or later.",
-    "G !F(a & X F b)": (
-        "At every step, either avoid a at that step or (at the next step, if there is one, avoid b throughout)."
-    ),
+    "G !F(a & X F b)": "Whenever a, at the next step, if there is one, avoid b throughout.",
+    "!F[0,3] a": "Avoid a for 4 steps.",
+    "!G[0,3] !a": "Reach a within 3 steps.",
+    "F !G[0,3] a": "Reach a step from which on to reach not a within 3 steps.",
+    "X F[0,3] a": "Reach a within the next 4 steps.",
+    "N G[0,3] a": "Keep a for the next 4 steps.",
+    "X G[0,3] a": "At the next step, keep a for 4 steps.",
+    "G !F(a & X F[0,3] b)": "Whenever a, avoid b for the next 4 steps.",
     "G(G a & N G b)": "Keep a throughout; and at every step, at the next step, if there is one, keep b throughout.",
     "F G a": "From some step on keep a throughout.",
     "!G F a": "From some step on avoid a throughout.",

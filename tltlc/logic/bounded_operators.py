@@ -10,7 +10,7 @@ from collections.abc import Container, Iterator, Sequence
 from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
-from tltlc.logic.formula import Formula, rebuild
+from tltlc.logic.formula import Formula, and_, not_, or_, rebuild, temporal
 
 LEAST: Final = 2
 """The fewest steps of a bound that is printed in bounded form: ``a | X a``, with one step, is not."""
@@ -46,6 +46,18 @@ def bounded_operator(node: Formula) -> Bounded | None:
         operator = _bounded_ending_in(last, outer, before)
         _operators[outer] = operator if operator and len(before) == len(_operands(operator.body, outer)) else None
     return _operators[node]
+
+
+def opposite(operator: Bounded) -> Formula:
+    """Return the expansion of the negation of a bounded operator: of ``G[0,2] !p`` for ``F[0,2] p``."""
+    body = operator.body.args[0] if operator.body.op == "not" else not_(operator.body)
+    expansion = body
+    for _ in range(operator.steps):
+        if operator.op == "F":
+            expansion = and_(body, temporal("N", (expansion,)))
+        else:
+            expansion = or_(body, temporal("X", (expansion,)))
+    return expansion
 
 
 def count_down(node: Formula) -> Formula | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic import formula as build
-from tltlc.logic.bounded_operators import Bounded, bounded_operator, operands_with_bounds
+from tltlc.logic.bounded_operators import Bounded, bounded_operator, operands_with_bounds, opposite
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
 from tltlc.logic.rewrite import simplify
@@ -119,10 +119,9 @@ def _clause(node: Formula, when: str, context: _SentenceContext) -> _RankedClaus
         return text if has_time(node) else f"{text} {when}", _rank_of_state(node)
     if context.depth == 0:
         return f"satisfy {write(node, ASCII, counts=context.counts)}", _SCOPED
-    if node.op in ("and", "or"):
-        operator = bounded_operator(node)
-        if operator is not None:
-            return _bounded_clause(operator, context)
+    operator = bounded_operator(node)
+    if operator is not None:
+        return _bounded_clause(operator, context)
     match node.op:
         case "not":
             return _clause(_without_negation(node), when, context)
@@ -258,7 +257,7 @@ def _throughout_clause(body: Formula, context: _SentenceContext) -> _RankedClaus
         if is_state(goal):
             return f"reach {object_phrase(goal)} again and again", _rank_of_state(goal)
         return f"again and again, {_last_clause(body, context)}", _CLAUSE
-    left, right = _implication(body)
+    left, right = _implication(_without_negation(body))
     if left is not None and right is not None:
         return f"whenever {phrase(left)}, {_last_clause(right, context)}", _CLAUSE
     return f"at every step, {_last_clause(body, context)}", _CLAUSE
@@ -326,6 +325,9 @@ def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
         return f"go on for {context.counts.number(count)} more step{'s' * (count > 1)}", _PLAIN
     if node.op == "N" and body is FALSE:
         return "be at the last step" if count == 1 else f"be at one of the last {context.counts.steps(count)}", _PLAIN
+    operator = bounded_operator(_without_negation(body)) if count == 1 else None
+    if operator is not None and is_state(operator.body) and (context.endless or node.op + operator.op in ("XF", "NG")):
+        return _bounded_clause(operator, context, begins_next=True)
     moment = "at the next step" if count == 1 else f"after {context.counts.time(count)}"
     if "X" not in ops:
         moment += ", if there is one" if count == 1 else ", if there are that many"
@@ -334,16 +336,16 @@ def _next_clause(node: Formula, context: _SentenceContext) -> _RankedClause:
     return f"{moment}, {_last_clause(body, context)}", _CLAUSE
 
 
-def _bounded_clause(operator: Bounded, context: _SentenceContext) -> _RankedClause:
-    """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``."""
+def _bounded_clause(operator: Bounded, context: _SentenceContext, begins_next: bool = False) -> _RankedClause:
+    """Return the clause of a bounded operator, ``F[0,n] p`` or ``G[0,n] p``, at the next step if it ``begins_next``."""
     steps, body = operator.steps, operator.body
+    time = "the next " * begins_next + context.counts.time(steps + (begins_next or operator.op == "G"))
     if operator.op == "F":
-        within = f"within {context.counts.time(steps)}"
         if is_state(body):
-            return f"reach {object_phrase(body)} {within}", _rank_of_state(body)
-        return f"reach {within} a {_step_noun(body, context)}", _CLAUSE
+            return f"reach {object_phrase(body)} within {time}", _rank_of_state(body)
+        return f"reach within {time} a {_step_noun(body, context)}", _CLAUSE
     if is_state(body):
-        return f"{imperative(body, 'keep', 'avoid')} for {context.counts.time(steps + 1)}", _rank_of_state(body)
+        return f"{imperative(body, 'keep', 'avoid')} for {time}", _rank_of_state(body)
     return f"at each of {context.counts.steps(steps + 1)} from here on, {_last_clause(body, context)}", _CLAUSE
 
 
@@ -371,10 +373,7 @@ def _last_clause(node: Formula, context: _SentenceContext, when: str = "at that 
 
 
 def _rank_of_state(state: Formula) -> int:
-    """Return the rank of a clause about ``state``, a formula without temporal operators.
-
-    The rank, such as ``_PLAIN``, decides where the clause needs brackets.
-    """
+    """Return the rank of a clause about ``state``, a formula without temporal operators."""
     return _PLAIN if is_literal(state) else _LIST
 
 
@@ -390,7 +389,8 @@ def _negation(node: Formula) -> Formula:
     """Return the negation of a formula, with ``not`` pushed through its outermost operator: ``F !a`` for ``G a``."""
     if node.op == "iff":
         return build.iff(node.args[0], complement(node.args[1]))
-    return complement(node, depth=1)
+    operator = bounded_operator(node)
+    return complement(node, depth=1) if operator is None else opposite(operator)
 
 
 def _is_about_end(node: Formula) -> bool:
