@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa, Guard, Implicant, Text
-from tltlc.automaton.memory import breaches_now, given_atoms
+from tltlc.automaton.memory import given_atoms
 from tltlc.automaton.memory_phrases import Speaker, spoken
 from tltlc.automaton.register_phrases import register_phrases
 from tltlc.automaton.text import formula_text, label_range_text, label_text, times_of
