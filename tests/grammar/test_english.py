@@ -185,7 +185,13 @@ def _order_meaning(clause: str, word: str, left: Here, *, is_negated: bool) -> H
 def time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX a WORD TIME`."""
     if prefix == "c then ":
+        in_order = both(c, at_some_step(a, 1, STEPS))
+        if clause in ("avoid", "require") and word in ("within", "in"):
+            return clause_meaning("reach" if clause == "require" else clause, in_order)
         return _next_goal_meaning(word) if clause == "reach" else None
+    if clause == "avoid" and word == "for":
+        # It may be about the first steps, or about steps on end.
+        return None
     if clause == "reach" and prefix == "c implies ":
         return None
     if clause == "avoid" and prefix == "c and " and word in ("within", "in"):
@@ -235,7 +241,7 @@ def prefix_meaning(clause: str, prefix: str, word: str) -> Whole | None:
 
 def prefix_time_meaning(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD TIME a`."""
-    if not prefix or prefix == "c then ":
+    if not prefix or (prefix == "c then " and clause == "reach"):
         return time_meaning(clause, prefix, word)
     if prefix == "c implies " and (clause == "require" or (clause == "keep" and word != "after")):
         return clause_meaning(clause, with_prefix(prefix, _time_in_clause("", word, a)))

@@ -72,7 +72,6 @@ def fixed_text(text: str) -> str:
         ("reach a after 3 steps", "require next after 3 steps eventually a"),
         ("keep a for 20 steps", "require always for 20 steps a"),
         ("keep a implies b within 20 steps", "keep a implies eventually within 20 steps b"),
-        ("avoid a for 20", "require always for 20 steps not a"),
         ("require eventually within 20 a", "require eventually within 20 steps a"),
         # A clause in a formula, a formula for a clause.
         ("keep a implies reach b", "keep a implies eventually b"),

@@ -101,7 +101,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("avoid a while b", "avoid a and b"),
     ("avoid a if b", "avoid a and b"),
     ("avoid a within 5 steps", "require not eventually within 5 steps a"),
-    ("avoid a for 5 steps", "require always for 5 steps not a"),
+    ("avoid a for 5 steps", None),
     ("require a before b", None),
     ("require a after b", "require b then a"),
     ("require a without b", "require a and not b"),

@@ -43,7 +43,7 @@ def _error(clause: str) -> tuple[str, Diagnostic]:
         ("keep alarm implies seen within the last 5 seconds", "keep alarm implies once within 5 s seen"),
         ("keep not seen in the last 20 steps", "keep not once within 20 steps seen"),
         ("reach hidden for the last 3 s", "reach time_holding(hidden) >= 3 s"),
-        ("keep alarm implies hidden for the last 3 s", "keep alarm implies time_holding(hidden) >= 3 s"),
+        ("keep alarm implies hidden for the last 3 s", "keep alarm implies historically for 3 s hidden"),
         ("reach hidden for 3 s", "reach time_holding(hidden) >= 3 s"),
         ("reach near(e) and hidden for 2 seconds", "reach time_holding((near(e) and hidden)) >= 2 s"),
         ("reach for 3 s hidden", "reach time_holding(hidden) >= 3 s"),

@@ -349,13 +349,14 @@ def test_a_time_after_until_gets_no_fix_where_more_follows(clause: str) -> None:
     assert error.help == "write `always for 2 s a` for `a until 2 s`"
 
 
-def test_never_for_a_time_gets_both_readings() -> None:
-    _, error = error_of("never a for 2 s")
+@pytest.mark.parametrize("clause", ["never a for 2 s", "avoid a for 2 s", "avoid for 2 s a"])
+def test_never_for_a_time_gets_both_readings(clause: str) -> None:
+    _, error = error_of(clause)
     assert error.fixes == ()
     for_two, never_two = re.findall("`([^`]*)`", error.help or "")
     check(for_two, lambda t: not any(a(t)[:2]))
-    assert never_two == "keep time_holding(a) < 2 s"
-    compile_text(f"{NAMES}spec s {{ {never_two} }}")
+    assert never_two == "avoid time_holding(a) >= 2 s"
+    check(never_two, lambda t: not any(all(a(t)[i : i + 3]) for i in range(len(t) - 2)))
 
 
 @pytest.mark.parametrize("value", ["alert", "not alert"])

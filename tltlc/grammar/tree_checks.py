@@ -30,6 +30,15 @@ _BOUND_HELP: Final = {
     "begins": "`once within 20 steps begins p`, or `begins p` without a bound",
     "ends": "`once within 20 steps ends p`, or `ends p` without a bound",
 }
+_AFTER: Final = {
+    "F": "`next after {time} eventually p`, or `eventually within {time} p` for the time until then",
+    "G": "`weak_next after {time} always p`, or `always for {time} p` for the time until then",
+}
+_VARYING_AFTER: Final = {
+    "F": "`eventually (p and time_holding(true) >= {time})`, which counts from the first step",
+    "G": "`always (time_holding(true) >= {time} implies p)`, which counts from the first step",
+}
+"""How to write operators that begin later."""
 
 _VARYING_BOUND_HELP: Final = {
     "F": "`eventually within 2 s p`",
@@ -121,6 +130,9 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.TemporalIn
             help_ += (
                 f", `{'next' if formula.op == 'X' else 'weak_next'} after {time} {operand}` if at the step after it"
             )
+    if word == "after" and formula.op in _AFTER:
+        later = (_VARYING_AFTER if varies else _AFTER)[formula.op]
+        help_ = f"write {later.format(time=_on_one_line(source, bound.high.span))}"
     yield _error(source, "TLT0111", title, bound.span, help_)
 
 

@@ -55,6 +55,8 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
     begin = goals[-1]
     time, end, is_clear_unit = _read_time(failure, at + 1)
     written = time if is_clear_unit else None
+    if forms is IN_TIME and kind != "reach" and has_token(failure, begin, at, {"THEN"}):
+        return _sequence_error(failure, (begin, end), _shown_time(failure, time, written))
     if forms is IN_TIME and is_clear_unit and end == stop and len(goals) == 1:
         diagnostic = shared_time_error(failure, at, (begin, at), time)
         if diagnostic is not None:
@@ -81,6 +83,10 @@ def time_error(failure: ParseFailure, forms: Forms) -> Diagnostic:
         is_clear = is_clear_unit and end == stop and _is_clear_operand(failure, operator + 1, at)
         parts = Parts(operand_text(failure, operator + 1, at), time.text, "", time)
         return rewrite_error(failure, at, (operator, stop), past, parts if is_clear else None, written)
+    if kind == "avoid" and forms is FOR_TIME:
+        is_clear = end == stop and _is_clear_operand(failure, begin, at) and failure.tokens[begin].type not in _UNARY
+        operand = operand_text(failure, begin, at) if is_clear else "a"
+        return _avoided_error(failure, at, operand, _shown_time(failure, time, written))
     if kind == "keep" and forms is FOR_TIME and last is not None and failure.tokens[last].type == "IMPLIES":
         return _holding_error(failure, operand_text(failure, operator, at), time)
     if kind != "keep":
@@ -109,6 +115,10 @@ def prefix_time_error(failure: ParseFailure, at: int, forms: Forms) -> Diagnosti
             "TLT0101", f"{quote_token(failure.tokens[at])} is not an operator", help_, span=span, write=text
         )
     is_clear = is_clear_unit and _is_clear_operand(failure, second, stop)
+    if at == first and kind == "avoid" and forms is FOR_TIME:
+        is_clear = _is_clear_operand(failure, second, stop) and failure.tokens[second].type not in _UNARY
+        operand = operand_text(failure, second, stop) if is_clear else "a"
+        return _avoided_error(failure, at, operand, _shown_time(failure, time, written))
     if forms is IN_TIME and is_clear_unit:
         diagnostic = (
             shared_time_error(failure, at, (second, stop), time)
@@ -147,6 +157,33 @@ def _holding_error(failure: ParseFailure, operand: str, time: Time) -> Diagnosti
         f"write `always for {time.text} {operand}` if it must hold from then on, `{so_far}` if it must have held so far"
     )
     return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", help_)
+
+
+def _sequence_error(failure: ParseFailure, part: tuple[int, int], time: Time) -> Diagnostic:
+    """Return the error for a time behind a sequence outside `reach`: `avoid a then b within 2 s`.
+
+    ``part`` is the range of token indices of the sequence and its time.
+    """
+    (begin, end), at, limit = part, failure.stop.index, f"within {time.text}"
+    title = f"{quote_token(failure.token)} is not an operator"
+    if failure.lacks_fixed_clock(limit):
+        return failure.error("TLT0101", title, FIXED_CLOCK)
+    then = last_index_of(failure, {"THEN"}, begin)
+    assert then is not None
+    is_clear = failure.token.text in ("within", "in") and end == formula_stop(failure)
+    is_clear = is_clear and not has_token(failure, begin, then, {"NOT", *INFIX})
+    is_clear = is_clear and is_of_one_step(failure, begin, then) and _is_clear_operand(failure, then + 1, at)
+    is_clear = is_clear and not has_token(failure, then + 1, at, {"NOT", *INFIX})
+    first, second = (text_of(failure, begin, then), text_of(failure, then + 1, at)) if is_clear else ("a", "b")
+    text = f"{first} then {limit} {second}"
+    if failure.tokens[0].text == "keep" and failure.start == "clause":
+        help_ = (
+            f"write `keep {limit} of {first}, {second}` if `{second}` must answer each `{first}`, `reach {text}` if it "
+            "must do so once"
+        )
+        return failure.error("TLT0101", title, help_)
+    diagnostic = suggest_rewrite(failure, begin, end, text, title) if is_clear and clause_keyword(failure) else None
+    return diagnostic or failure.error("TLT0101", title, f"write `a then {limit} b` for `a then b {limit}`")
 
 
 def _is_clear_time(failure: ParseFailure, begin: int, forms: Forms) -> bool:
@@ -234,10 +271,33 @@ def never_for_time(failure: ParseFailure) -> Diagnostic | None:
     if tokens[at].text != "for":
         text = f"require not eventually within {time.text} {operand}"
         return suggest_rewrite(failure, 0, stop, text, title, code="TLT0107")
-    help_ = f"write `require always for {time.text} not {operand}` if it must not hold from the first step until then"
-    if time.is_real:
-        help_ += f", `keep time_holding({operand}) < {time.text}` if it must never hold that long"
-    return failure.error("TLT0107", title, help_, span=tokens[0].span)
+    return failure.error("TLT0107", title, _readings_of_avoided(operand, time), span=tokens[0].span)
+
+
+def _avoided_error(failure: ParseFailure, at: int, operand: str, time: Time) -> Diagnostic:
+    """Return the error for `avoid a for 3 s`, where ``at`` is the index of `for`."""
+    help_ = FIXED_CLOCK if failure.lacks_fixed_clock(time.text) else _readings_of_avoided(operand, time)
+    word = failure.tokens[at]
+    return failure.error("TLT0101", f"{quote_token(word)} is not an operator", help_, span=word.span)
+
+
+def _shown_time(failure: ParseFailure, time: Time, written: Time | None) -> Time:
+    """Return a time if its unit is certain and a bound can have it, else another one, as an example."""
+    if written is not None and float(time.number) and (time.is_real or time.steps):
+        return time
+    declared = declared_names(failure.source)
+    return Time("2", "s") if declared.has_clock or declared.clock_varies else Time("20", "steps")
+
+
+def _readings_of_avoided(operand: str, time: Time) -> str:
+    """Return the help for a time for which something must not hold: `avoid a for 3 s`, `never a for 3 s`."""
+    parts = Parts(operand, time.text, time=time)
+    form = HOLDING if time.is_real else FOR_TIME["reach"]
+    on_end = operand if time.steps == 1 else parts.fill(form)
+    return (
+        f"write `{parts.fill(FOR_TIME['avoid'])}` if it must not hold from the first step until then, "
+        f"`avoid {on_end}` if it must never hold that long"
+    )
 
 
 def _read_time(failure: ParseFailure, at: int) -> tuple[Time, int, bool]:

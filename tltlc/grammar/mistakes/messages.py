@@ -15,6 +15,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr, past_words
 from tltlc.grammar.keywords import CASES, CLAUSES, DECLARATIONS, closest_word
 from tltlc.grammar.lexer import Token
+from tltlc.grammar.mistakes.answers_in_rules import answer_in_rule
 from tltlc.grammar.mistakes.clauses import CLAUSE_RULES
 from tltlc.grammar.mistakes.comparison_words import comparison_in_words
 from tltlc.grammar.mistakes.counts_in_words import never_counted
@@ -28,6 +29,7 @@ from tltlc.grammar.mistakes.filler_words import filler_word
 from tltlc.grammar.mistakes.fragments import is_first_on_line
 from tltlc.grammar.mistakes.habits import HABITS, dash_comment, long_arrow
 from tltlc.grammar.mistakes.misused_operators import misread_index, stop_at
+from tltlc.grammar.mistakes.negated_answers import negated_answer_in_rule
 from tltlc.grammar.mistakes.one_reading import has_token
 from tltlc.grammar.mistakes.parse_failure import (
     BEFORE_ONE,
@@ -39,6 +41,7 @@ from tltlc.grammar.mistakes.parse_failure import (
     quote_token,
 )
 from tltlc.grammar.mistakes.past import past_in_english
+from tltlc.grammar.mistakes.prohibitions import never_joined
 from tltlc.grammar.mistakes.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.mistakes.quantifier_words import quantifier_in_words
 from tltlc.grammar.mistakes.renaming import word_of_the_past
@@ -57,6 +60,11 @@ _BOUNDED_UNTILS: Final = {
     "STRONG_RELEASE": "(b U (a & b)) & F[0,20] (a & b)",
 }
 """Maps the terminal of an operator such as `U`, which takes no bound, to a formula for ``a U[0,20] b``."""
+
+_AFTER: Final = (
+    "write `keep a implies b` for a rule about each step with `a`, `keep a implies always b` for one from then on, "
+    "`reach a then b` for an order"
+)
 
 
 def unexpected_token(
@@ -310,6 +318,8 @@ def _names_side_by_side(failure: ParseFailure) -> Diagnostic | None:
             "TLT0101", f"{quote_token(token)} is not an operator", "join formulas with `and`, `or` or `then`"
         )
     text = f"{before.text}({token.text})"
+    if before.text == "after" and before.text not in declared_names(failure.source).names:
+        return failure.error("TLT0101", "`after` is not an operator", _AFTER, span=before.span)
     help_ = f"write `{text}` if `{before.text}` applies to `{token.text}`; otherwise join them with `and` or `then`"
     title = f"{quote_token(before)} and {quote_token(token)} are not joined"
     return failure.error("TLT0101", title, help_, span=span_of([before, token]), write=text)
@@ -336,10 +346,13 @@ _RULES: Final = (
     until_time,
     quantifier_in_words,
     colon_after_event,
+    answer_in_rule,
     response_in_english,
+    negated_answer_in_rule,
     duration_in_words,
     never_counted,
     never_for_time,
+    never_joined,
     past_in_english,
     rule_in_words,
     plain_english,

@@ -24,6 +24,11 @@ _LETTERS: Final = {"Y": "previously", "O": "once", "H": "historically"}
 _HAS_HELD: Final = ("was", "were", "had", "has", "have", "been", "ever", "already")
 _AUXILIARIES: Final = ("had", "has", "have")
 """Words that mean `once` only before `been` or with `before`: a predicate may be called `has`."""
+_AT_THE_END: Final = (
+    "write `keep {p}` if it must hold at every step, `require eventually always {held}` if it must have held for that "
+    "time when the play ends"
+)
+"""The readings of `keep seen for the last 5 s`."""
 
 
 def past_in_english(failure: ParseFailure) -> Diagnostic | None:
@@ -53,14 +58,25 @@ def _recent(failure: ParseFailure) -> Diagnostic | None:
         return failure.error("TLT0101", f"{quote_token(failure.token)} is not an operator", FIXED_CLOCK)
     operand = text_of(failure, start, at)
     text = f"once within {length.text} {operand}"
-    if words[0] == "for":
-        in_steps = f"historically for {length.text} {operand}"
-        text = f"time_holding({operand}) >= {length.text}" if length.is_real else in_steps
     title, before = f"{quote_token(failure.token)} is not an operator", tokens[start - 1].type
+    if words[0] == "for":
+        window = f"historically for {length.text} {operand}"
+        text = f"time_holding({operand}) >= {length.text}" if length.is_real else window
+        if tokens[0].text in ("keep", "require"):
+            if _is_whole_clause(failure, start, end):
+                return failure.error("TLT0101", title, _AT_THE_END.format(p=operand, held=text))
+            # At the first steps, nothing can have held for that time.
+            text = text if before == "NOT" else window
     # After `and`, the time may be that of both; `not a for …` may be that of `not a`.
     if start == formula_start(failure) or before == "IMPLIES" or (before == "NOT" and words[0] != "for"):
         return suggest_rewrite(failure, start, end, text, title)
     return failure.error("TLT0101", title, f"if the time is that of `{operand}` alone, write `{text}`")
+
+
+def _is_whole_clause(failure: ParseFailure, start: int, end: int) -> bool:
+    """Whether the tokens from one index to another are all that stands behind the keyword, perhaps in brackets."""
+    around = (*failure.tokens[1:start], *failure.tokens[end:-1])
+    return failure.start == "clause" and all(token.type in ("LPAR", "RPAR") for token in around)
 
 
 # --- words ------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from tltlc.grammar.lexer import END
 from tltlc.grammar.mistakes.declared_names import declared_names
 from tltlc.grammar.mistakes.english_rewrite import FIXED_CLOCK, Time
 from tltlc.grammar.mistakes.english_times import time_at
+from tltlc.grammar.mistakes.negated_answers import negated_answer_error
 from tltlc.grammar.mistakes.one_reading import QUANTIFIERS, TEMPORAL
 from tltlc.grammar.mistakes.parse_failure import INFIX, UNTILS, ParseFailure, outer_indices, quote_token
 from tltlc.grammar.mistakes.repeats import TokenRange, quantified_body, repeat_error
@@ -33,7 +34,9 @@ _LASTING: Final = {
     "avoid": "keep {head}{a} implies always for {t} not {b}",
 }
 """How to write that ``b`` holds for the time ``t`` from ``a`` on."""
-_NO_STATES: Final = TEMPORAL | UNTILS | QUANTIFIERS | {"THEN", "ONCE", "HISTORICALLY", "PREVIOUSLY", "WHEN"}
+_NO_STATES: Final = (
+    TEMPORAL | UNTILS | QUANTIFIERS | {"THEN", "ONCE", "HISTORICALLY", "PREVIOUSLY", "WHEN", "IMPLIES", "IFF"}
+)
 
 
 @record
@@ -73,6 +76,10 @@ def response_in_english(failure: ParseFailure) -> Diagnostic | None:
     if tokens[response.word].text in names or (first == "no" and first not in names):
         return None
     diagnostic = _repeat_error(failure, keyword, head, response)
+    is_rule = _FORMS.get(keyword) == _RULE and not (head or response.lasting)
+    if diagnostic is None and is_rule and _are_states(failure, response):
+        time = response.time.text
+        diagnostic = negated_answer_error(failure, response.event, response.answer, time, response.word)
     clause = _clause(failure, keyword, head, response)
     if diagnostic is None and clause is not None:
         title = f"{quote_token(tokens[response.word])} is not an operator"
