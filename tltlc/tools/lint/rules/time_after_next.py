@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import BinaryExpr, TemporalInterval, Unary
+from tltlc.grammar.tree import BinaryExpr, Unary
 from tltlc.tools.lint.file_view import FileView, ScopedExpression, operand_text, without_brackets
 from tltlc.tools.lint.rule import LintRule, RuleFinding
 
@@ -36,17 +36,23 @@ def _findings(part: ScopedExpression, event: ScopedExpression | None) -> Iterato
     yield RuleFinding(
         f"this time counts from the step after `{word}`",
         (Label(part.source, inner.bound.span, "the time from the event to that step comes on top"),),
-        _advice(part, inner, inner.bound, event),
+        _advice(part, outer, inner, event),
     )
 
 
-def _advice(part: ScopedExpression, timed: Unary, bound: TemporalInterval, event: ScopedExpression | None) -> str:
-    time = " ".join(part.source.slice(bound.high.span).split())
+def _advice(part: ScopedExpression, outer: Unary, timed: Unary, event: ScopedExpression | None) -> str:
+    assert timed.bound is not None
+    time, word = " ".join(part.source.slice(timed.bound.high.span).split()), part.source.slice(outer.op_span)
     avoided = without_brackets(timed.operand)
     if event is not None and timed.op == "G" and isinstance(avoided, Unary) and avoided.op == "not":
         first, second = operand_text(event), operand_text(part.with_tree(avoided.operand))
-        return f"to count from the event, write `avoid ({first}) then within {time} ({second})`"
-    return f"to count from the event, write `a then within {time} b`, or leave out `next`"
+        # `for` leaves out the end of the time, and `next` is false at the last step.
+        and_no_step = f", and asks for no step after `{first}`" if outer.op == "X" else ""
+        return (
+            f"to count from the event, write `avoid ({first}) then within {time} ({second})`, which also forbids "
+            f"`{second}` at exactly {time}{and_no_step}"
+        )
+    return f"to count from the {'event' if event else 'step before'}, leave out `{word}`: then that step counts, too"
 
 
 RULE = LintRule("TLT0439", "warning", check)
