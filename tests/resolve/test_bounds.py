@@ -88,3 +88,18 @@ def test_the_error_about_a_bound_names_the_one_of_its_own_spec() -> None:
     (problem,) = caught.value.diagnostics
     assert problem.code == "TLT0501"
     assert problem.labels[0].span.start > text.index("spec large")
+
+
+@pytest.mark.parametrize("clock", ["clock 60 Hz", "clock 1 Hz", "clock varies"])
+@pytest.mark.parametrize(
+    ("bounded", "unbounded"),
+    [
+        ("eventually within 60 s (a then within 5 s b)", "(a then within 5 s b)"),
+        ("eventually within 60 s eventually a", "eventually a"),
+        ("always for 60 s always a", "always a"),
+    ],
+)
+def test_a_bound_before_the_same_operator_without_one_is_left_out(clock: str, bounded: str, unbounded: str) -> None:
+    names = f"{clock}\nsignal a: bool\nsignal b: bool\n"
+    (one,), (other,) = (compile_text(f"{names}spec s {{ require {text} }}") for text in (bounded, unbounded))
+    assert one.formula == other.formula

@@ -15,7 +15,8 @@ def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
 
     ``within n`` means ``[0,n]``, ``for n`` means ``[0,n-1]``, and ``next after n`` means n times
     ``next``, which is ``F[n,n]``. If ``env.unbounded`` is set, the bound of ``F`` or ``G`` is left out
-    instead. With ``clock varies``, the result is the node of :func:`tltlc.logic.formula.timed`.
+    instead. With ``clock varies``, the result is the node of :func:`tltlc.logic.formula.timed`. A bound that
+    begins at once has no effect before an operator that is the same without a bound: ``F[0,n] F p`` is ``F p``.
 
     Raises ResolutionError: TLT0312 for a bound that makes no sense, TLT0313 for a bound in seconds
     without a clock, TLT0323 for a bound that needs a fixed clock.
@@ -39,6 +40,8 @@ def bounded_operator(expr: Unary, operand: Formula, env: Env) -> Formula:
     if low > high:
         advice = "write the smaller number first, e.g. `[0, 20]`"
         raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
+    if low == 0 and operand.op == expr.op:
+        return operand
     node = bounded("F[]" if expr.op in ("F", "X") else "G[]", low, high, operand)
     note_bound(node, high, expr, bound, env)
     return node
@@ -96,6 +99,8 @@ def _timed_operator(expr: Unary, operand: Formula, bound: TemporalInterval, env:
     if env.unbounded:
         return eventually(operand) if expr.op == "F" else always(operand)
     _check_above_0(time, word, bound, env)
+    if operand.op == expr.op:
+        return operand
     node = timed("F[]" if expr.op == "F" else "G[]", time, operand)
     note_bound(node, 0, expr, bound, env)
     return node

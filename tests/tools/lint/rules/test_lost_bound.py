@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
 from tests.tools.lint.helpers import findings_in
 from tltlc.automaton.compare import are_equivalent
+from tltlc.monitor import Monitor
 from tltlc.pipeline import compile_text
 
 SIGNALS = "clock 10 Hz\nsignal a: bool\nsignal b: bool\n"
@@ -16,6 +19,9 @@ CASES = {
     "require eventually F[0,3] a": "require eventually a",
     "require G (always for 3 steps a)": "require always a",
     "require b and (eventually (eventually within 3 steps a))": "require b and eventually a",
+    "require eventually within 2 s (a then b)": "reach a then b",
+    "require eventually within 2 s (a then within 1 s b)": "reach a then within 1 s b",
+    "keep b implies F[0,3] (a then b)": "keep b implies (a then b)",
 }
 """Maps clauses with a bound that has no effect to the same clauses without it."""
 
@@ -45,6 +51,9 @@ def test_a_bound_without_effect_is_reported(clause: str, without: str) -> None:
         "reach (eventually within 2 s a) then b",
         "reach a and (eventually within 2 s b)",
         "require not eventually within 2 s a",
+        "require F[1,5] (a then b)",
+        "require eventually (a then within 2 s b)",
+        "reach (a and time_holding(true) <= 2 s) then within 1 s b",
     ],
 )
 def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
@@ -52,6 +61,10 @@ def test_a_bound_with_an_effect_is_not_reported(clause: str) -> None:
 
 
 def test_the_advice_names_the_right_form() -> None:
+    assert helps("require eventually within 2 s (a then b)") == [
+        "leave it out; for a time from the first step, write `(a and time_holding(true) <= 2 s)` for `a`"
+    ]
+    assert helps("require F[0,7] (a then b)") == ["leave it out"]
     assert helps("reach eventually within 2 s a") == ["write `require eventually within 2 s a`"]
     assert helps("reach a then (eventually within 2 s b)") == ["write `a then within 2 s b`"]
     assert helps("reach a then (F[0,7] (a or b))") == ["write `a then within 7 steps (a or b)`"]
@@ -62,3 +75,14 @@ def test_the_advice_names_the_right_form() -> None:
         "write `(eventually within 2 s b) then within 3 s a`"
     ]
     assert helps("reach (always a) then (eventually within 3 s a)") == ["write `(always a) then within 3 s a`"]
+
+
+def test_the_advice_for_a_sequence_is_a_deadline_of_its_first_goal() -> None:
+    (fspa,) = compile_text(f"{SIGNALS}spec s {{ reach (a and time_holding(true) <= 0.3 s) then within 0.2 s b }}")
+    letters = list(product((False, True), repeat=2))
+    for trace in product(letters, repeat=6):
+        monitor = Monitor(fspa)
+        accepting = [monitor.step({"a": now_a, "b": now_b}).accepting for now_a, now_b in trace][-1]
+        assert accepting == any(
+            now_a and any(now_b for _, now_b in trace[at + 1 : at + 3]) for at, (now_a, _) in enumerate(trace[:4])
+        )

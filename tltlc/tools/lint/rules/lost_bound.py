@@ -1,4 +1,7 @@
-"""TLT0437: a bound without effect, as in `reach eventually within 5 s a`: `reach` may wait before the bound begins."""
+"""TLT0437: a bound without effect, as in `reach eventually within 5 s a`: `reach` may wait before the bound begins.
+
+In `eventually within 60 s (a then b)`, it is `then` that may wait for its first goal after the bound.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +30,7 @@ def check(view: FileView) -> Iterator[RuleFinding]:
             for part in parts:
                 yield from _in_sequence(part, is_rest=part.tree.span in rests)
                 yield from _in_operator(part)
+                yield from _before_sequence(part)
 
 
 def _in_sequence(part: ScopedExpression, *, is_rest: bool) -> Iterator[RuleFinding]:
@@ -59,6 +63,19 @@ def _in_operator(part: ScopedExpression) -> Iterator[RuleFinding]:
             yield _finding(inner, f"the `{word}` before it", "leave out one of the two operators")
 
 
+def _before_sequence(part: ScopedExpression) -> Iterator[RuleFinding]:
+    """Yield a finding for `eventually` with a bound before a sequence."""
+    outer = _bounded(part, "F") if isinstance(part.tree, Unary) else None
+    inner = without_brackets(_operand(outer).tree) if outer is not None else None
+    if outer is None or not isinstance(inner, BinaryExpr) or inner.op != "then":
+        return
+    first, time = operand_text(outer.with_tree(inner.left)), _bound_text(outer).removeprefix("within ")
+    advice = "leave it out"
+    if not time.endswith(("step", "steps")):
+        advice += f"; for a time from the first step, write `({first} and time_holding(true) <= {time})` for `{first}`"
+    yield _finding(outer, "`then`", advice, f"`then` waits for `{first}`, however long that takes")
+
+
 def _bounded(part: ScopedExpression, op: str) -> ScopedExpression | None:
     """Return the expression without brackets if it is the operator ``op`` with a bound that begins at once."""
     tree = without_brackets(part.tree)
@@ -81,10 +98,10 @@ def _bound_text(part: ScopedExpression) -> str:
     return f"within {' '.join(part.source.slice(high.span).split())}{'' if high.unit else ' steps'}"
 
 
-def _finding(part: ScopedExpression, cause: str, advice: str) -> RuleFinding:
+def _finding(part: ScopedExpression, cause: str, advice: str, message: str = "") -> RuleFinding:
     assert isinstance(part.tree, Unary)
     assert part.tree.bound is not None
-    message = f"{cause} may wait for any time before this time begins"
+    message = message or f"{cause} may wait for any time before this time begins"
     if part.tree.op == "G":
         message = f"{cause} asks for it at every step, so this time never ends"
     label = Label(part.source, part.tree.bound.span, message)
