@@ -37,6 +37,11 @@ EXAMPLES = {
     "F(c1 & X F e1 | c2 & X F e2) & G p": "Reach either (c1, then e1) or (c2, then e2), and keep p throughout.",
     "F(a & F b)": "Reach a, then or at the same time b.",
     "F(a & X F(b & G c))": "Reach a, then b and from that step on keep c throughout.",
+    "F(a & X(b | X(b | X b)))": "Reach a, then b within 3 steps after a.",
+    "F((a | b) & X(c | X c))": "Reach a or b, then c within 2 steps after (a or b).",
+    "F(a & X(b & X(c | X c) | X(b & X(c | X c))))": (
+        "Reach a, then b within 2 steps after a, then c within 2 steps after b."
+    ),
     "F a & F b & F c": "Reach a, reach b, and reach c.",
     "G(a -> F b)": "Whenever a, reach b at that step or later.",
     "G(!a | F b)": "Whenever a, reach b at that step or later.",

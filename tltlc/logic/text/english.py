@@ -13,6 +13,7 @@ from tltlc.logic.rewrite import simplify
 from tltlc.logic.text.counts import NUMBERS, CountPrinter
 from tltlc.logic.text.notation import ASCII, write
 from tltlc.logic.text.phrases import bracketed_phrase, has_time, imperative, is_literal, is_state, object_phrase, phrase
+from tltlc.logic.text.sequences import next_goal
 
 _PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
 """Ranks of English clauses, which decide where a clause needs brackets to be read correctly.
@@ -193,31 +194,14 @@ def _linked_goals(body: Formula, context: _SentenceContext) -> Iterator[tuple[st
 
     The link, such as ``then``, joins the goal to the previous one; the first link is empty.
     """
-    link = ""
-    while True:
-        following, rest = _next_goal(body)
-        if rest is None:
-            yield link, _goal(body, context)
-            return
-        yield link, phrase(build.and_(*(part for part in body.args if is_state(part))))
-        link, (body,) = following, rest.args
-
-
-def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """Return the link to the next goal, such as ``then``, and the formula ``F q`` of the next goal.
-
-    ``body`` is ``p & X F q`` or ``p & F q``. For any other body no goal follows, and the formula is
-    None.
-    """
-    if body.op != "and":
-        return "", None
-    temporal = [part for part in body.args if not is_state(part)]
-    if len(temporal) != 1 or len(body.args) == 1:
-        return "", None
-    (rest,) = temporal
-    if rest.op == "X" and rest.args[0].op == "F":
-        return "then", rest.args[0]
-    return ("then or at the same time", rest) if rest.op == "F" else ("", None)
+    link = time = ""
+    while (following := next_goal(body)) is not None:
+        state = build.and_(*(part for part in body.args if is_state(part)))
+        yield link, f"{phrase(state)}{time}"
+        steps = following.steps
+        time = "" if steps is None else f" within {context.counts.time(steps)} after {bracketed_phrase(state)}"
+        link, body = following.link, following.body
+    yield link, f"{_goal(body, context)}{time}"
 
 
 def _goal(body: Formula, context: _SentenceContext) -> str:
