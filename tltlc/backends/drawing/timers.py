@@ -108,7 +108,7 @@ def _timer(item: Atom, register: Register, registers: Mapping[str, Register], sp
     if isinstance(item.base, ComparisonName):
         event = counted(register, registers) if item.base.left == register.name and register.kind != "times" else None
         return None if event is None else _since(f"{item.base.right} s", register, _say(event, speaker))
-    if item.timer is None or register.kind == "due":
+    if item.timer is None or not item.arguments or register.kind == "due":
         return None
     time, *others = speaker.arguments(item, register)
     if register.kind in ("waiting", "breach") and others:
