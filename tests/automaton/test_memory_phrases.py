@@ -145,6 +145,10 @@ SENTENCES = [
         "require not (always for 20 s hidden) or eventually within 30 s near(door)",
         "Either reach not hidden within 20 s or reach near(door) within 30 s.",
     ),
+    (
+        "require (eventually within 20 s hidden) implies eventually seen",
+        "Either avoid hidden for 20 s or reach seen.",
+    ),
     ("keep not historically for 3 s hidden", "Have a step with not hidden in the last 3 s throughout."),
     (
         "avoid alarm and eventually within 20 s (seen and eventually within 10 s hidden)",
@@ -328,3 +332,13 @@ def test_a_negation_outside_and_one_inside_read_differently(outside: str, inside
         (fspa,) = compile_text(f"{GAME}spec s {{ require {formula} }}")
         texts.add(formula_text(fspa))
     assert len(texts) == 2
+
+
+def test_negated_times_read_alike_on_a_clock_that_varies() -> None:
+    for formula, english in (
+        ("not (always for 20 s seen)", "Reach not seen within 20 s."),
+        ("not (eventually within 20 s seen)", "Avoid seen for 20 s."),
+        ("(always for 20 s seen) implies eventually alarm", "Either reach not seen within 20 s or reach alarm."),
+    ):
+        (fspa,) = compile_text(f"{GAME.replace('10 Hz', 'varies')}spec s {{ require {formula} }}")
+        assert formula_text(fspa) == english

@@ -153,11 +153,14 @@ class Speaker:
         """Return ``!passed(5 s, a) U b`` as ``F`` of "b within 5 s after a", and ``lasted(5 s) R b`` as one atom.
 
         On a clock that varies, these are ``recent(5 s, a) U (recent(5 s, a) & b)`` and
-        ``lasted(5 s) R (lasted(5 s) | b)``. A negation of the one is the other, of ``!b``. Return None for any other
-        formula.
+        ``lasted(5 s) R (lasted(5 s) | b)``. A negation of the one is the other, of ``!b``, and so is a condition, as
+        in ``(!passed(5 s) U a) -> b``. Return None for any other formula.
         """
+        if node.op == "implies" and node.args[0].op in ("U", "R"):
+            given = self._in_time(not_(node.args[0]), done)
+            return None if given is None else or_(given, done[node.args[1]])
         if node.op == "not" and node.args[0].op in ("U", "R"):
-            node = complement(node.args[0], depth=1)
+            node = complement(node.args[0], depth=2)
             if not all(map(is_state, node.args)):
                 return None
         if node.op not in ("U", "R"):
