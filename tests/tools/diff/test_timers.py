@@ -134,6 +134,15 @@ def test_timers_that_imply_each_other_do_so_at_each_sample(form: str, clock: str
                     assert not any(all(values[name] == holds for name, holds in pair) for pair in conflicts)
 
 
+def test_predicates_that_read_a_time_imply_nothing() -> None:
+    # Both are divided by 8 s, but the first holds after 2 s and the second after 3 s.
+    automata = [
+        spec_of("reach calm", f"{NAMES}predicate calm in [-1, 1] = (time_since(jump, 10 s) - {time}) / 8 s\n")
+        for time in ("2 s", "3 s")
+    ]
+    assert not list(timer_conflicts((automata[0], automata[1]), ("calm",), (OF_A, OF_B)))
+
+
 def _times(fspa: Fspa) -> set[str]:
     bases = ("late", "passed", "recent", "lately", "held", "breach", "over", "lasted")
     return {atom.name for atom in fspa.atoms if atom.base in bases and "chain" not in atom.base}

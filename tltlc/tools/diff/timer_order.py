@@ -51,7 +51,7 @@ class _Timers:
         self.atoms = {atom.name: atom for atom in fspa.atoms}
         self.registers = {register.name: register for register in fspa.registers}
         following = following_atoms(fspa.atoms, fspa.registers)
-        self.timers = [atom for atom in fspa.atoms if atom.name in following]
+        self.timers = [atom for atom in fspa.atoms if atom.name in following and atom.timer is not None]
         self._split, self._suffix = split_names, suffix
 
     def named(self, atom: Atom) -> str:
@@ -70,7 +70,9 @@ class _Timers:
 def _atom_implies(one: _Timers, first: Atom, other: _Timers, second: Atom) -> bool:
     if one.named(first) == other.named(second):
         return True
-    return first.base == second.base and _implies(one, first.expression, other, second.expression)
+    # A predicate may compute anything from a register.
+    are_timers = first.timer is not None and second.timer is not None
+    return are_timers and first.base == second.base and _implies(one, first.expression, other, second.expression)
 
 
 def _implies(one: _Timers, first: Expression, other: _Timers, second: Expression) -> bool:
