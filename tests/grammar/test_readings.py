@@ -11,14 +11,12 @@ from itertools import product
 
 import pytest
 
+from tests.grammar.suggestions import Meaning, Trace, a, b, error_of
 from tltlc import compile_text
 from tltlc.core.source import SourceFile
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor
 from tltlc.tools.lint.scopes import apply_edits
 
-Trace = tuple[tuple[bool, ...], ...]
-Meaning = Callable[[Trace], bool]
 NAMES = """
 clock 1 Hz
 signal a: bool
@@ -31,15 +29,6 @@ VARIES = NAMES.replace("clock 1 Hz", "clock varies")
 LONGEST = {1: 6, 2: 4, 3: 4}
 """The greatest length of the traces, by the number of signals."""
 KEYWORDS = ("keep", "reach", "avoid", "require")
-
-
-def a(trace: Trace) -> list[bool]:
-    return [sample[0] for sample in trace]
-
-
-def b(trace: Trace) -> list[bool]:
-    """Return where b holds, or mode is alert, or phase is 2."""
-    return [sample[1] for sample in trace]
 
 
 def c(trace: Trace) -> list[bool]:
@@ -81,13 +70,6 @@ def is_absent(t: Trace) -> bool:
 def stops(t: Trace) -> bool:
     """Whether b does not hold at each a, or at one of the two steps after it."""
     return answers(a(t), [not now for now in b(t)])
-
-
-def error_of(clause: str, names: str = NAMES) -> tuple[str, Diagnostic]:
-    text = f"{names}spec s {{ {clause} }}"
-    with pytest.raises(TltlError) as failure:
-        compile_text(text)
-    return text, failure.value.diagnostics[0]
 
 
 def quoted(clause: str, names: str = NAMES) -> list[str]:
@@ -156,9 +138,10 @@ def test_each_reading_has_the_meaning_that_the_help_says(clause: str, readings: 
 
 @pytest.mark.parametrize("clause", [clause for clause in READINGS if "step" not in clause])
 def test_each_reading_compiles_where_the_clock_varies(clause: str) -> None:
-    for text in quoted(clause, VARIES):
-        if text.startswith(KEYWORDS):
-            compile_text(f"{VARIES}spec s {{ {text} }}")
+    clauses = [text for text in quoted(clause, VARIES) if text.startswith(KEYWORDS)]
+    assert len(clauses) == len(READINGS[clause])
+    for text in clauses:
+        assert compile_text(f"{VARIES}spec s {{ {text} }}")
 
 
 @pytest.mark.parametrize(
@@ -198,7 +181,7 @@ MEANINGS: Mapping[str, Meaning] = {
 
 @pytest.mark.parametrize(("clause", "meaning"), MEANINGS.items(), ids=MEANINGS)
 def test_a_help_has_the_meaning_of_the_sentence(clause: str, meaning: Meaning) -> None:
-    text, error = error_of(clause)
+    text, error = error_of(clause, NAMES)
     if error.fixes:
         fixed = apply_edits(SourceFile("a.tltl", text), error.fixes[0].edits).text
         check(fixed.removeprefix(f"{NAMES}spec s {{").removesuffix("}"), meaning)
@@ -241,7 +224,7 @@ def test_an_answer_in_an_unclear_rule_gets_a_general_help(clause: str) -> None:
 
 @pytest.mark.parametrize("clause", ["keep after a, b and not c within 2 s", "keep after a, c implies b within 2 s"])
 def test_after_is_no_predicate(clause: str) -> None:
-    _, error = error_of(clause)
+    _, error = error_of(clause, NAMES)
     assert error.fixes == ()
     assert error.title == "`after` is not an operator"
     assert "after(a)" not in (error.help or "")

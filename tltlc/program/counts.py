@@ -55,12 +55,16 @@ class Counts:
 
     def __init__(self, computations: Mapping[str, Sequence[Statement]], candidates: Sequence[CountCandidate]) -> None:
         self._twins = {
-            one: other for each in candidates for one, other in ((each.before, each.now), (each.now, each.before))
+            one: other
+            for register in candidates
+            for one, other in ((register.before, register.now), (register.now, register.before))
         }
-        self._kept = {name: each.magnitude for each in candidates for name in (each.before, each.now)}
+        self._kept = {name: register.magnitude for register in candidates for name in (register.before, register.now)}
         self._magnitudes: dict[str, float] = {}
-        statements = [each for statements in computations.values() for each in _flat(statements)]
-        temporary = {each.name for each in statements if isinstance(each, Declare) and each.type == "real"}
+        statements = [statement for statements in computations.values() for statement in _flat(statements)]
+        temporary = {
+            statement.name for statement in statements if isinstance(statement, Declare) and statement.type == "real"
+        }
         self.names = set(self._kept) | (temporary - computations.keys())
         while wrong := set(self._wrong(statements)):
             self.names -= wrong | {self._twins[name] for name in wrong if name in self._twins}

@@ -128,7 +128,8 @@ class TruthForms:
 
 
 def _declares_number(name: str, statements: Iterable[Statement]) -> bool:
-    return any(isinstance(each, Declare) and each.name == name and each.type == "real" for each in statements)
+    declared = (statement for statement in statements if isinstance(statement, Declare))
+    return any(declaration.name == name and declaration.type == "real" for declaration in declared)
 
 
 def _compare(number: float, op: str, limit: float) -> bool:

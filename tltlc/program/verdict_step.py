@@ -83,7 +83,8 @@ def verdict_step(program: Program) -> VerdictStep:
     eager |= computations.keys() - program.unchecked
     needed = _needed(forms.statements, eager | variables_read(s for case in cases for s in case.statements), twins)
     computed = {name: statements for name, statements in forms.statements.items() if name in needed}
-    counts = Counts(computed, [each for each in _candidates(program) if {each.now, each.before} <= forms.numbers])
+    candidates = [register for register in _candidates(program) if {register.now, register.before} <= forms.numbers]
+    counts = Counts(computed, candidates)
     computed = {name: counts.statements(statements) for name, statements in computed.items()}
     read = variables_read(statement for statements in computed.values() for statement in statements)
     unread = [name not in eager | read for name in program.atoms]
@@ -137,8 +138,8 @@ def _needed(
         if name in found:
             continue
         found[name] = None
-        read = (twins.get(each, each) for each in variables_read(statements[name]))
-        open_ += [each for each in read if each in statements]
+        read = (twins.get(variable, variable) for variable in variables_read(statements[name]))
+        open_ += [variable for variable in read if variable in statements]
     return frozenset(found)
 
 

@@ -19,13 +19,18 @@ def verdict_pieces(program: Program, printer: CPrinter) -> dict[str, str]:
     if not read and all(signal.type == "bool" for signal in program.fspa.signals):
         read = ["(void)sample;"]
     read += code.params(step.variables_used)
-    read += [f"const {printer.TYPES[each.type]} {each.before} = monitor->memory.{each.before};" for each in step.kept]
+    read += [
+        f"const {printer.TYPES[register.type]} {register.before} = monitor->memory.{register.before};"
+        for register in step.kept
+    ]
     move = _move(step, code, printer, has_tables=program.tables is not None)
-    keep = [f"monitor->memory.{each.before} = {each.now};" for each in step.kept]
+    keep = [f"monitor->memory.{register.before} = {register.now};" for register in step.kept]
     lines = snippets.paragraphs(read, code.compute(), code.check(step.exclusive), move, keep)
     return {
         "verdict_fields": printer.block(map(_field, step.kept) if step.kept else ["bool none;"], 2),
-        "verdict_starts": printer.block([f"monitor->memory.{each.before} = {_start(each)};" for each in step.kept]),
+        "verdict_starts": printer.block(
+            [f"monitor->memory.{register.before} = {_start(register)};" for register in step.kept]
+        ),
         "verdict_step": printer.block(lines),
     }
 

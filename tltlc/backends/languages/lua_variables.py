@@ -50,7 +50,7 @@ def register_fields(program_: Program) -> dict[str, str]:
 def _fields(
     table: str, declared: Sequence[Signal | Param | Atom | Register], variables: Sequence[str]
 ) -> dict[str, str]:
-    return {variable: f"{table}{key_access(each.name)}" for each, variable in zip(declared, variables, strict=True)}
+    return {variable: f"{table}{key_access(part.name)}" for part, variable in zip(declared, variables, strict=True)}
 
 
 def _computations(program_: Program) -> tuple[tuple[Statement, ...], ...]:

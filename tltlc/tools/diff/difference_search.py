@@ -197,7 +197,7 @@ class _DifferenceAim:
 
 
 def _with_length(given: TraceInput, seconds: float | None) -> TraceInput:
-    """Return an input that comes so many seconds after the one before, if the clock varies."""
+    """Return an input with the length of its step in seconds; the input itself if ``seconds`` is None."""
     if seconds is None:
         return given
     return sample_with_length(given, seconds) if isinstance(given, Mapping) else letter_with_length(given, seconds)
