@@ -19,6 +19,7 @@ from benchmarks.measure import median, quartiles
 from benchmarks.monitors import ROUND_S, ROUNDS
 from benchmarks.specs import PAPER_SPECS, trace
 from benchmarks.store import Record, Store, measure_missing
+from tltlc.program.enums import pascal_case
 
 SECTION = "engines"
 TIMEOUT_S: Final = 600.0
@@ -105,7 +106,8 @@ def _version(engine: Engine) -> str:
 
 def _bytes(engine: Engine, task: Task) -> Mapping[str, int]:
     """Return the bytes of the generated files, as they are and without comments."""
-    texts = [(task.folder / name.format(name=task.name)).read_text(encoding="utf-8") for name in engine.sources]
+    files = [file.format(name=task.name, Name=pascal_case(task.name)) for file in engine.sources]
+    texts = [(task.folder / file).read_text(encoding="utf-8") for file in files]
     return {
         "file": sum(len(text.encode()) for text in texts),
         "without comments": sum(len(without_comments(engine, text).encode()) for text in texts),

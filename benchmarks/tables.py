@@ -63,7 +63,7 @@ LANGUAGES: Final = {
         "csharp",
         "Steps.cs",
         ("mono", "steps.exe"),
-        ("mcs", "-optimize+", "-out:steps.exe", "Steps.cs", "quiet_monitor.cs"),
+        ("mcs", "-optimize+", "-out:steps.exe", "Steps.cs", "QuietMonitor.cs"),
     ),
     "javascript": Language("JavaScript, Node", "javascript", "steps.mjs", ("node", "steps.mjs")),
     "lua": Language("Lua", "lua", "steps.lua", ("lua", "steps.lua"), monitors=400),

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill, make
+from tltlc.program.enums import pascal_case
 
 _COMPILER = ("mcs", "-langversion:6", "-optimize+", "-debug-")
 
 
 def _build(task: Task) -> tuple[str, ...]:
     assignments = ", ".join(
-        f"{signal.field} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
+        f"{pascal_case(signal.field)} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
         for place, signal in enumerate(task.signals)
     )
-    generated = f"Tltl.{task.name}_monitor"
+    generated = f"Tltl.{pascal_case(task.name)}Monitor"
     for author, pass_, types in (
         ("generated", "Generated", (generated, f"{generated}.Result", f"{generated}.Signals")),
         ("by_hand", "ByHandPass", ("ByHand.Monitor", "ByHand.Result", "ByHand.Signals")),
@@ -37,7 +38,7 @@ def _compiled_sizes(task: Task) -> Mapping[str, Mapping[str, int]]:
 
 
 def _generated(task: Task) -> tuple[str, ...]:
-    return (f"{task.name}_monitor.cs",)
+    return (f"{pascal_case(task.name)}Monitor.cs",)
 
 
 def _by_hand(task: Task) -> tuple[str, ...]:
@@ -50,7 +51,7 @@ ENGINES = (
         title="C#, Mono",
         target="csharp",
         version=("mono", "--version"),
-        sources=("{name}_monitor.cs",),
+        sources=("{Name}Monitor.cs",),
         comments=("//",),
         build=_build,
         compiled=_compiled_sizes,

@@ -60,7 +60,8 @@ class Engine:
     row per step, first of the generated monitor and then of the handwritten one; ``COMMAND time
     ROUNDS SECONDS TRACE`` prints JSON lines. ``compiled`` returns the bytes of both monitors in the
     compiler's output, by author and kind of output. ``sources`` are the generated files that a game
-    uses. Lines that start with one of ``comments`` contain only a comment.
+    uses; ``{name}`` in them stands for the name of the spec, and ``{Name}`` for this name in Pascal
+    case. Lines that start with one of ``comments`` contain only a comment.
     """
 
     name: str

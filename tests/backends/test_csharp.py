@@ -30,6 +30,7 @@ from tltlc.core.record import replace
 from tltlc.expression.tree import Const, Op, SignalValue
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
+from tltlc.program.enums import pascal_case
 from tltlc.resolve import spec
 
 pytestmark = pytest.mark.skipif(not (shutil.which("mcs") and shutil.which("mono")), reason="there is no Mono here")
@@ -39,7 +40,7 @@ def write_monitor(fspa: Fspa, folder: Path) -> str:
     for name, text in emit("csharp", fspa).items():
         assert isinstance(text, str)
         (folder / name).write_text(text)
-    return (folder / f"{fspa.name}_monitor.cs").read_text()
+    return (folder / f"{pascal_case(fspa.name)}Monitor.cs").read_text()
 
 
 def compile_program(folder: Path, *words: str) -> None:
@@ -91,40 +92,76 @@ def test_hostile_names_stay_distinct(tmp_path: Path, every: int) -> None:
     assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == limiting, err
 
 
+def test_public_names_are_in_pascal_case(tmp_path: Path) -> None:
+    text = """
+        entity boss_door
+        signal distance(boss_door): length in [0 m, 9 m]
+        signal room_1_2: bool
+        signal room_12: bool
+        signal guard_mode: (idle, chase_down)
+        signal missing in [0, 1]
+        signal Missing in [0, 1]
+        param min_keys in [1, 3] = 2
+        spec boss_fight { reach distance(boss_door) < min_keys * 1 m then room_1_2 and room_12 then
+            guard_mode is chase_down and missing > 0.5 and Missing > 0.5 }
+    """
+    (fspa,) = compile_text(text)
+    written = write_monitor(fspa, tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        *("BossFightMonitor.cs", "BossFightMonitorBehaviour.cs", "BossFightMonitorProgram.cs")
+    ]
+    (signals,) = re.findall(r"public struct Signals\n(.*?)public static Signals", written, re.DOTALL)
+    fields = ["DistanceBossDoor", "Room1_2", "Room12", "GuardMode", "Missing_1", "Missing_2"]
+    assert re.findall(r"public \w+ (\w+);", signals) == fields
+    for path in tmp_path.iterdir():
+        code = re.sub(r"//.*", "", path.read_text())
+        names = {*re.findall(r"\b(?:public|protected|internal) [^;=({]*?(\w+)\s*(?=[;=({:])", code)}
+        assert path.stem in names
+        assert {"MinKeys", "ChaseDown", "TryStep"} <= names or path.stem != "BossFightMonitor"
+        assert all(re.fullmatch(r"[A-Z][A-Za-z0-9]*(_\d+)?", name) for name in names), names
+    compile_program(tmp_path, "-target:library", "BossFightMonitor.cs")
+
+
+def test_a_game_can_compile_all_files_beside_its_own_main(tmp_path: Path) -> None:
+    write_monitor(cover_and_hide(), tmp_path)
+    (tmp_path / "game.cs").write_text(f"{UNITY}{GAME}")
+    compile_program(tmp_path, *sorted(path.name for path in tmp_path.glob("*.cs")))
+
+
 # --- as a library ---------------------------------------------------------------------------------
 
 LIBRARY = r"""
 using System;
-using Monitor = Tltl.cover_and_hide_monitor;
+using Monitor = Tltl.CoverAndHideMonitor;
 
 internal static class Library
 {
     private static void Main()
     {
         var given = Monitor.Params.Defaults;
-        given.level_size = 1.0;
+        given.LevelSize = 1.0;
         try { new Monitor(given); } catch (ArgumentException problem) { Console.WriteLine(problem.Message); }
-        given.level_size = double.NegativeInfinity;
+        given.LevelSize = double.NegativeInfinity;
         try { new Monitor(given); } catch (ArgumentException problem) { Console.WriteLine(problem.Message); }
-        given.level_size = 10.0;
+        given.LevelSize = 10.0;
         var monitor = new Monitor(given);
         for (int round = 0; round < 2; round++)
         {
             var sample = Monitor.Signals.Missing;
-            sample.distance_s1 = sample.distance_s2 = sample.distance_exit = 5.0;
+            sample.DistanceS1 = sample.DistanceS2 = sample.DistanceExit = 5.0;
             Tell(monitor, sample);
-            sample.health = 2.0;
+            sample.Health = 2.0;
             var result = monitor.Step(sample);
             Console.WriteLine("{0} {1} {2:R}", result.Label, result.Limiting, result.Progress);
-            sample.distance_s1 = sample.distance_exit = 0.5;
+            sample.DistanceS1 = sample.DistanceExit = 0.5;
             Tell(monitor, sample);
             Console.WriteLine("{0} {1} {2}", monitor.State, monitor.Steps, monitor.Done);
             monitor.Reset();
         }
         for (int i = 0; i < monitor.NoticeCount; i++) Console.WriteLine(monitor.NoticeAt(i));
         var far = Monitor.Signals.Missing;
-        far.distance_s1 = far.distance_s2 = far.distance_exit = 20.0;
-        far.health = 1.0;
+        far.DistanceS1 = far.DistanceS2 = far.DistanceExit = 20.0;
+        far.Health = 1.0;
         Monitor.Result ignored;
         monitor.TryStep(far, out ignored);
         long before = GC.GetTotalMemory(false);
@@ -146,7 +183,7 @@ def test_a_host_gets_results_notices_and_errors(tmp_path: Path) -> None:
     fspa = cover_and_hide()
     write_monitor(fspa, tmp_path)
     (tmp_path / "library.cs").write_text(LIBRARY)
-    compile_program(tmp_path, "-out:library.exe", "library.cs", "cover_and_hide_monitor.cs")
+    compile_program(tmp_path, "-out:library.exe", "library.cs", "CoverAndHideMonitor.cs")
     monitor = Monitor(fspa, {"level_size": 10.0})
     step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
     together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
@@ -218,51 +255,51 @@ namespace UnityEngine.Events
 """A stand-in for Unity's library."""
 
 GAME = r"""
-internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
+internal sealed class Game : Tltl.CoverAndHideMonitorBehaviour
 {
     private static void Main()
     {
         var game = new Game();
-        game.onDone.AddListener(() => System.Console.WriteLine("done"));
-        game.onSuccess.AddListener(() => System.Console.WriteLine("success"));
-        game.onViolated.AddListener(() => System.Console.WriteLine("violated"));
-        game.onProgress.AddListener(value => System.Console.WriteLine("progress {0:F2}", value));
+        game.OnDone.AddListener(() => System.Console.WriteLine("done"));
+        game.OnSuccess.AddListener(() => System.Console.WriteLine("success"));
+        game.OnViolated.AddListener(() => System.Console.WriteLine("violated"));
+        game.OnProgress.AddListener(value => System.Console.WriteLine("progress {0:F2}", value));
         System.Console.WriteLine(game.Step());
         game.OnEnable();
         game.FixedUpdate();
         System.Console.WriteLine(game.Step());
         game.Step();
-        game.signals.distance_s1 = game.signals.distance_s2 = game.signals.distance_exit = 20.0;
-        game.signals.health = 2.0;
-        game.stepInFixedUpdate = true;
+        game.Signals.DistanceS1 = game.Signals.DistanceS2 = game.Signals.DistanceExit = 20.0;
+        game.Signals.Health = 2.0;
+        game.StepInFixedUpdate = true;
         game.FixedUpdate();
-        game.signals.distance_s1 = 0.5;
+        game.Signals.DistanceS1 = 0.5;
         game.FixedUpdate();
-        game.signals.health = 0.0;
+        game.Signals.Health = 0.0;
         game.FixedUpdate();
         System.Console.WriteLine(game.Step());
         System.Console.WriteLine(game.Result.Verdict);
         game.OnEnable();
         System.Console.WriteLine(game.Monitor.Steps);
-        game.restartWhenEnabled = true;
+        game.RestartWhenEnabled = true;
         game.OnEnable();
         System.Console.WriteLine(game.Monitor.Steps);
-        game.signals.health = 1.0;
+        game.Signals.Health = 1.0;
         for (int button = 0; button < 3; button++)
         {
-            game.signals.distance_s1 = button == 0 ? 0.5 : 20.0;
-            game.signals.distance_s2 = button == 1 ? 0.5 : 20.0;
-            game.signals.distance_exit = button == 2 ? 0.5 : 20.0;
+            game.Signals.DistanceS1 = button == 0 ? 0.5 : 20.0;
+            game.Signals.DistanceS2 = button == 1 ? 0.5 : 20.0;
+            game.Signals.DistanceExit = button == 2 ? 0.5 : 20.0;
             game.FixedUpdate();
         }
         // What comes behind the end changes nothing more.
-        game.signals.health = 0.0;
+        game.Signals.Health = 0.0;
         System.Console.WriteLine(game.Step());
         System.Console.WriteLine(game.Result.Verdict);
         // What the last episode was given is forgotten.
         game.Restart();
         System.Console.WriteLine(game.Step());
-        game.parameters.level_size = 0.0;
+        game.Parameters.LevelSize = 0.0;
         game.Restart();
         System.Console.WriteLine(game.Step());
     }
@@ -273,7 +310,7 @@ internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
 def test_the_component_for_unity_raises_events_and_reports_errors(tmp_path: Path) -> None:
     write_monitor(cover_and_hide(), tmp_path)
     (tmp_path / "game.cs").write_text(UNITY + GAME)
-    sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
+    sources = ("game.cs", "CoverAndHideMonitor.cs", "CoverAndHideMonitorBehaviour.cs")
     compile_program(tmp_path, "-out:game.exe", *sources)
     lines = [
         *("False", "error: step 1: no finite number for the signal `distance(s1)`", "False"),
@@ -287,29 +324,29 @@ def test_the_component_for_unity_raises_events_and_reports_errors(tmp_path: Path
 
 
 HURRY = r"""
-internal sealed class Game : Tltl.hurry_monitor_behaviour
+internal sealed class Game : Tltl.HurryMonitorBehaviour
 {
     private static void Main()
     {
         var game = new Game();
-        game.onDone.AddListener(() => System.Console.WriteLine("done"));
-        game.stepInFixedUpdate = true;
+        game.OnDone.AddListener(() => System.Console.WriteLine("done"));
+        game.StepInFixedUpdate = true;
         game.OnEnable();
         System.Console.WriteLine(game.Step(-0.25) + " " + game.Step(double.NaN));
-        game.signals.x = 0.0;
+        game.Signals.X = 0.0;
         game.FixedUpdate();
         game.FixedUpdate();
         System.Console.WriteLine(game.Monitor.RegisterAt(1));
         // The time of a refused sample counts for the next one, but not a wrong time.
-        game.signals.x = double.NaN;
+        game.Signals.X = double.NaN;
         System.Console.WriteLine(game.Step(0.25) + " " + game.Step(-4.0) + " " + game.Step(double.NaN));
-        game.signals.x = 0.0;
+        game.Signals.X = 0.0;
         System.Console.WriteLine(game.Step(0.5) + " " + game.Monitor.RegisterAt(1));
-        game.signals.x = double.NaN;
+        game.Signals.X = double.NaN;
         game.Restart();
         System.Console.WriteLine(game.Step(9.0));
         game.Restart();
-        game.signals.x = 0.0;
+        game.Signals.X = 0.0;
         System.Console.WriteLine(game.Step(0.0) + " " + game.Step(0.125) + " " + game.Monitor.RegisterAt(1));
     }
 }
@@ -321,7 +358,7 @@ def test_the_component_for_unity_takes_the_time_of_a_frame(tmp_path: Path) -> No
     (fspa,) = compile_text(f"clock varies {signals} spec hurry {{ keep time_holding(not late) <= 1 s or x > 0.5 }}")
     write_monitor(fspa, tmp_path)
     (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}{HURRY}")
-    sources = ("game.cs", "hurry_monitor.cs", "hurry_monitor_behaviour.cs")
+    sources = ("game.cs", "HurryMonitor.cs", "HurryMonitorBehaviour.cs")
     compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     refused = "error: step 1: its time since the sample before is -0.25, not a number of seconds"
     missing = ": no finite number for the signal `x`"
@@ -337,7 +374,7 @@ def test_the_component_for_unity_takes_the_time_of_a_frame(tmp_path: Path) -> No
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("program")
     write_monitor(cover_and_hide(), folder)
-    compile_program(folder, "-define:TLTL_MAIN", "cover_and_hide_monitor.cs")
+    compile_program(folder, "-define:TLTL_MAIN", "CoverAndHideMonitor.cs", "CoverAndHideMonitorProgram.cs")
     return folder
 
 
@@ -346,7 +383,7 @@ def test_the_program_prints_the_same_numbers_in_other_cultures(program: Path, cu
     """Some cultures write numbers with commas, or a capital i with a dot."""
     samples = [{**FAR, "distance(s1)": 0.25}, {**FAR, "distance(s2)": 7.5}, {**FAR, "health": -1.5}]
     result = subprocess.run(
-        ["mono", "cover_and_hide_monitor.exe", "--full", "-"],
+        ["mono", "CoverAndHideMonitor.exe", "--full", "-"],
         input=trace_of(samples, [*FAR]).encode(),
         capture_output=True,
         cwd=program,
@@ -366,14 +403,14 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
     )
     write_monitor(fspa, tmp_path)
     (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}{GAME}")
-    sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
+    sources = ("game.cs", "CoverAndHideMonitor.cs", "CoverAndHideMonitorBehaviour.cs")
     compile_program(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     assert "A ratio in [0, 1]." in (tmp_path / "game.xml").read_text()
 
 
 DECIMALS = r"""
 using System;
-using Decimals = Tltl.cover_and_hide_monitor_program.Decimals;
+using Decimals = Tltl.CoverAndHideMonitorProgram.Decimals;
 
 internal static class Numbers
 {
@@ -408,8 +445,8 @@ def test_decimals_are_exact(program: Path) -> None:
         "5.",
     ]
     (program / "numbers.cs").write_text(DECIMALS)
-    words = ("-define:TLTL_MAIN", "-main:Numbers", "-out:numbers.exe", "numbers.cs", "cover_and_hide_monitor.cs")
-    compile_program(program, *words)
+    words = ("-define:TLTL_MAIN", "-main:Numbers", "-out:numbers.exe", "numbers.cs")
+    compile_program(program, *words, "CoverAndHideMonitor.cs", "CoverAndHideMonitorProgram.cs")
     status, out, err = run_program(program, "numbers.exe", stdin="".join(f"{text}\n" for text in texts).encode())
     assert (status, err) == (0, "")
     for text, line in zip(texts, out.splitlines(), strict=True):

@@ -175,13 +175,13 @@ def test_csharp_has_constants(tmp_path: Path) -> None:
     assert "M.GuardMode.ChaseDown" in constants
     (struct,) = re.findall(r"public struct Signals\n(.*?)public static Signals", text, re.DOTALL)
     fields = re.findall(r"public double (\w+);", struct)
-    lines = ["using M = Tltl.guards_monitor;", "internal static class Driver {", "private static void Main() {"]
+    lines = ["using M = Tltl.GuardsMonitor;", "internal static class Driver {", "private static void Main() {"]
     lines += ["var monitor = new M();", "var sample = M.Signals.Missing;", "M.Result result;"]
     for given in assignments(fields, grouped(constants), "sample.{} = {};"):
         lines += [*given, "result = monitor.Step(sample);", "System.Console.WriteLine(result.State);"]
         lines += ["if (result.Verdict == M.Verdict.Satisfied || result.Verdict == M.Verdict.Violated) monitor.Reset();"]
     (tmp_path / "driver.cs").write_text("\n".join([*lines, "}", "}", ""]))
-    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "-doc:driver.xml", "driver.cs", "guards_monitor.cs"]
+    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "-doc:driver.xml", "driver.cs", "GuardsMonitor.cs"]
     (tmp_path / "driver.cs").write_text("#pragma warning disable 1591\n" + (tmp_path / "driver.cs").read_text())
     assert run(tmp_path, build, ["mono", "driver.exe"]) == states()
 

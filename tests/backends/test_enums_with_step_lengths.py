@@ -56,7 +56,7 @@ fn main() {
 RUST_CALL: Final = '    println!("{{}}", monitor.step(&Signals {{ mode: MODE_{upper} }}, {dt}).unwrap().state);\n'
 
 CSHARP: Final = """
-using M = Tltl.hurry_monitor;
+using M = Tltl.HurryMonitor;
 internal static class Driver
 {
     private static void Main()
@@ -68,7 +68,7 @@ internal static class Driver
 }
 """
 CSHARP_CALL: Final = """\
-        sample.mode = M.Mode.{title};
+        sample.Mode = M.Mode.{title};
         System.Console.WriteLine(monitor.Step(sample, {dt}).State);
 """
 
@@ -142,7 +142,7 @@ def test_rust(tmp_path: Path) -> None:
 
 @needs("mcs", "mono")
 def test_csharp(tmp_path: Path) -> None:
-    command = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "hurry_monitor.cs"]
+    command = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "HurryMonitor.cs"]
     check(tmp_path, "csharp", ("driver.cs", CSHARP, CSHARP_CALL), command, ["mono", "driver.exe"])
 
 

@@ -222,13 +222,13 @@ using System.Globalization;
 
 internal static class Driver
 {
-    private static void Take(Tltl.told_monitor monitor, double x, bool a, bool b)
+    private static void Take(Tltl.ToldMonitor monitor, double x, bool a, bool b)
     {
-        var sample = Tltl.told_monitor.Signals.Missing;
-        sample.x = x;
-        sample.a = a;
-        sample.b = b;
-        Tltl.told_monitor.Result result;
+        var sample = Tltl.ToldMonitor.Signals.Missing;
+        sample.X = x;
+        sample.A = a;
+        sample.B = b;
+        Tltl.ToldMonitor.Result result;
         bool taken = monitor.TryStep(sample, out result);
         string text = taken ? result.State + "|" + Shown(result.Robustness) + "||" : "0|0|" + monitor.Message() + "|";
         for (int i = 0; i < monitor.RegisterCount; i++) text += Shown(monitor.RegisterAt(i)) + " ";
@@ -242,9 +242,9 @@ internal static class Driver
 
     private static void Main()
     {
-        var monitor = new Tltl.told_monitor();
+        var monitor = new Tltl.ToldMonitor();
 @@
-        Console.Out.WriteLine(Tltl.told_monitor.NameOfRegister(monitor.RegisterCount - 1));
+        Console.Out.WriteLine(Tltl.ToldMonitor.NameOfRegister(monitor.RegisterCount - 1));
     }
 }
 """
@@ -358,7 +358,7 @@ def test_csharp_keeps_registers(tmp_path: Path) -> None:
     call = "        Take(monitor, {x}, {a}, {b});"
     words = {"nan": "double.NaN", "inf": "double.PositiveInfinity"}
     write(tmp_path, "csharp", "driver.cs", calls(CSHARP, call, "        monitor.Reset();", **words))
-    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "told_monitor.cs"]
+    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "ToldMonitor.cs"]
     out = run(tmp_path, build, ["mono", "driver.exe"])
     check(parsed(out))
     assert out.splitlines()[-1] == automaton().registers[-1].name

@@ -13,11 +13,11 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.mark.parametrize("name", backends.targets())
-def test_every_target_emits_files_with_its_endings(name: str) -> None:
+def test_every_target_emits_the_files_that_it_names(name: str) -> None:
     target = backends.target(name)
     assert target.name == name
     files = backends.emit(name, cover_and_hide())
-    assert sorted(files) == sorted("cover_and_hide" + ending for ending in target.endings)
+    assert sorted(files) == sorted(target.file_names("cover_and_hide"))
 
 
 def test_the_default_targets_exist() -> None:

@@ -93,17 +93,17 @@ public static class Labels
 {
     public static void Main()
     {
-        var monitor = new Tltl.quiet_monitor();
+        var monitor = new Tltl.QuietMonitor();
         for (int i = 0; i < 620; i++)
         {
-            var sample = Tltl.quiet_monitor.Signals.Missing;
-            sample.pit = i == 0 || i == 610 || i == 612;
+            var sample = Tltl.QuietMonitor.Signals.Missing;
+            sample.Pit = i == 0 || i == 610 || i == 612;
             System.Console.WriteLine("@ " + monitor.Step(sample).Label);
         }
     }
 }
 """,
-        (("mcs", "labels.cs", "quiet_monitor.cs"), ("mono", "labels.exe")),
+        (("mcs", "labels.cs", "QuietMonitor.cs"), ("mono", "labels.exe")),
     ),
     "gdscript3": (
         "labels.gd",

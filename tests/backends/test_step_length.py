@@ -169,13 +169,13 @@ using System.Globalization;
 
 internal static class Driver
 {
-    private static void Take(Tltl.paced_monitor monitor, double dt, double x, bool a, bool b)
+    private static void Take(Tltl.PacedMonitor monitor, double dt, double x, bool a, bool b)
     {
-        var sample = Tltl.paced_monitor.Signals.Missing;
-        sample.x = x;
-        sample.a = a;
-        sample.b = b;
-        Tltl.paced_monitor.Result result;
+        var sample = Tltl.PacedMonitor.Signals.Missing;
+        sample.X = x;
+        sample.A = a;
+        sample.B = b;
+        Tltl.PacedMonitor.Result result;
         string text;
         if (monitor.TryStep(sample, dt, out result))
         {
@@ -183,13 +183,13 @@ internal static class Driver
         }
         else
         {
-            string wrong = monitor.LastProblem == Tltl.paced_monitor.Problem.WrongDt ? "wrong dt " : "";
+            string wrong = monitor.LastProblem == Tltl.PacedMonitor.Problem.WrongDt ? "wrong dt " : "";
             string message = "";
             try
             {
                 monitor.Step(sample, dt);
             }
-            catch (Tltl.paced_monitor.RefusedException refused)
+            catch (Tltl.PacedMonitor.RefusedException refused)
             {
                 message = refused.Message;
             }
@@ -206,7 +206,7 @@ internal static class Driver
 
     private static void Main()
     {
-        var monitor = new Tltl.paced_monitor();
+        var monitor = new Tltl.PacedMonitor();
 @@
     }
 }
@@ -263,5 +263,5 @@ def test_csharp_takes_step_lengths(tmp_path: Path) -> None:
     call = "        Take(monitor, {dt}, {x}, {a}, {b});"
     text = calls(CSHARP, call, words, nan="double.NaN", inf="double.PositiveInfinity")
     write(tmp_path, "csharp", "driver.cs", text)
-    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "paced_monitor.cs"]
+    build = ["mcs", "-langversion:6", "-warn:4", "-warnaserror", "driver.cs", "PacedMonitor.cs"]
     check(parsed(run(tmp_path, build, ["mono", "driver.exe"])), copies=False)

@@ -55,7 +55,7 @@ def test_the_limits_are_those_of_the_readers() -> None:
     templates = ROOT / "tltlc" / "backends" / "templates"
     for name in (
         "monitor.h",
-        "monitor.cs",
+        "monitor_program.cs",
         "monitor.lua",
         "monitor.mjs",
         "monitor.rs",

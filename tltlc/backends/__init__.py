@@ -28,15 +28,20 @@ class Target:
     """Describes a target, that is, a format or language that the compiler can write.
 
     ``name`` is the name of the target and of its module, and ``title`` its description in lists.
-    ``endings`` are the endings of the names of its files, such as ``.dot``. ``known_as`` are other
-    names, in lower case, that people may try instead of ``name``: the error then suggests this
-    target.
+    ``endings`` are the endings of the names of its files, such as ``.dot``. ``spell`` converts the name
+    of a spec to what comes before the ending. ``known_as`` are other names, in lower case, that people
+    may try instead of ``name``: the error then suggests this target.
     """
 
     name: str
     title: str
     endings: tuple[str, ...]
     known_as: tuple[str, ...] = ()
+    spell: Callable[[str], str] = str
+
+    def file_names(self, name: str) -> tuple[str, ...]:
+        """Return the names of the files for the spec called ``name``, in the order of ``endings``."""
+        return tuple(f"{self.spell(name)}{ending}" for ending in self.endings)
 
 
 def _ignore(_: Diagnostic) -> None:

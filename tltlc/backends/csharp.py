@@ -1,4 +1,7 @@
-"""A stand-alone monitor in C# 6, the version Unity accepts, and a Unity component; a step allocates nothing.
+"""A stand-alone monitor in C# 6, the version Unity accepts, its program, and a Unity component.
+
+A step allocates nothing. Public names are in Pascal case, and a file has the name of its type, as Unity
+requires of components.
 
 It gives the same results to the last bit as :class:`tltlc.monitor.Monitor` with its default reward,
 if the runtime's ``Math.Pow``, ``Math.Exp`` and ``Math.Tanh`` are those that Python was built with,
@@ -19,6 +22,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import program
 from tltlc.program.enums import nested_enums, pascal_case
+from tltlc.program.names import VariableNames
 from tltlc.program.printer import CHOICE, Printer
 from tltlc.program.shapes import StateTables
 from tltlc.program.step_code import StepCode
@@ -29,8 +33,9 @@ from tltlc.resolve.spec import Param, Signal
 TARGET = Target(
     "csharp",
     "a stand-alone monitor in C#, also for Unity",
-    ("_monitor.cs", "_monitor_behaviour.cs"),
+    ("Monitor.cs", "MonitorProgram.cs", "MonitorBehaviour.cs"),
     ("c#", "cs", "unity"),
+    pascal_case,
 )
 
 _INDENT = Printer.INDENT
@@ -40,39 +45,46 @@ _TEMPLATE = """
     Refuse Result Signals Sqrt States Step System Tltl ToString Verdict Without entered none number own result
     sample EdgeTargets FirstEdges LevelProgress StateLevels StateShapes
 """.split()
-"""Names in the template that no field and no variable of a step may have, because it would hide them."""
+"""Names in the template that no variable of a step may have, because it would hide them."""
+
+_OBJECT_MEMBERS = ("Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone", "ReferenceEquals", "ToString")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """Return the monitor ``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs``, a component for Unity.
+    """Return the files of the monitor of an automaton whose name in Pascal case is NAME.
 
-    NAME is the name of the automaton.
+    ``NAMEMonitor.cs`` is the monitor, ``NAMEMonitorProgram.cs`` runs it as a program, and
+    ``NAMEMonitorBehaviour.cs`` is a component for Unity.
     """
-    monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
+    monitor, program_, behaviour = TARGET.file_names(fspa.name)
+    source = _Source(fspa)
     varies = fspa.clock_varies
     places = {
         "p": fspa.name,
+        "type": _type_name(fspa),
         "dt_parameter": "double dt" if varies else "",
         "elapsed": ", elapsed" if varies else "",
         "fixed_dt": "Time.fixedDeltaTime" if varies else "",
     }
     component = fill_template("behaviour.cs.txt", places, ["varies"] if varies else [])
-    return {monitor: _Source(fspa, monitor).text(), behaviour: component}
+    return {monitor: source.text(), program_: source.program_text(), behaviour: component}
 
 
 class _Source(StepCode):
-    """Makes the C# code of one monitor, by filling the template ``monitor.cs.txt``."""
+    """Makes the C# code of one monitor and its program, by filling two templates."""
 
-    def __init__(self, fspa: Fspa, file: str) -> None:
+    def __init__(self, fspa: Fspa) -> None:
         super().__init__(program(fspa, [*KEYWORDS, *_TEMPLATE], has_bools=True))
-        self._file = file
+        self._type = _type_name(fspa)
+        self._signal_fields = _field_names([signal.name for signal in fspa.signals], "Signals", "Missing")
+        self._param_fields = _field_names([param.name for param in fspa.params], "Params", "Defaults")
         self._printer = CSharpPrinter()
 
     def text(self) -> str:
-        """Return the text of ``NAME_monitor.cs``."""
+        """Return the text of the monitor's file."""
         fspa, program_ = self._fspa, self._program
-        signals = list(zip(fspa.signals, program_.signals, strict=True))
-        params = list(zip(fspa.params, program_.params, strict=True))
+        signals = list(zip(fspa.signals, self._signal_fields, strict=True))
+        params = list(zip(fspa.params, self._param_fields, strict=True))
         present: list[str] = [
             *snippets.common_blocks(program_),
             *program_.functions,
@@ -84,12 +96,10 @@ class _Source(StepCode):
         with recursion_room():
             step = CSharpPrinter.block(self._step(), 3)
         places = {
-            "p": fspa.name,
+            "type": self._type,
             "title": snippets.title_comment(fspa, self._printer.comment),
             "dt": ", dt" if fspa.clock_varies else "",
             "dt_parameter": ", double dt" if fspa.clock_varies else "",
-            "row_dt": ", times.Next(trace)" if fspa.clock_varies else "",
-            "file": self._file,
             "enums": CSharpPrinter.block(self._enums(), 2),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
@@ -113,19 +123,28 @@ class _Source(StepCode):
             "states": CSharpPrinter.block(self._states(), 3),
             **self._state_tables(program_.tables),
             "step": step,
-            "give": CSharpPrinter.block(self._give(), 3),
         }
         return fill_template("monitor.cs.txt", places, present)
+
+    def program_text(self) -> str:
+        """Return the text of the program's file."""
+        varies = self._fspa.clock_varies
+        places = {
+            "type": self._type,
+            "row_dt": ", times.Next(trace)" if varies else "",
+            "give": CSharpPrinter.block(self._give(), 3),
+        }
+        return fill_template("monitor_program.cs.txt", places, ["varies"] if varies else [])
 
     def _enums(self) -> list[str]:
         """Return the lines of a static class with constants for each enum of the spec, each before an empty line."""
         program_ = self._program
         variables = (*program_.signals, *program_.params, *program_.atoms, *program_.registers, *program_.before)
-        names = names_in("monitor.cs.txt", r"\b([A-Za-z]\w*)")
-        members = ("Equals", "Finalize", "GetHashCode", "GetType", "MemberwiseClone", "ReferenceEquals", "ToString")
-        types = (*KEYWORDS, *_TEMPLATE, *names, *variables, f"{self._fspa.name}_monitor")
+        files = ("monitor.cs.txt", "monitor_program.cs.txt")
+        names = {name for file in files for name in names_in(file, r"\b([A-Za-z]\w*)")}
+        types = (*KEYWORDS, *_TEMPLATE, *names, *variables, self._type)
         lines: list[str] = []
-        for enum in nested_enums(self._fspa, types, members, pascal_case):
+        for enum in nested_enums(self._fspa, types, _OBJECT_MEMBERS, pascal_case):
             constants: list[str] = []
             for number, (name, value) in enumerate(zip(enum.constants, enum.enum.values, strict=True)):
                 constants += ["", *summary_comment(f"{value}."), f"public const double {name} = {number}.0;"]
@@ -165,7 +184,7 @@ class _Source(StepCode):
         if not self._fspa.signals:
             return []
         lines = ["switch (signal)", "{"]
-        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._signal_fields, strict=True)):
             lines.append(f"{_INDENT}case {index}:")
             if signal.type == "bool":
                 lines.append(f"{_INDENT * 2}if (number != 0.0 && number != 1.0) return false;")
@@ -180,7 +199,8 @@ class _Source(StepCode):
     def _read(self) -> list[str]:
         used = self._program.variables_used
         lines: list[str] = []
-        for index, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+        signals = zip(self._fspa.signals, self._program.signals, self._signal_fields, strict=True)
+        for index, (signal, name, field) in enumerate(signals):
             if signal.type == "bool":
                 continue
             low, high = (
@@ -189,12 +209,13 @@ class _Source(StepCode):
             )
             # If a bound is missing, compare with infinity by `<` or `>`, so that infinite values fail the test.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
-            lines.append(f"double {name} = sample.{name};")
+            lines.append(f"double {name} = sample.{field};")
             lines += _check_lines(
                 f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({index}, {name}, {low}, {high});"
             )
         lines += self._bools(None)
-        lines += [f"double {name} = _params.{name};" for name in self._program.params if name in used]
+        params = zip(self._program.params, self._param_fields, strict=True)
+        lines += [f"double {name} = _params.{field};" for name, field in params if name in used]
         for index, name in enumerate(self._program.before):
             if name in used:
                 is_bool = name in self._program.booleans
@@ -209,10 +230,12 @@ class _Source(StepCode):
         It converts the signals that only this case reads or, if ``case`` is None, those that every
         step reads.
         """
-        names, booleans = self._program.bools_read_in(case), self._program.booleans
+        fields = dict(zip(self._program.signals, self._signal_fields, strict=True))
         return [
-            f"bool {name} = sample.{name};" if name in booleans else f"double {name} = sample.{name} ? 1.0 : 0.0;"
-            for name in names
+            f"bool {name} = sample.{fields[name]};"
+            if name in self._program.booleans
+            else f"double {name} = sample.{fields[name]} ? 1.0 : 0.0;"
+            for name in self._program.bools_read_in(case)
         ]
 
     def _value(self, index: int) -> list[str]:
@@ -289,6 +312,20 @@ class _Source(StepCode):
 
 
 # --- pieces ---------------------------------------------------------------------------------------
+
+
+def _type_name(fspa: Fspa) -> str:
+    """Return the name of the monitor's class, which is also the name of its file without the ending."""
+    return TARGET.file_names(fspa.name)[0].removesuffix(".cs")
+
+
+def _field_names(names: Sequence[str], struct: str, property_: str) -> list[str]:
+    """Return the names of the fields of a struct, in Pascal case.
+
+    ``names`` are their names in the spec, ``struct`` is the name of the struct, and ``property_`` that of its property.
+    """
+    field_names = VariableNames((struct, property_, *_OBJECT_MEMBERS))
+    return [field_names.new_name(name, spell=pascal_case) for name in names]
 
 
 def _check_lines(test: str, otherwise: str) -> list[str]:

@@ -76,8 +76,12 @@ def nested_enums(
 
 
 def pascal_case(name: str) -> str:
-    """Return a name in Pascal case: ``GuardMode`` for ``guard_mode``."""
-    return "".join(f"{part[:1].upper()}{part[1:]}" for part in name.split("_"))
+    """Return a name in Pascal case: ``GuardMode`` for ``guard_mode``. Between digits, ``_`` stays."""
+    pascal = ""
+    for part in name.split("_"):
+        gap = "_" if pascal[-1:].isdigit() and part[:1].isdigit() else ""
+        pascal += f"{gap}{part[:1].upper()}{part[1:]}"
+    return pascal
 
 
 def upper_case(name: str) -> str:

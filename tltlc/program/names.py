@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from textwrap import wrap
 from typing import Final
 
@@ -18,16 +18,17 @@ class VariableNames:
     def __init__(self, reserved: Iterable[str]) -> None:
         self._taken = set(reserved)
 
-    def new_name(self, name: str, suffix: str = "") -> str:
+    def new_name(self, name: str, suffix: str = "", spell: Callable[[str], str] = str) -> str:
         """Return a new name that resembles ``name``: ``"distance(exit)"`` -> ``"distance_exit"``.
 
-        If the name is taken, append ``_`` and ``suffix``. If there is no suffix, or this name is
-        taken too, append ``_`` and a number instead.
+        ``spell`` converts it to the style of the language. If the name is taken, append ``_`` and
+        ``suffix``. If there is no suffix, or this name is taken too, append ``_`` and a number instead.
         """
         spelt = "".join(_WORDS.get(character, character) for character in name)
         base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
         if base[0].isdigit():
             base = f"x{base}"
+        base = spell(base)
         candidate, number = base, 1
         while candidate in self._taken:
             candidate = f"{base}_{suffix}" if suffix and number == 1 else f"{base}_{number}"

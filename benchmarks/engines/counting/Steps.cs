@@ -13,15 +13,15 @@ internal static class Steps
     [DllImport("libc", EntryPoint = "clock")]
     private static extern IntPtr Clock();
 
-    private static void Step(Tltl.quiet_monitor monitor, bool pit)
+    private static void Step(Tltl.QuietMonitor monitor, bool pit)
     {
-        var sample = Tltl.quiet_monitor.Signals.Missing;
-        sample.pit = pit;
-        Tltl.quiet_monitor.Result result;
+        var sample = Tltl.QuietMonitor.Signals.Missing;
+        sample.Pit = pit;
+        Tltl.QuietMonitor.Result result;
         if (!monitor.TryStep(sample, out result)) throw new InvalidOperationException(monitor.Message());
     }
 
-    private static double Nanoseconds(Tltl.quiet_monitor[] monitors, int before)
+    private static double Nanoseconds(Tltl.QuietMonitor[] monitors, int before)
     {
         foreach (var monitor in monitors)
         {
@@ -39,8 +39,8 @@ internal static class Steps
 
     private static void Main(string[] words)
     {
-        var monitors = new Tltl.quiet_monitor[int.Parse(words[1], CultureInfo.InvariantCulture)];
-        for (int i = 0; i < monitors.Length; i++) monitors[i] = new Tltl.quiet_monitor();
+        var monitors = new Tltl.QuietMonitor[int.Parse(words[1], CultureInfo.InvariantCulture)];
+        for (int i = 0; i < monitors.Length; i++) monitors[i] = new Tltl.QuietMonitor();
         for (int round = int.Parse(words[0], CultureInfo.InvariantCulture); round > 0; round--)
         {
             double first = Nanoseconds(monitors, 0), last = Nanoseconds(monitors, Before);

@@ -6,14 +6,14 @@ namespace ByHand
 
     public struct Signals
     {
-        public double distance_s1;
-        public double distance_s2;
-        public double distance_s3;
-        public double distance_e_right;
-        public double distance_e_left;
-        public bool open_right;
-        public bool open_left;
-        public double health;
+        public double DistanceS1;
+        public double DistanceS2;
+        public double DistanceS3;
+        public double DistanceERight;
+        public double DistanceELeft;
+        public bool OpenRight;
+        public bool OpenLeft;
+        public double Health;
     }
 
     /// <summary>States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is the goal, 2 is the trap.</summary>
@@ -50,13 +50,13 @@ namespace ByHand
         /// <summary>Take one sample; throws, and the state stays, where a signal is not finite.</summary>
         public Result Step(Signals signals)
         {
-            Check("distance(s1)", signals.distance_s1);
-            Check("distance(s2)", signals.distance_s2);
-            Check("distance(s3)", signals.distance_s3);
-            Check("distance(e_right)", signals.distance_e_right);
-            Check("distance(e_left)", signals.distance_e_left);
-            Check("health", signals.health);
-            double alive = Math.Min(Math.Max(signals.health, 0.0), 1.0);
+            Check("distance(s1)", signals.DistanceS1);
+            Check("distance(s2)", signals.DistanceS2);
+            Check("distance(s3)", signals.DistanceS3);
+            Check("distance(e_right)", signals.DistanceERight);
+            Check("distance(e_left)", signals.DistanceELeft);
+            Check("health", signals.Health);
+            double alive = Math.Min(Math.Max(signals.Health, 0.0), 1.0);
             var result = new Result();
             double progress = 0.0;
             if (State == Trap)
@@ -74,8 +74,8 @@ namespace ByHand
             }
             else if (State == Exits)
             {
-                double rightOpen = signals.open_right ? 1.0 : -1.0, rightNear = Near(signals.distance_e_right);
-                double leftOpen = signals.open_left ? 1.0 : -1.0, leftNear = Near(signals.distance_e_left);
+                double rightOpen = signals.OpenRight ? 1.0 : -1.0, rightNear = Near(signals.DistanceERight);
+                double leftOpen = signals.OpenLeft ? 1.0 : -1.0, leftNear = Near(signals.DistanceELeft);
                 double right = Math.Min(rightOpen, rightNear);
                 double left = Math.Min(leftOpen, leftNear);
                 double nearest = Math.Max(right, left);
@@ -96,8 +96,8 @@ namespace ByHand
             else
             {
                 int number = Switch[State];
-                double distance = number == 0 ? signals.distance_s1
-                    : number == 1 ? signals.distance_s2 : signals.distance_s3;
+                double distance = number == 0 ? signals.DistanceS1
+                    : number == 1 ? signals.DistanceS2 : signals.DistanceS3;
                 double closeness = Near(distance);
                 if (closeness > 0.0)
                 {

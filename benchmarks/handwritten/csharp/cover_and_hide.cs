@@ -7,10 +7,10 @@ namespace ByHand
 
     public struct Signals
     {
-        public double distance_s1;
-        public double distance_s2;
-        public double distance_exit;
-        public double health;
+        public double DistanceS1;
+        public double DistanceS2;
+        public double DistanceExit;
+        public double Health;
     }
 
     /// <summary>States 0, 1 and 3 wait for a place, 4 is the goal, 2 is the trap.</summary>
@@ -47,14 +47,14 @@ namespace ByHand
         /// </summary>
         public Result Step(Signals signals)
         {
-            Check("distance(s1)", signals.distance_s1);
-            Check("distance(s2)", signals.distance_s2);
-            Check("distance(exit)", signals.distance_exit);
-            Check("health", signals.health);
-            double s1 = Near(signals.distance_s1);
-            double s2 = Near(signals.distance_s2);
-            double exit = Near(signals.distance_exit);
-            double alive = Math.Min(Math.Max(signals.health, 0.0), 1.0);
+            Check("distance(s1)", signals.DistanceS1);
+            Check("distance(s2)", signals.DistanceS2);
+            Check("distance(exit)", signals.DistanceExit);
+            Check("health", signals.Health);
+            double s1 = Near(signals.DistanceS1);
+            double s2 = Near(signals.DistanceS2);
+            double exit = Near(signals.DistanceExit);
+            double alive = Math.Min(Math.Max(signals.Health, 0.0), 1.0);
             if ((s1 > 0.0 && (s2 > 0.0 || exit > 0.0)) || (s2 > 0.0 && exit > 0.0))
             {
                 throw new ArgumentException("only one of " + string.Join(", ", Atoms) + " may hold at a time");

@@ -4,9 +4,9 @@ namespace ByHand
 {
     public struct Signals
     {
-        public double distance_s1;
-        public double distance_s2;
-        public double distance_exit;
+        public double DistanceS1;
+        public double DistanceS2;
+        public double DistanceExit;
     }
 
     /// <summary>The state is the number of marks that were reached in order.</summary>
@@ -31,15 +31,15 @@ namespace ByHand
         /// <summary>Take one sample; throws, and the state stays, where a signal is not finite.</summary>
         public Result Step(Signals signals)
         {
-            Check("distance(s1)", signals.distance_s1);
-            Check("distance(s2)", signals.distance_s2);
-            Check("distance(exit)", signals.distance_exit);
+            Check("distance(s1)", signals.DistanceS1);
+            Check("distance(s2)", signals.DistanceS2);
+            Check("distance(exit)", signals.DistanceExit);
             var result = new Result {Robustness = 1.0};
             double progress = 1.0;
             if (State < Goal)
             {
-                double distance = State == 0 ? signals.distance_s1
-                    : State == 1 ? signals.distance_s2 : signals.distance_exit;
+                double distance = State == 0 ? signals.DistanceS1
+                    : State == 1 ? signals.DistanceS2 : signals.DistanceExit;
                 double closeness = Near(distance);
                 if (closeness > 0.0)
                 {

@@ -114,7 +114,7 @@ def test_a_change_to_one_spec_changes_only_its_files(tltlc, inside: Path) -> Non
         for path, contents_and_time in before.items()
         if (path.read_bytes(), path.stat().st_mtime_ns) != contents_and_time
     }
-    assert changed and all(name.startswith("found") for name in changed)
+    assert changed and all(name.startswith(("found", "Found")) for name in changed)
     assert {"found.fspa.json", "found_monitor.py", "found_monitor.h"} <= changed
     written_lines = [line for line in outcome.err.splitlines() if line.startswith("wrote ")]
     assert len(written_lines) == len(changed)
@@ -161,6 +161,15 @@ def test_two_targets_that_write_the_same_file_are_rejected(tltlc, inside: Path) 
     message = "`gdscript` and `gdscript3` both write `hide_monitor.gd`: choose one with -t, and write the other to"
     assert f"{message} another folder with -o" in outcome.err
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
+
+
+def test_two_specs_that_make_the_same_file_are_rejected(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    (inside / "two.tltl").write_text("signal seen: bool\nspec hide_here = G !seen\nspec hideHere = F seen\n")
+    outcome = tltlc("compile", "two.tltl", "-t", "csharp")
+    assert outcome.status == 2
+    assert "the specs `hide_here` and `hideHere` both make `HideHereMonitor.cs`: rename one of them" in outcome.err
+    assert not [*inside.glob("*.cs")]
+    assert tltlc("compile", "two.tltl", "-t", "python").status == 0
 
 
 def test_a_device_is_written_to_and_not_replaced(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

@@ -14,6 +14,7 @@ from tests.waiting import HANG_S
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import record
+from tltlc.program.enums import pascal_case
 from tltlc.tools.conformance.check import differences
 from tltlc.tools.conformance.expected_output import COLUMNS, ExpectedOutput
 
@@ -30,7 +31,8 @@ Runs = Sequence[tuple[str, bytes]]
 class Runner:
     """How to build and run the monitors of one target, from the folder that holds them.
 
-    Commands are lists of words; ``{name}`` in a word stands for the name of the monitor. ``build``
+    Commands are lists of words; ``{name}`` in a word stands for the name of the spec, and ``{Name}`` for
+    this name in Pascal case. ``build``
     and ``run`` are the commands for one monitor, as a user would type them. ``build_all`` and
     ``run_all`` handle many monitors at once, because compilers and engines are slow to start.
     ``build_all`` takes the folder and the names of the monitors, and makes one program of them.
@@ -88,13 +90,18 @@ def execute(command: Sequence[str], folder: Path) -> None:
 def build(runner: Runner, name: str, folder: Path) -> None:
     """Build the program of one monitor, whose source is in the folder."""
     if runner.build:
-        execute([word.format(name=name) for word in runner.build], folder)
+        execute(words_for(runner.build, name), folder)
+
+
+def words_for(command: Sequence[str], name: str) -> list[str]:
+    """Return a command of a runner for the spec called ``name``."""
+    return [word.format(name=name, Name=pascal_case(name)) for word in command]
 
 
 def run_monitor(runner: Runner, name: str, folder: Path, trace: bytes) -> Outcome:
     """Run the program of one monitor, which is already built, on a trace."""
     (folder / f"{name}.trace.csv").write_bytes(trace)
-    command = [word.format(name=name) for word in (*runner.run, "--full", "{name}.trace.csv")]
+    command = words_for((*runner.run, "--full", "{name}.trace.csv"), name)
     process = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
     return process.returncode, process.stdout.decode(), process.stderr.decode()
 

@@ -17,7 +17,16 @@ from threading import Timer
 import pytest
 
 from tests.backends.monitors import FAR, HEAD, expected, trace_of
-from tests.tools.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, build_program, runners, write
+from tests.tools.conformance.runner import (
+    LONGEST_RUN_S,
+    Outcome,
+    Runner,
+    build,
+    build_program,
+    runners,
+    words_for,
+    write,
+)
 from tltlc.io.limits import TRACE_LINE
 from tltlc.tools.conformance.case import ConformanceCase
 from tltlc.tools.conformance.corpus import CASES
@@ -118,7 +127,7 @@ def program(
         folder = tmp_path_factory.mktemp(runner.name)
         write(runner, case.fspa, folder)
         build(runner, NAME, folder)
-        programs[runner.name] = runner, folder, [word.format(name=NAME) for word in runner.run]
+        programs[runner.name] = runner, folder, words_for(runner.run, NAME)
     return programs[runner.name]
 
 

@@ -57,7 +57,7 @@ def files_of(
     If no targets are requested, use those of the project file, or else the default targets. Notes
     about what a target leaves out are added to ``report``. ``session`` is the compiler's session for the
     source text of the automata, if they have one. Raises click.UsageError if two targets
-    write the same file.
+    or two automata write the same file.
     """
     from tltlc import backends
 
@@ -68,6 +68,7 @@ def files_of(
         without_timers=session.without_timers if session else None,
     )
     files: Files = {}
+    specs: dict[str, str] = {}
     for fspa in automata:
         writers: dict[str, str] = {}
         for target in targets:
@@ -78,7 +79,11 @@ def files_of(
                         f"`{earlier}` and `{target}` both write `{name}`: choose one with -t, and write the other to "
                         "another folder with -o"
                     )
-                files[name] = content
+                if name in files and specs[name] != fspa.name:
+                    raise click.UsageError(
+                        f"the specs `{specs[name]}` and `{fspa.name}` both make `{name}`: rename one of them"
+                    )
+                files[name], specs[name] = content, fspa.name
     return files
 
 

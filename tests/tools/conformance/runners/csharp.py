@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.tools.conformance.runner import Runner, execute
+from tltlc.program.enums import pascal_case
 
 STRICT = ("-langversion:6", "-warn:4", "-warnaserror", "-define:TLTL_MAIN")
 
@@ -37,9 +38,11 @@ internal static class Monitors
 
 def assemble(folder: Path, names: Sequence[str]) -> None:
     """Build ``monitors.exe``, one assembly with all monitors."""
-    cases = [f'            case "{name}": return Tltl.{name}_monitor_program.Main(rest);' for name in names]
+    cases = [f'            case "{name}": return Tltl.{pascal_case(name)}MonitorProgram.Main(rest);' for name in names]
     (folder / "monitors.cs").write_text(_DRIVER.replace("@@cases@@", "\n".join(cases)))
-    sources = ["monitors.cs", *(f"{name}_monitor.cs" for name in names)]
+    sources = ["monitors.cs"]
+    for name in names:
+        sources += [f"{pascal_case(name)}Monitor.cs", f"{pascal_case(name)}MonitorProgram.cs"]
     execute(["mcs", *STRICT, "-main:Monitors", "-out:monitors.exe", *sources], folder)
 
 
@@ -47,8 +50,8 @@ RUNNERS = (
     Runner(
         name="csharp",
         target="csharp",
-        build=("mcs", *STRICT, "{name}_monitor.cs"),
-        run=("mono", "{name}_monitor.exe"),
+        build=("mcs", *STRICT, "{Name}Monitor.cs", "{Name}MonitorProgram.cs"),
+        run=("mono", "{Name}Monitor.exe"),
         build_all=assemble,
         run_all=("mono", "monitors.exe"),
         tools=("mcs", "mono"),

@@ -106,7 +106,7 @@ def _targets() -> Iterator[ListRow]:
 
     for name in backends.targets():
         target = backends.target(name)
-        yield {"name": name, "files": ", ".join(f"NAME{ending}" for ending in target.endings), "doc": target.title}
+        yield {"name": name, "files": ", ".join(target.file_names("NAME")), "doc": target.title}
 
 
 def _codes() -> Iterator[ListRow]:
