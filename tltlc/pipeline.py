@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
+from tltlc.automaton.broken_clauses import with_broken_clauses
 from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build
 from tltlc.automaton.verdict_warnings import verdict_warnings
 from tltlc.core.record import EMPTY, record, replace
@@ -200,7 +201,7 @@ def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[
             fspa = build(spec, state_budget=options.state_budget)
     except TltlError as error:
         return None, error.diagnostics
-    return fspa, verdict_warnings(spec, fspa)
+    return with_broken_clauses(fspa, spec, options.state_budget), verdict_warnings(spec, fspa)
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:

@@ -21,6 +21,7 @@ from tltlc.monitor import Monitor, MonitorError
 from tltlc.resolve import spec
 
 HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward", "robustness", "limiting"]
+HEADER += ["failed_clause", "failed_atom", "failed_step"]
 FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
 HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
 
@@ -78,8 +79,9 @@ def expected(fspa: Fspa, samples: Sequence[Sample]) -> Outcome:
             rows.writerow(HEADER)
         flags = ["true" if flag else "false" for flag in (step.accepting, step.done)]
         figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-        limiting = "" if step.limiting is None else step.limiting.replace("\0", "")
-        rows.writerow([monitor.steps, step.state, step.verdict, *flags, *figures, limiting])
+        texts = (step.limiting, step.failed_clause, step.failed_atom, step.failed_step)
+        names = ["" if text is None else str(text).replace("\0", "") for text in texts]
+        rows.writerow([monitor.steps, step.state, step.verdict, *flags, *figures, *names])
     warnings = "".join(f"warning: {notice.title}\n" for notice in monitor.notices)
     return status, text.getvalue(), errors + warnings
 

@@ -32,14 +32,14 @@ class Problem:
 def problems(fspa: Fspa) -> Iterator[Problem]:
     """Yield the contradictions in an automaton that was read from an artefact.
 
-    There are eight checks. Later checks rely on earlier ones, so all contradictions come from the first
+    There are nine checks. Later checks rely on earlier ones, so all contradictions come from the first
     check that finds any. Two checks have a limit on their work, so large automata are checked only in
     part:
 
     - the check of guards (:data:`tltlc.artefact.guards.WORK_LIMIT`);
     - over infinite traces, the check of accepting states and verdicts (:data:`CYCLES_WORK`).
     """
-    for check in (_names, _clock, _values, _indices, _parallel_edges, _numbering, _distances, _guards):
+    for check in (_names, _clock, _values, _indices, _clauses, _parallel_edges, _numbering, _distances, _guards):
         failed = False
         for problem in check(fspa):
             failed = True
@@ -177,6 +177,17 @@ def _parallel_edges(fspa: Fspa) -> Iterator[Problem]:
             message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
             yield Problem(("edges", index), message)
         seen.add(key)
+
+
+def _clauses(fspa: Fspa) -> Iterator[Problem]:
+    """Check that the clauses that edges break exist, with atoms that exist."""
+    for index, edge in enumerate(fspa.edges):
+        for place, broken in enumerate(edge.broken):
+            path = ("edges", index, "broken", place)
+            if broken.clause >= len(fspa.clauses):
+                yield Problem((*path, "clause"), f"there is no clause {broken.clause}")
+            if any(atom >= len(fspa.atoms) for prime in broken.primes for atom, _ in prime):
+                yield Problem((*path, "primes"), "an implicant has an atom that does not exist")
 
 
 def _numbering(fspa: Fspa) -> Iterator[Problem]:

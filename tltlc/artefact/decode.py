@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from tltlc.artefact.document_checks import RECOMPILE, Origin, check_arithmetic, check_consistency, check_format
-from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, Guard, Pair, State, Text
+from tltlc.automaton.fspa import NOTATIONS, BrokenClause, Edge, Fspa, Guard, Implicant, Pair, State, Text
 from tltlc.core.names import split_name
 from tltlc.core.source import SourceFile, Span
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -109,6 +109,7 @@ def _fspa(document: dict[str, Any]) -> Fspa:
         tags=tuple(spec.get("tags", ())),
         clock_s=_number(spec.get("clock_s")),
         clock_varies=spec.get("clock_varies", False),
+        clauses=tuple(spec.get("clauses", ())),
         signals=tuple(_signal(signal) for signal in document["signals"]),
         params=tuple(_param(param) for param in document["params"]),
         atoms=atoms,
@@ -191,5 +192,13 @@ def _state(state: dict[str, Any], formula: _FormulaReader) -> State:
 def _edge(edge: dict[str, Any], formula: _FormulaReader) -> Edge:
     guard = edge["guard"]
     text = dict.fromkeys(NOTATIONS, guard["text"])
-    primes = tuple(tuple((int(index), polarity) for index, polarity in prime) for prime in guard["primes"])
-    return Edge(int(edge["source"]), int(edge["target"]), Guard(formula(text), primes))
+    primes = _primes(guard["primes"])
+    broken = tuple(
+        BrokenClause(int(clause["clause"]), _primes(clause["primes"]) if "primes" in clause else primes)
+        for clause in edge.get("broken", ())
+    )
+    return Edge(int(edge["source"]), int(edge["target"]), Guard(formula(text), primes), broken)
+
+
+def _primes(primes: list[list[list[Any]]]) -> tuple[Implicant, ...]:
+    return tuple(tuple((int(index), polarity) for index, polarity in prime) for prime in primes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from tltlc.automaton.fspa import NOTATIONS, Edge, Fspa, State
+from tltlc.automaton.fspa import NOTATIONS, BrokenClause, Edge, Fspa, Implicant, State
 from tltlc.automaton.text import formula_text, guard_texts, label_text
 from tltlc.expression.json import to_json
 from tltlc.resolve.spec import Atom, Param, Register, Signal
@@ -32,6 +32,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
             "tags": list(fspa.tags),
             "clock_s": fspa.clock_s,
             **({"clock_varies": True} if fspa.clock_varies else {}),
+            **({"clauses": list(fspa.clauses)} if fspa.clauses else {}),
         },
         "semantics": fspa.semantics,
         "signals": [_signal(signal) for signal in fspa.signals],
@@ -109,8 +110,16 @@ def _edges(fspa: Fspa) -> list[dict[str, Any]]:
     def literal(atom: int, polarity: bool) -> list[int | bool]:
         return literals.setdefault((atom, polarity), [atom, polarity])
 
+    def implicants(primes: tuple[Implicant, ...]) -> list[list[list[int | bool]]]:
+        return [[literal(*pair) for pair in prime] for prime in primes]
+
+    def broken_clause(edge: Edge, broken: BrokenClause) -> dict[str, Any]:
+        primes = {} if broken.primes == edge.guard.primes else {"primes": implicants(broken.primes)}
+        return {"clause": broken.clause, **primes}
+
     def encoded(edge: Edge, guard: str) -> dict[str, Any]:
-        primes = [[literal(*pair) for pair in prime] for prime in edge.guard.primes]
-        return {"source": edge.source, "target": edge.target, "guard": {"text": guard, "primes": primes}}
+        primes = implicants(edge.guard.primes)
+        broken = {"broken": [broken_clause(edge, part) for part in edge.broken]} if edge.broken else {}
+        return {"source": edge.source, "target": edge.target, "guard": {"text": guard, "primes": primes}, **broken}
 
     return [encoded(edge, guard) for edge, guard in zip(fspa.edges, guard_texts(fspa), strict=True)]

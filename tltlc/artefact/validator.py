@@ -164,6 +164,17 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                     data__spec__clockvaries = data__spec["clock_varies"]
                     if not isinstance(data__spec__clockvaries, (bool)):
                         raise JsonSchemaValueException((*path, 'spec', 'clock_varies'), 'type', 'boolean')
+                if "clauses" in data__spec_keys:
+                    data__spec_keys.remove("clauses")
+                    data__spec__clauses = data__spec["clauses"]
+                    if not isinstance(data__spec__clauses, (list, tuple)):
+                        raise JsonSchemaValueException((*path, 'spec', 'clauses'), 'type', 'array')
+                    data__spec__clauses_is_list = isinstance(data__spec__clauses, (list, tuple))
+                    if data__spec__clauses_is_list:
+                        data__spec__clauses_len = len(data__spec__clauses)
+                        for data__spec__clauses_x, data__spec__clauses_item in enumerate(data__spec__clauses):
+                            if not isinstance(data__spec__clauses_item, (str)):
+                                raise JsonSchemaValueException((*path, 'spec', 'clauses', data__spec__clauses_x), 'type', 'string')
         if "semantics" in data_keys:
             data_keys.remove("semantics")
             data__semantics = data["semantics"]
@@ -622,6 +633,68 @@ def validate(data: object, custom_formats: object = {}, path: JsonPath = ()) -> 
                                                             data__edges_item__guard__primes_item_item__1 = data__edges_item__guard__primes_item_item[1]
                                                             if not isinstance(data__edges_item__guard__primes_item_item__1, (bool)):
                                                                 raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'guard', 'primes', data__edges_item__guard__primes_x, data__edges_item__guard__primes_item_x, 1), 'type', 'boolean')
+                        if "broken" in data__edges_item_keys:
+                            data__edges_item_keys.remove("broken")
+                            data__edges_item__broken = data__edges_item["broken"]
+                            if not isinstance(data__edges_item__broken, (list, tuple)):
+                                raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken'), 'type', 'array')
+                            data__edges_item__broken_is_list = isinstance(data__edges_item__broken, (list, tuple))
+                            if data__edges_item__broken_is_list:
+                                data__edges_item__broken_len = len(data__edges_item__broken)
+                                for data__edges_item__broken_x, data__edges_item__broken_item in enumerate(data__edges_item__broken):
+                                    if not isinstance(data__edges_item__broken_item, (dict)):
+                                        raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x), 'type', 'object')
+                                    data__edges_item__broken_item_is_dict = isinstance(data__edges_item__broken_item, dict)
+                                    if data__edges_item__broken_item_is_dict:
+                                        data__edges_item__broken_item__missing_keys = set(['clause']) - data__edges_item__broken_item.keys()
+                                        if data__edges_item__broken_item__missing_keys:
+                                            raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x), 'required', ['clause'], sorted(data__edges_item__broken_item__missing_keys))
+                                        data__edges_item__broken_item_keys = set(data__edges_item__broken_item.keys())
+                                        if "clause" in data__edges_item__broken_item_keys:
+                                            data__edges_item__broken_item_keys.remove("clause")
+                                            data__edges_item__broken_item__clause = data__edges_item__broken_item["clause"]
+                                            if not isinstance(data__edges_item__broken_item__clause, (int)) and not (isinstance(data__edges_item__broken_item__clause, float) and data__edges_item__broken_item__clause.is_integer()) or isinstance(data__edges_item__broken_item__clause, bool):
+                                                raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'clause'), 'type', 'integer')
+                                            if isinstance(data__edges_item__broken_item__clause, (int, float)) and not isinstance(data__edges_item__broken_item__clause, bool):
+                                                if data__edges_item__broken_item__clause < 0:
+                                                    raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'clause'), 'minimum', 0)
+                                        if "primes" in data__edges_item__broken_item_keys:
+                                            data__edges_item__broken_item_keys.remove("primes")
+                                            data__edges_item__broken_item__primes = data__edges_item__broken_item["primes"]
+                                            if not isinstance(data__edges_item__broken_item__primes, (list, tuple)):
+                                                raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes'), 'type', 'array')
+                                            data__edges_item__broken_item__primes_is_list = isinstance(data__edges_item__broken_item__primes, (list, tuple))
+                                            if data__edges_item__broken_item__primes_is_list:
+                                                data__edges_item__broken_item__primes_len = len(data__edges_item__broken_item__primes)
+                                                if data__edges_item__broken_item__primes_len < 1:
+                                                    raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes'), 'minItems', 1)
+                                                for data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item in enumerate(data__edges_item__broken_item__primes):
+                                                    if not isinstance(data__edges_item__broken_item__primes_item, (list, tuple)):
+                                                        raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x), 'type', 'array')
+                                                    data__edges_item__broken_item__primes_item_is_list = isinstance(data__edges_item__broken_item__primes_item, (list, tuple))
+                                                    if data__edges_item__broken_item__primes_item_is_list:
+                                                        data__edges_item__broken_item__primes_item_len = len(data__edges_item__broken_item__primes_item)
+                                                        for data__edges_item__broken_item__primes_item_x, data__edges_item__broken_item__primes_item_item in enumerate(data__edges_item__broken_item__primes_item):
+                                                            if not isinstance(data__edges_item__broken_item__primes_item_item, (list, tuple)):
+                                                                raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x), 'type', 'array')
+                                                            data__edges_item__broken_item__primes_item_item_is_list = isinstance(data__edges_item__broken_item__primes_item_item, (list, tuple))
+                                                            if data__edges_item__broken_item__primes_item_item_is_list:
+                                                                data__edges_item__broken_item__primes_item_item_len = len(data__edges_item__broken_item__primes_item_item)
+                                                                if data__edges_item__broken_item__primes_item_item_len < 2:
+                                                                    raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x), 'minItems', 2)
+                                                                if data__edges_item__broken_item__primes_item_item_len > 2:
+                                                                    raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x), 'maxItems', 2)
+                                                                if data__edges_item__broken_item__primes_item_item_len > 0:
+                                                                    data__edges_item__broken_item__primes_item_item__0 = data__edges_item__broken_item__primes_item_item[0]
+                                                                    if not isinstance(data__edges_item__broken_item__primes_item_item__0, (int)) and not (isinstance(data__edges_item__broken_item__primes_item_item__0, float) and data__edges_item__broken_item__primes_item_item__0.is_integer()) or isinstance(data__edges_item__broken_item__primes_item_item__0, bool):
+                                                                        raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x, 0), 'type', 'integer')
+                                                                    if isinstance(data__edges_item__broken_item__primes_item_item__0, (int, float)) and not isinstance(data__edges_item__broken_item__primes_item_item__0, bool):
+                                                                        if data__edges_item__broken_item__primes_item_item__0 < 0:
+                                                                            raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x, 0), 'minimum', 0)
+                                                                if data__edges_item__broken_item__primes_item_item_len > 1:
+                                                                    data__edges_item__broken_item__primes_item_item__1 = data__edges_item__broken_item__primes_item_item[1]
+                                                                    if not isinstance(data__edges_item__broken_item__primes_item_item__1, (bool)):
+                                                                        raise JsonSchemaValueException((*path, 'edges', data__edges_x, 'broken', data__edges_item__broken_x, 'primes', data__edges_item__broken_item__primes_x, data__edges_item__broken_item__primes_item_x, 1), 'type', 'boolean')
         if "spec_size" in data_keys:
             data_keys.remove("spec_size")
             data__specsize = data["spec_size"]

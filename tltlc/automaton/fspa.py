@@ -78,17 +78,34 @@ class Guard:
 
 
 @record
+class BrokenClause:
+    """When an edge into a trap breaks a clause: from then on, no continuation of the trace can meet the clause.
+
+    ``clause`` is the clause's index in ``Fspa.clauses``. The edge breaks it if one of the implicants in
+    ``primes`` is true. These are all prime implicants of the condition, as in a :class:`Guard`.
+    """
+
+    clause: int
+    primes: tuple[Implicant, ...]
+
+
+@record
 class Edge:
     """An edge of the automaton.
 
     At each sample that the ``exclusive`` declarations allow, exactly one of the edges that leave a
     state has a true guard. No two edges have the same source, the same target and the same marks
     (:meth:`Fspa.marks`).
+
+    ``broken`` is for edges into a trap: the clauses that a step breaks there, in the order of the spec.
+    Where none of them is broken, only several clauses together cannot be met any more. It is empty for
+    other edges, and if the clauses are not known.
     """
 
     source: int
     target: int
     guard: Guard
+    broken: tuple[BrokenClause, ...] = ()
 
 
 @record
@@ -120,6 +137,9 @@ class Fspa:
 
     ``clock_s`` is the time between two samples in seconds, None without a clock. ``clock_varies`` says
     that each sample brings its own time since the sample before; then ``clock_s`` is None.
+
+    ``clauses`` has the texts of the clauses of the spec, in order: ``avoid on_lava``. It is empty if they
+    are not known, as in an automaton that another tool made.
     """
 
     name: str
@@ -141,6 +161,7 @@ class Fspa:
     acceptance: tuple[Pair, ...] = ()
     registers: tuple[Register, ...] = ()
     clock_varies: bool = False
+    clauses: tuple[str, ...] = ()
 
     @property
     def clock(self) -> float | Literal["varies"] | None:
@@ -175,7 +196,7 @@ class Fspa:
         table = [next(index) if isinstance(formula, Formula) else formula for formula in formulas]
         states = [(state.id, state.accepting, state.verdict, state.distance) for state in self.states]
         place = {key: number for number, key in enumerate(guards)}
-        edges = [(edge.source, edge.target, place[id(edge.guard)]) for edge in self.edges]
+        edges = [(edge.source, edge.target, place[id(edge.guard)], edge.broken) for edge in self.edges]
         primes = [guard.primes for guard in guards.values()]
         fields = {name: getattr(self, name) for name in type(self).__match_args__}
         return _unpickle, (nodes, table, primes, {**fields, "formula": None, "states": states, "edges": edges})
@@ -196,5 +217,6 @@ def _unpickle(
     fields["formula"] = next(formulas)
     fields["states"] = tuple([State(number, next(formulas), *rest) for number, *rest in fields["states"]])
     guards = [Guard(next(formulas), implicants) for implicants in primes]
-    fields["edges"] = tuple([Edge(source, target, guards[guard]) for source, target, guard in fields["edges"]])
+    edges = [Edge(source, target, guards[guard], broken) for source, target, guard, broken in fields["edges"]]
+    fields["edges"] = tuple(edges)
     return Fspa(**fields)

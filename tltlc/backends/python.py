@@ -15,6 +15,7 @@ from typing import Final
 from tltlc.automaton.finite.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.automaton.memory import Computation
+from tltlc.automaton.text import label_text
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.languages.python_syntax import PythonPrinter, long_dict, long_tuple, short_tuple, tuple_items
 from tltlc.backends.templates import fill_template, names_in
@@ -22,6 +23,7 @@ from tltlc.program import reward_step, snippets, states
 from tltlc.program.arithmetic import with_declaration
 from tltlc.program.build import DT, program
 from tltlc.program.enums import enums_of, nested_enums, upper_case
+from tltlc.program.label_texts import LabelTexts
 from tltlc.program.names import call_lines, docstring_text, float_literal, string_literal
 from tltlc.program.nesting_limit import split_deep_values
 from tltlc.program.printer import CHOICE, Printer
@@ -34,7 +36,7 @@ from tltlc.program.tree import (
     Int,
     Statement,
 )
-from tltlc.program.used_names import functions_called, variables_read
+from tltlc.program.used_names import assigned_in, functions_called, variables_read
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
@@ -42,7 +44,7 @@ TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), (
 _RESERVED: Final = (
     *keyword.kwlist,
     *dir(builtins),
-    *("self", "signals", "label", "verdict", "accepting", "failing", "error", "values", "main"),
+    *("self", "signals", "label", "label_english", "verdict", "accepting", "failing", "error", "values", "main"),
     *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "json", "os", "re", "sys"),
     *("Step", "Monitor", "MonitorError", "BinaryIO", "Callable", "Iterator", "Mapping", "NamedTuple"),
 )
@@ -87,7 +89,8 @@ class _Source:
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
         self._names += (*self._program.registers, *self._program.before)
         progress = [states.PROGRESS] if fspa.judge == "goal" else []
-        self._results = (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING)
+        failure = [states.FAILURE] if self._program.failures else []
+        self._results = (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING, *failure)
         # Atoms that nothing needs are not computed. Functions of states do not get those that only registers read.
         read = variables_read(statement for case in self._program.cases for statement in case.statements)
         only_kept = self._program.variables_kept - read
@@ -117,6 +120,8 @@ class _Source:
             "atoms": long_tuple([string_literal(atom.name) for atom in fspa.atoms]),
             "exclusive": long_tuple([short_tuple([str(atom) for atom in group]) for group in fspa.exclusive]),
             "returns": ", the progress of the step" if at_goal else "",
+            "and_failure": ", and an index into _FAILURES" if self._program.failures else "",
+            "failures": self._failures(),
             "states": f"\n\n{body}\n",
             "result": self._result,
             "transitions": long_tuple([f"_from_{number}" for number in range(len(self._program.cases))]),
@@ -159,12 +164,25 @@ class _Source:
             lines += [f"{INDENT}{name} = {number}" for number, name in enumerate(enum.constants)]
         return "\n".join(lines)
 
+    def _failures(self) -> str:
+        """Return the table of what a step can fail at, which ends with the entry of a failure that has no cause."""
+        clauses = [None if clause is None else self._fspa.clauses[clause] for clause, _ in self._program.failures]
+        atoms = [None if atom is None else self._fspa.atoms[atom].name for _, atom in self._program.failures]
+        rows = [
+            short_tuple(["None" if text is None else string_literal(text) for text in row])
+            for row in zip((*clauses, None), (*atoms, None), strict=True)
+        ]
+        return long_tuple(rows)
+
     def _states(self, tables: StateTables | None) -> dict[str, str]:
         """Return the pieces of the template with rows of states or, if there are tables, of kinds, and the tables."""
-        labels = [str(state.label) for state in self._fspa.states]
         if tables is None:
-            rows = [f"({string_literal(label)}, {self._verdict(state)})" for state, label in enumerate(labels)]
-            return {"table": long_tuple(rows), "tables": "", "label_texts": ""}
+            rows = [
+                f"({string_literal(str(state.label))}, {string_literal(label_text(self._fspa, state.id))}, "
+                f"{self._verdict(state.id)})"
+                for state in self._fspa.states
+            ]
+            return {"table": long_tuple(rows), "tables": "", "label_texts": "", "english_texts": ""}
         lines = [
             f"_{name.upper()}: list[{'float' if name == 'level_progress' else 'int'}] = "
             f"[{Printer.items([*map(repr, numbers)])}]"
@@ -173,7 +191,8 @@ class _Source:
         return {
             "table": long_tuple([f"({self._verdict(state)})" for state in tables.kind_states]),
             "tables": "\n".join(lines),
-            "label_texts": long_tuple([short_tuple([*map(string_literal, pieces)]) for pieces in tables.labels.texts]),
+            "label_texts": _label_texts(tables.labels),
+            "english_texts": _label_texts(tables.labels_english),
         }
 
     def _verdict(self, state: int) -> str:
@@ -183,13 +202,14 @@ class _Source:
     @property
     def _result(self) -> str:
         """The return type of the functions of states, as text."""
-        return f"tuple[int, float, {'float, ' if states.PROGRESS in self._results else ''}str | None]"
+        progress = "float, " if states.PROGRESS in self._results else ""
+        return f"tuple[int, float, {progress}str | None{', int' if self._program.failures else ''}]"
 
     def _function(self, number: int) -> str:
         """Return the source of the function of a case, which finds the edge to take, and returns its results.
 
         The results are the next state, the robustness, the progress if the spec is judged at its
-        goal, and the limiting atom.
+        goal, the limiting atom, and the number of what the step fails at, -1 if it does not fail.
         """
         parameters = [] if self._program.tables is None else [f"{states.FIRST_EDGE}: int"]
         parameters += [f"{atom}: float" for atom in self._computed]
@@ -222,6 +242,12 @@ class _Source:
             once.pop(states.TARGET, None)
         rest = [statement for statement in body if statement not in once.values()]
         results = [self._printer.result(once[name]) if name in once else name for name in self._results]
+        if self._program.failures:
+            if states.FAILURE not in assigned_in(body):
+                results[-1] = "-1"
+            elif states.TARGET not in {line.name for line in body if isinstance(line, Assign)}:
+                # The statements are those of several edges, and not all of them lead into a trap.
+                rest.insert(0, Assign(states.FAILURE, Int(-1)))
         return [*self._printer.lines(rest, depth), f"{INDENT * depth}return {', '.join(results)}"]
 
     # --- the step function --------------------------------------------------------------------
@@ -323,7 +349,7 @@ class _Source:
             reward_step.SATISFIED: 'verdict == "satisfied"',
         }
         return [
-            f"label, verdict, accepting, {reward_step.ENDS} = _STATES[{states.TARGET}]",
+            f"label, label_english, verdict, accepting, {reward_step.ENDS} = _STATES[{states.TARGET}]",
             f"{reward_step.STEPS} = self.steps + 1",
             *(f"{name} = {value}" for name, value in definitions.items() if name in used),
             f"{reward_step.BEST} = self.progress",
@@ -334,9 +360,20 @@ class _Source:
             f"self.progress = {reward_step.BEST}",
             f"self.done = {reward_step.DONE}",
             *self._remember(),
+            *self._fail(),
             "# Adding 0 turns -0 into 0.",
             "values = (target, label, verdict, accepting, done, best, reward, robustness + 0.0, limiting)",
-            "return tuple.__new__(Step, values)",
+            "return tuple.__new__(Step, (*values, label_english, *self.failure))",
+        ]
+
+    def _fail(self) -> list[str]:
+        """Return the code that keeps what the trace fails at, at the first step at which it does."""
+        if all(state.verdict != "violated" for state in self._fspa.states):
+            return []
+        number = states.FAILURE if self._program.failures else "-1"
+        return [
+            'if verdict == "violated" and self.failure[2] is None:',
+            f"{INDENT}self.failure = (*_FAILURES[{number}], {reward_step.STEPS})",
         ]
 
     def _remember(self) -> list[str]:
@@ -364,6 +401,10 @@ def _two_hold(atoms: Sequence[str]) -> str:
     later_tests = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
     pairs = [f"({test} and {f'({rest})' if ' or ' in rest else rest})" for test, rest in zip(tests, later_tests)]  # noqa: B905
     return " or ".join(pairs)
+
+
+def _label_texts(labels: LabelTexts) -> str:
+    return long_tuple([short_tuple([*map(string_literal, pieces)]) for pieces in labels.texts])
 
 
 def _signal(signal: Signal) -> str:

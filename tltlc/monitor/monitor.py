@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
-from typing import Any, NamedTuple, SupportsFloat
+from typing import Any, Final, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.monitor.arguments import automaton_argument, reward_options_argument
+from tltlc.monitor.failure import Failure, breaks, cause_of
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.progress_and_reward import RewardOptions, RewardStep, reward_step
 from tltlc.monitor.samples import STEP_LENGTH, Samples, SampleValues, check_exclusive
 from tltlc.monitor.tables import tables
+
+_NOT_FAILED: Final[dict[str, Any]] = dict.fromkeys(("failed_clause", "failed_atom", "failed_step"))
 
 
 class Step(NamedTuple):
@@ -27,6 +31,13 @@ class Step(NamedTuple):
     - ``limiting``: the name of the atom that kept the automaton from a state nearer to a goal. This
       atom determines the robustness of the most robust edge to such a state. None if the state
       changed, or if no edge leads nearer to a goal.
+    - ``label_english``: ``label`` in words.
+    - ``failed_step``: the number, from 1, of the first step after which no continuation of the trace can
+      meet the spec; None if there is one. The next two fields are about that step.
+    - ``failed_clause``: the clause that it broke, as the source has it: ``avoid on_lava``. None if only
+      several clauses together cannot be met any more.
+    - ``failed_atom``: the name of the atom that decides it: the one that had to hold but did not, or else
+      the one that must not hold but did.
     """
 
     state: int
@@ -38,6 +49,10 @@ class Step(NamedTuple):
     reward: float
     robustness: float
     limiting: str | None
+    label_english: str
+    failed_clause: str | None
+    failed_atom: str | None
+    failed_step: int | None
 
 
 class Monitor:
@@ -48,7 +63,8 @@ class Monitor:
     when episodes end. ``notices`` collects warnings about clamped values, one for each signal or
     atom. After :meth:`step`, ``values`` has the values of the atoms at this sample, in the order of
     ``fspa.atoms``, ``registers`` has the values of its registers after the sample, and ``success`` is
-    true if the episode has ended in success.
+    true if the episode has ended in success. ``failure`` says at which step the trace failed, and why; it
+    is None while the trace can still meet the spec.
 
     Raises:
         MonitorError: TLT0307 a value of ``params`` is outside its range, TLT0308 there is no such
@@ -64,7 +80,7 @@ class Monitor:
         self._samples = Samples(fspa, params, self.notices)
         self._tables = tables(fspa)
         self._options = reward_options_argument(reward)
-        self._labels: dict[int, str] = {}
+        self._labels: dict[int, tuple[str, str]] = {}
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
 
@@ -88,6 +104,7 @@ class Monitor:
         self.progress = 0.0
         self.done = False
         self.success = False
+        self.failure: Failure | None = None
         self.values: tuple[float, ...] = ()
         self.registers = self._samples.initial
         self._memory: Any = None
@@ -157,9 +174,12 @@ class Monitor:
         )
         reward = 0.0 if self.done else self._reward(source, target.id, values, outcome)
         improving = self._tables.improving[source] if source == target.id else ()
-        label = self._labels.get(target.id)
-        if label is None:
-            label = self._labels[target.id] = str(target.label)
+        labels = self._labels.get(target.id)
+        if labels is None:
+            labels = self._labels[target.id] = (str(target.label), label_text(self.fspa, target.id))
+        if self.failure is None and target.verdict == "violated":
+            cause = cause_of(edge_taken, values) if breaks(self.fspa, edge_taken) else None
+            self.failure = Failure(self.steps + 1, source, cause)
 
         self.state, self.steps, self.values = target.id, self.steps + 1, values
         self.registers = sample.registers
@@ -168,7 +188,7 @@ class Monitor:
             self.done, self.success = outcome.done, outcome.success
         return Step(
             state=target.id,
-            label=label,
+            label=labels[0],
             verdict=target.verdict,
             accepting=target.accepting,
             done=self.done,
@@ -177,7 +197,18 @@ class Monitor:
             # Adding 0 replaces -0 by 0, so that all monitors print the same number.
             robustness=robustness(edge_taken.guard, values) + 0.0,
             limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
+            label_english=labels[1],
+            **self._failed(),
         )
+
+    def _failed(self) -> dict[str, Any]:
+        """Return the fields of a step about the failure."""
+        if self.failure is None:
+            return _NOT_FAILED
+        cause = self.failure.cause
+        clause = None if cause is None or cause.clause is None else self.fspa.clauses[cause.clause]
+        atom = None if cause is None or cause.atom is None else self._names[cause.atom]
+        return {"failed_clause": clause, "failed_atom": atom, "failed_step": self.failure.step}
 
     def _reward(self, source: int, target: int, values: Sequence[float], outcome: RewardStep) -> float:
         if self._options.mode == "progress":

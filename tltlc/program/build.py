@@ -38,7 +38,7 @@ DT = "dt"
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
-    states.FIRST_EDGE,
+    *(states.FAILURE, states.FIRST_EDGE),
     *(reward_step.STEPS, reward_step.STEPS_REAL, reward_step.BEST, reward_step.BEFORE, reward_step.REWARD),
     *(reward_step.DONE, reward_step.ENDS, reward_step.VIOLATED, reward_step.SATISFIED, "state"),
 )
@@ -76,6 +76,8 @@ class Program:
       is true at a time: the index of the group in the automaton, and the indices of its atoms.
     - ``cases`` has the statements that compute a transition: a case for each state or, if ``tables``
       is not None, for each shape of states (:mod:`tltlc.program.shapes`).
+    - ``failures`` has what a step can fail at (:attr:`tltlc.program.states.StateCode.failures`): the
+      statements of an edge into a trap assign an index into it.
     - ``reward_statements`` compute progress, reward and the end of the episode after a transition.
       They read and assign the variables of :mod:`tltlc.program.reward_step`.
     - ``ends`` says, for each state, whether entering it ends an episode.
@@ -102,6 +104,7 @@ class Program:
     exclusive: tuple[tuple[int, tuple[int, ...]], ...]
     cases: tuple[Case, ...]
     tables: StateTables | None
+    failures: tuple[tuple[int | None, int | None], ...]
     reward_statements: tuple[Statement, ...]
     ends: tuple[bool, ...]
 
@@ -226,7 +229,8 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
     in_range = tuple(name not in fails and proved[name].lies_in(-1.0, 1.0) for name in atoms)
     sharp = [index for index, atom in enumerate(fspa.atoms) if flags and AtomValue(atom.name) in flags]
     guards = AtomVariables(atoms, frozenset(sharp), frozenset(booleans_now)) if registers else atoms
-    cases, state_tables = cases_and_tables(tables(fspa), guards)
+    state_cases = cases_and_tables(tables(fspa), guards)
+    cases = state_cases.cases
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
     updates = tuple(proved[name].statements for name in now)
     kept = variables_read(statement for update in updates for statement in update)
@@ -264,7 +268,8 @@ def _program(fspa: Fspa, names: VariableNames, has_bools: bool) -> Program:
         register_comments=tuple(map(_register_comment, fspa.registers)),
         exclusive=exclusive,
         cases=cases,
-        tables=state_tables,
+        tables=state_cases.tables,
+        failures=state_cases.failures,
         reward_statements=reward_step.statements(fspa),
         ends=tuple(ends_on_entry(fspa, state) for state in fspa.states),
     )

@@ -12,6 +12,7 @@ from collections.abc import Hashable, Sequence
 from itertools import accumulate
 from typing import Final
 
+from tltlc.automaton.text import label_text
 from tltlc.core.record import record
 from tltlc.monitor.tables import MonitorTables
 from tltlc.program.compact_states import AtomVariables, CompactStateCode
@@ -62,7 +63,7 @@ class StateTables:
     - ``state_kinds`` has the number of each state's kind. States of a kind have the same verdict,
       the same acceptance, and either all of them or none end an episode when they are entered.
     - ``kind_states`` has, for each kind, the number of its first state.
-    - ``labels`` has the labels of all states.
+    - ``labels`` has the labels of all states, and ``labels_english`` has them in words.
     """
 
     state_shapes: tuple[int, ...]
@@ -73,6 +74,7 @@ class StateTables:
     state_kinds: tuple[int, ...]
     kind_states: tuple[int, ...]
     labels: LabelTexts
+    labels_english: LabelTexts
 
     def step_tables(self, judge: JudgeMode) -> dict[str, tuple[float, ...]]:
         """Return the tables that a step reads, by name, if the spec is judged as ``judge`` says.
@@ -86,13 +88,24 @@ class StateTables:
     def all_tables(self, judge: JudgeMode) -> dict[str, tuple[float, ...]]:
         """Return the tables that a step reads, and those of integers from which labels are made, by name."""
         labels = {"state_texts": self.labels.state_texts, "label_numbers": self.labels.numbers}
-        return {**self.step_tables(judge), **labels}
+        english = {"english_states": self.labels_english.state_texts, "english_numbers": self.labels_english.numbers}
+        return {**self.step_tables(judge), **labels, **english}
 
 
-def cases_and_tables(
-    monitor: MonitorTables, atoms: Sequence[str] | AtomVariables
-) -> tuple[tuple[Case, ...], StateTables | None]:
-    """Return a case for each state and None, or a case for each shape of states and their tables.
+@record
+class StateCases:
+    """The cases of the states, or of the shapes of states if there are ``tables``.
+
+    ``failures`` is :attr:`~tltlc.program.states.StateCode.failures`, in the order of the numbers.
+    """
+
+    cases: tuple[Case, ...]
+    tables: StateTables | None
+    failures: tuple[tuple[int | None, int | None], ...]
+
+
+def cases_and_tables(monitor: MonitorTables, atoms: Sequence[str] | AtomVariables) -> StateCases:
+    """Return a case for each state, or a case for each shape of states and their tables.
 
     There are tables if the automaton has at least 64 states, and its shapes have at most half as many
     edges as its states: then tables are smaller. ``atoms`` are the names of the variables with the
@@ -105,7 +118,7 @@ def cases_and_tables(
         if sum(len(edges[example]) for example in examples) <= _MOST_CODE * len(monitor.fspa.edges):
             counts = Counter(shapes)
             shape_code = _state_code(monitor, atoms, reads_tables=True)
-            cases = (
+            cases = tuple(
                 Case(
                     _shape_comment(str(states[example].label), counts[shape]),
                     shape_code.statements(edges[example]),
@@ -117,7 +130,7 @@ def cases_and_tables(
             kinds, kind_states = _numbered(
                 [(state.verdict, state.accepting, monitor.ends_on_entry[state.id]) for state in states]
             )
-            return tuple(cases), StateTables(
+            state_tables = StateTables(
                 state_shapes=shapes,
                 first_edges=(0, *accumulate(map(len, edges[:-1]))),
                 edge_targets=tuple(edge.target for leaving in edges for edge in leaving),
@@ -126,9 +139,12 @@ def cases_and_tables(
                 state_kinds=kinds,
                 kind_states=kind_states,
                 labels=split_labels([str(state.label) for state in states]),
+                labels_english=split_labels([label_text(monitor.fspa, state.id) for state in states]),
             )
+            return StateCases(cases, state_tables, tuple(shape_code.failures))
     code = _state_code(monitor, atoms, reads_tables=False)
-    return tuple(Case(str(state.label), code.statements(state_edges(monitor, state.id))) for state in states), None
+    cases = tuple(Case(str(state.label), code.statements(state_edges(monitor, state.id))) for state in states)
+    return StateCases(cases, None, tuple(code.failures))
 
 
 def transition_cases(

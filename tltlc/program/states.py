@@ -11,6 +11,7 @@ from functools import lru_cache, reduce
 from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
+from tltlc.monitor.failure import breaks, causes
 from tltlc.monitor.tables import MonitorTables
 from tltlc.program.conjunctive_form import shorter_clauses
 from tltlc.program.tree import (
@@ -42,6 +43,11 @@ They are the next state, the robustness of the edge taken, the progress of this 
 index of the limiting atom. This atom determines the robustness of the most robust edge towards a
 goal; the index is -1 if the state changes or no edge leads towards a goal.
 """
+FAILURE = "failure"
+"""The variable that the statements of an edge into a trap assign: the index of what the step fails at.
+
+It is an index into :attr:`StateCode.failures`. The statements of other edges leave the variable as it is.
+"""
 FIRST_EDGE = "first_edge"
 """The place of the state's first edge in the table of targets, which statements that read tables need."""
 NEAREST, OTHER = "nearest", "other"
@@ -63,9 +69,11 @@ def edge_shape(tables: MonitorTables, edge: Edge) -> Hashable:
     """Return what determines the statements of an edge, apart from entries of tables.
 
     These are the prime implicants of the edge's guard. For an edge from a state to itself, they are
-    also those of the edges that would lead nearer to a goal.
+    also those of the edges that would lead nearer to a goal. For an edge into a trap, they are also the
+    clauses that it breaks.
     """
-    return edge.guard.primes, tuple(other.guard.primes for other in _improving(tables, edge))
+    broken = edge.broken if breaks(tables.fspa, edge) else None
+    return edge.guard.primes, tuple(other.guard.primes for other in _improving(tables, edge)), broken
 
 
 class StateCode:
@@ -75,6 +83,9 @@ class StateCode:
     determines how robust the most robust edge towards a goal is. If the code ``reads_tables``, they read the
     next state and its progress from tables. ``atoms`` are the names of the variables with the values of the
     atoms. Those in ``booleans`` are Booleans: true where the atom is above 0.
+
+    ``failures`` has what a step can fail at, each with its number: the index of the clause, None if several
+    clauses together fail or the clauses are not known, and the index of the atom that decides it.
     """
 
     def __init__(
@@ -84,6 +95,7 @@ class StateCode:
         # Large automata have millions of literals: equal ones share one expression.
         self._values, self._literals = _literals(tuple(atoms), frozenset(booleans))
         self._at_goal = tables.fspa.judge == "goal"
+        self.failures: dict[tuple[int | None, int | None], int] = {}
 
     def statements(self, edges: Sequence[Edge]) -> tuple[Statement, ...]:
         """Return an ``if`` with a case for each of the ``edges`` that leave the state.
@@ -117,6 +129,7 @@ class StateCode:
         improving = _improving(self._tables, edge)
         lines: list[Statement] = [CommentLine(edge.guard.text), Assign(TARGET, self._target(place, edge))]
         lines.append(Assign(ROBUSTNESS, self._robustness(edge.guard.primes)))
+        lines += self._failure(edge) if breaks(self._tables.fspa, edge) else ()
         base = self._base_progress(edge)
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
@@ -131,6 +144,20 @@ class StateCode:
             "/", BinaryNumber("+", Real(1.0), ProgramVariable(NEAREST)), Real(float(self._tables.fspa.spec_size))
         )
         return (*lines, *self._progress(share if base == _ZERO else BinaryNumber("+", base, share)))
+
+    def _failure(self, edge: Edge) -> tuple[Statement, ...]:
+        """Return statements that assign the number of the first cause that applies."""
+        groups: list[tuple[int, list[Implicant]]] = []
+        for cause in causes(edge):
+            number = self.failures.setdefault((cause.clause, cause.atom), len(self.failures))
+            if groups and groups[-1][0] == number:
+                groups[-1][1].append(cause.prime)
+            else:
+                groups.append((number, [cause.prime]))
+        *others, (last, _) = groups
+        otherwise = (Assign(FAILURE, Int(last)),)
+        cases = ((self._any_of(primes), (Assign(FAILURE, Int(number)),)) for number, primes in others)
+        return (If(tuple(cases), otherwise),) if others else otherwise
 
     def _target(self, place: int, edge: Edge) -> ProgramExpression:
         if not self._reads_tables:
@@ -152,8 +179,12 @@ class StateCode:
         return [Assign(PROGRESS, value)] if self._at_goal else []
 
     def _truth(self, guard: Guard) -> ProgramExpression:
+        return self._any_of(guard.primes)
+
+    def _any_of(self, primes: Sequence[Implicant]) -> ProgramExpression:
+        """Return the test whether one of the prime implicants is true."""
         tests: list[ProgramExpression] = []
-        for prime in guard.primes:
+        for prime in primes:
             literals = [self._literal_test(literal) for literal in prime]
             tests.append(Bool(True) if not literals else literals[0] if len(literals) == 1 else All(tuple(literals)))
         return tests[0] if len(tests) == 1 else Any(tuple(tests))

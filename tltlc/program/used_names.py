@@ -54,6 +54,18 @@ def parts(expressions: Iterable[ProgramExpression]) -> Iterator[ProgramExpressio
         stack += operands(node)
 
 
+def assigned_in(statements: Iterable[Statement]) -> frozenset[str]:
+    """Return the names of the variables to which the statements assign, also inside the cases of an ``if``."""
+    names: set[str] = set()
+    for statement in statements:
+        match statement:
+            case Assign(name, _):
+                names.add(name)
+            case If(cases, otherwise):
+                names = names.union(*(assigned_in(body) for _, body in cases), assigned_in(otherwise))
+    return frozenset(names)
+
+
 def _values(statements: Iterable[Statement]) -> Iterator[ProgramExpression]:
     """Yield the expressions that statements compute or test, also inside the cases of an ``if``."""
     for statement in statements:

@@ -5,14 +5,17 @@ They do not contain parts of the syntax tree, only spans in the source text for 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
-from typing import Literal
+from typing import Final, Literal
 
 from tltlc.core.names import ComparisonName, full_name
 from tltlc.core.record import EMPTY, record
 from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression
 from tltlc.logic.formula import Formula
+
+_COMMENT: Final = re.compile(r"//[^\n]*")
 
 ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "int", "bool"]
 JudgeMode = Literal["goal", "limit"]
@@ -168,6 +171,11 @@ class Conjunct:
     span: Span
     bounds: tuple[Bound, ...] = ()
     unbounded: Formula | None = None
+
+    @property
+    def text(self) -> str:
+        """The clause as the source has it, on one line with single blanks: ``avoid on_lava``."""
+        return " ".join(_COMMENT.sub(" ", self.source.text[self.span.start : self.span.end]).split())
 
 
 @record

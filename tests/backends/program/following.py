@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterable
 from random import Random
 
-from tests.backends.program.interpreter import Scope, Value, step
+from tests.backends.program.interpreter import Scope, Value, failure_names, step
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.program.build import Program, program
@@ -48,6 +48,8 @@ def follow(fspa: Fspa, rng: Random, samples: int, *, has_bools: bool = False, dr
         assert (state, limiting) == (wanted.state, wanted.limiting)
         assert (best, after["reward"], done) == (wanted.progress, wanted.reward, wanted.done)
         assert after["robustness"] == wanted.robustness
+        if wanted.failed_step in (None, number):
+            assert failure_names(found, after) == (wanted.failed_clause, wanted.failed_atom)
     return found
 
 

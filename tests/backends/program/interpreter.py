@@ -104,7 +104,7 @@ def step(
     """Return the variables after a step on the values of the atoms; ``steps`` is the number of this step."""
     tables = program.tables
     scope = Scope(atoms, tables)
-    scope.changing |= {"target", "robustness", "progress", "limiting", "best", "reward", "done"}
+    scope.changing |= {"target", "robustness", "progress", "limiting", "failure", "best", "reward", "done"}
     if tables is not None:
         scope.values[FIRST_EDGE] = tables.first_edges[state]
     scope.run(program.cases[state if tables is None else tables.state_shapes[state]].statements)
@@ -114,6 +114,15 @@ def step(
     scope.values |= {"violated": target.verdict == "violated", "satisfied": target.verdict == "satisfied"}
     scope.run(program.reward_statements)
     return scope.values
+
+
+def failure_names(program: Program, outcome: Mapping[str, Value]) -> tuple[str | None, str | None]:
+    """Return the clause and the atom that a step fails at, as the program finds them; None where it finds none."""
+    if "failure" not in outcome:
+        return None, None
+    clause, atom = program.failures[int(outcome["failure"])]
+    fspa = program.fspa
+    return None if clause is None else fspa.clauses[clause], None if atom is None else fspa.atoms[atom].name
 
 
 def _call(function: str, args: list[Value]) -> float:

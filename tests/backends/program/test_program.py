@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton.letters import letters
-from tests.backends.program.interpreter import NoValueError, Scope, step
+from tests.backends.program.interpreter import NoValueError, Scope, failure_names, step
 from tests.backends.strategies import automata, expressions, infinite_automata
 from tests.fuzzing import times
 from tltlc.automaton.finite.blowup import recursion_room
@@ -158,6 +158,8 @@ def test_steps_agree_with_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
         state, best, done = int(outcome["target"]), float(outcome["best"]), bool(outcome["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
         assert (outcome["reward"], outcome["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+        if row.failed_step in (None, number):
+            assert failure_names(compiled, outcome) == (row.failed_clause, row.failed_atom)
 
 
 @given(st.lists(st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 0.5]), min_size=4, max_size=4))

@@ -7,10 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.automaton.letters import letters
-from tests.backends.program.interpreter import Scope, step
+from tests.backends.program.interpreter import Scope, failure_names, step
 from tests.backends.state_tables import counting, in_order, with_tables
 from tests.backends.strategies import automata, infinite_automata
 from tests.fuzzing import times
+from tests.unfolded import unfolded
+from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import replace
 from tltlc.monitor import Monitor
@@ -49,6 +51,8 @@ def test_steps_that_read_tables_agree_with_the_monitor(fspa: Fspa, data: st.Data
         state, best, done = int(outcome["target"]), float(outcome["best"]), bool(outcome["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
         assert (outcome["reward"], outcome["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+        if row.failed_step in (None, number):
+            assert failure_names(compiled, outcome) == (row.failed_clause, row.failed_atom)
 
 
 @times(40)
@@ -79,15 +83,20 @@ def test_a_step_from_any_counting_state_does_the_same_work() -> None:
     compiled = program(counting(), ())
     tables = compiled.tables
     assert tables is not None
-    assert Counter(tables.state_shapes) == {0: 601, 1: 1}
+    assert Counter(tables.state_shapes) == {0: 1, 1: 600, 2: 1}
     work = {
         work_of_a_step(compiled, state, {compiled.atoms[0]: value}) for state in range(602) for value in (1.0, -1.0)
     }
-    assert work == {(2, 1)}
+    assert work == {(3, 1)}
 
 
 def test_an_atom_that_only_one_shape_needs_is_computed_there() -> None:
-    assert program(counting(), ()).only_in == (0,)
+    rule = "spec quiet { require next always for 10 s quiet }"
+    with unfolded():
+        (fspa,) = compile_text(f"clock 60 Hz\nsignal quiet: bool\n{rule}\n")
+    compiled = program(fspa, ())
+    assert compiled.tables is not None
+    assert compiled.only_in == (1,)
 
 
 def test_few_states_have_no_tables() -> None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from tltlc.automaton.finite.build import build, spec_from_formula
+from tltlc.automaton.broken_clauses import with_broken_clauses
+from tltlc.automaton.finite.build import DEFAULT_STATE_BUDGET, build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.core.record import EMPTY, record, replace
+from tltlc.core.source import SourceFile, Span
 from tltlc.expression.tree import Expression, nodes
 from tltlc.expression.tree import ParamValue as NamedParam
 from tltlc.expression.tree import SignalValue as NamedSignal
 from tltlc.logic.formula import Formula
-from tltlc.resolve.spec import Atom, JudgeMode, Param, Signal
+from tltlc.resolve.spec import Atom, Conjunct, JudgeMode, Param, Signal, Spec
 
 
 @record
@@ -64,8 +66,24 @@ def automaton(
         kept_signals = tuple(signal for signal in signals if signal.name in used)
         kept_params = tuple(param for param in params if param.name in used)
         spec = replace(spec, atoms=atoms, signals=kept_signals, params=kept_params)
-    if not infinite:
+    spec = replace(spec, semantics="infinite" if infinite else "finite")
+    fspa = _built(spec)
+    return with_broken_clauses(fspa, replace(spec, parts=_clauses(formula)), DEFAULT_STATE_BUDGET)
+
+
+def _built(spec: Spec) -> Fspa:
+    if spec.semantics == "finite":
         return build(spec)
     from tltlc.automaton.infinite.build import build_infinite
 
-    return build_infinite(replace(spec, semantics="infinite"))
+    return build_infinite(spec)
+
+
+def _clauses(formula: Formula) -> tuple[Conjunct, ...]:
+    """Return the conjuncts of a formula, each as a clause."""
+    conjuncts = formula.args if formula.op == "and" else (formula,)
+    sources = [SourceFile("<clause>", str(conjunct), "text") for conjunct in conjuncts]
+    return tuple(
+        Conjunct(conjunct, source, Span(0, len(source.text)))
+        for conjunct, source in zip(conjuncts, sources, strict=True)
+    )

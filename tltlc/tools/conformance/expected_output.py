@@ -35,7 +35,7 @@ RejectionKind = Literal[
 
 COLUMNS: Final = (
     *("step", "state", "verdict", "accepting", "done", "progress", "reward"),
-    *("robustness", "limiting"),
+    *("robustness", "limiting", "failed_clause", "failed_atom", "failed_step"),
 )
 
 
@@ -90,7 +90,9 @@ def expected_output(fspa: Fspa, trace: bytes) -> ExpectedOutput:
 def _row_cells(number: int, step: Step) -> tuple[str, ...]:
     flags = [str(flag).lower() for flag in (step.accepting, step.done)]
     numbers = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-    return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
+    texts = (step.limiting, step.failed_clause, step.failed_atom, step.failed_step)
+    names = ("" if text is None else str(text) for text in texts)
+    return (str(number), str(step.state), step.verdict, *flags, *numbers, *names)
 
 
 def _rejection(monitor: Monitor, error: Diagnostic, trace: bytes, sample: TraceSample) -> Rejection:

@@ -5,7 +5,6 @@ These automata show which clauses are to blame if a trace is not accepted.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import Final
 
@@ -20,7 +19,6 @@ from tltlc.logic.text.printer import ascii_text
 from tltlc.pipeline import CompileOptions, build_spec
 from tltlc.resolve.spec import Spec
 
-_COMMENT: Final = re.compile(r"//[^\n]*")
 _MOST_NODES: Final = 100
 """A conjunct with more different parts is named by its formula, because its words would be too many."""
 
@@ -131,8 +129,7 @@ def _read(whole: Spec, names: set[str]) -> tuple[set[str], set[str]]:
 
 def _conjuncts_of_source(spec: Spec) -> Iterator[tuple[str, Formula]]:
     for part in spec.parts:
-        text = _COMMENT.sub(" ", part.source.text[part.span.start : part.span.end])
-        yield " ".join(text.split()), part.formula
+        yield part.text, part.formula
 
 
 def _conjuncts_of_artefact(fspa: Fspa) -> Iterator[tuple[str, Formula]]:
