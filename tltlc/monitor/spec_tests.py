@@ -11,6 +11,7 @@ from tltlc.automaton.text import label_text
 from tltlc.core.record import record, replace
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.errors import MonitorError
+from tltlc.monitor.failure_words import failure_words
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.monitor.samples import number_text
 from tltlc.resolve.spec import Expect, ResolvedFile, Test
@@ -59,7 +60,7 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     last: Step | None = None
     for item in test.items:
         if isinstance(item, Expect):
-            failure = _failed_expectation(item, last, fspa)
+            failure = _failed_expectation(item, last, monitor)
             if failure is not None:
                 return TestResult(test, failure)
             continue
@@ -76,16 +77,18 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
     return TestResult(test, None)
 
 
-def _failed_expectation(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
+def _failed_expectation(expect: Expect, step: Step | None, monitor: Monitor) -> Diagnostic | None:
     """Return a diagnostic if an ``expect`` of a test fails; None if it holds.
 
-    ``step`` is the last step before the expectation; None if the test begins with the expectation.
+    ``step`` is the last step of ``monitor`` before the expectation; None if the test begins with it.
     """
+    fspa = monitor.fspa
     if step is None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":
         if expect.value != step.verdict:
-            return _failure(expect, f"it is {step.verdict}", _remaining_text(step, fspa))
+            why = None if monitor.failure is None else failure_words(fspa, monitor.failure)
+            return _failure(expect, f"it is {step.verdict}", why or _remaining_text(step, fspa))
     elif expect.kind == "progress":
         if not _meets(step.progress, expect):
             return _failure(expect, f"the progress is {number_text(step.progress)}", _remaining_text(step, fspa))

@@ -17,7 +17,18 @@ from gymnasium.utils import RecordConstructorArgs
 
 from tltl_runtime.spec.automaton_observation import AutomatonObservation
 from tltl_runtime.spec.task import load_task
-from tltlc.api import Diagnostic, Fspa, Monitor, MonitorError, RewardOptions, Step, TltlError, monitors, record
+from tltlc.api import (
+    Diagnostic,
+    Fspa,
+    Monitor,
+    MonitorError,
+    RewardOptions,
+    Step,
+    TltlError,
+    label_text,
+    monitors,
+    record,
+)
 
 SignalsFunction = Callable[[gymnasium.Env[Any, Any]], Mapping[str, SupportsFloat]]
 Observation = dict[str, Any]
@@ -64,7 +75,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
 
     ``info`` gains these keys, which replace entries of the environment with the same names:
 
-    - ``verdict``, ``state``, ``label`` and ``progress``: as in :class:`~tltlc.monitor.Step`;
+    - ``verdict``, ``state``, ``label``, ``label_english``, ``progress``, ``failed_clause``,
+      ``failed_atom`` and ``failed_step``: as in :class:`~tltlc.monitor.Step`;
     - ``unmet``: the state whose label says what was not met. After a violation it is the state before
       the step, otherwise the current state;
     - ``success``: whether the episode has ended in success;
@@ -144,6 +156,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "state": 0,
             "unmet": 0,
             "label": str(start.label),
+            "label_english": label_text(self.task.fspa, 0),
+            **dict.fromkeys(("failed_clause", "failed_atom", "failed_step")),
             "progress": 0.0,
             "success": False,
             "limiting": None,
@@ -218,6 +232,10 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             "state": step.state,
             "unmet": before if step.verdict == "violated" else step.state,
             "label": step.label,
+            "label_english": step.label_english,
+            "failed_clause": step.failed_clause,
+            "failed_atom": step.failed_atom,
+            "failed_step": step.failed_step,
             "progress": step.progress,
             "success": self._monitor.success,
             "limiting": step.limiting,

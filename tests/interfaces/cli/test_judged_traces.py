@@ -134,7 +134,9 @@ def test_parquet_is_read_like_csv(folder: Path, tltlc) -> None:  # type: ignore[
     steps = tltlc("monitor", "fetch.tltl", "lava.parquet")
     assert "error[TLT0612]" in steps.err or "error[TLT0611]" in steps.err
     parquet.write_table(pyarrow.table({**columns, "at_exit": [0.0, 1.0]}), "lava.parquet")
-    assert tltlc("monitor", "fetch.tltl", "lava.parquet").out.splitlines()[-1] == "not accepted: violated after 2 steps"
+    assert tltlc("monitor", "fetch.tltl", "lava.parquet").out.splitlines()[-1] == (
+        "not accepted: violated at step 2 of 2: `on_lava`, clause 2"
+    )
     many = tltlc("monitor", "fetch.tltl", "lava.parquet", "traces/a.csv")
     assert many.out.splitlines()[0] == "lava.parquet: not accepted: breaks `avoid on_lava` at step 2 of 2"
     Path("torn.parquet").write_bytes(Path("lava.parquet").read_bytes()[:-9])

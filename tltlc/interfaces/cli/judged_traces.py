@@ -165,6 +165,7 @@ def _trace_document(trace: JudgedTrace) -> dict[str, Any]:
             "progress": outcome.progress,
             "reward": outcome.total_reward,
             "remaining": trace.verdict.remaining,
+            "unmet": trace.verdict.unmet,
         }
     return {**document, "cause": _cause_document(cause), "diagnostics": list(map(entry, trace.diagnostics))}
 
@@ -172,7 +173,12 @@ def _trace_document(trace: JudgedTrace) -> dict[str, Any]:
 def _cause_document(cause: RejectionCause | None) -> dict[str, Any] | None:
     if cause is None:
         return None
-    return {"kind": cause.kind, "step": cause.step, "clauses": list(cause.clauses), "atoms": list(cause.atoms)}
+    return {
+        "kind": cause.kind,
+        "step": cause.step,
+        "clauses": list(cause.clauses),
+        "atoms": list(cause.atoms),
+    }
 
 
 def _end_json(traces: Sequence[JudgedTrace], total: int, others: Sequence[str]) -> None:

@@ -12,7 +12,8 @@ from tltlc.automaton.memory import deciding_atoms
 from tltlc.automaton.text import label_text
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.errors import MonitorError
-from tltlc.monitor.guards import holds, prime_robustness
+from tltlc.monitor.failure import cause_of
+from tltlc.monitor.guards import holds
 from tltlc.monitor.long_steps import LongSteps, shortest_time
 from tltlc.monitor.monitor import Monitor
 from tltlc.monitor.nearest_edge import nearest_edge
@@ -90,7 +91,8 @@ class Judge:
     def _verdict(self, samples: Sequence[TraceSample], run: TraceRun) -> TraceVerdict:
         cause = None if run.outcome.accepted else self._cause(samples, run)
         details = self._details(samples, run) if self._with_details else None
-        return TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details)
+        unmet = label_text(self._fspa, run.state if run.broken_state is None else run.broken_state)
+        return TraceVerdict(run.outcome, label_text(self._fspa, run.state), cause, len(samples), details, unmet)
 
     def _details(self, samples: Sequence[TraceSample], run: TraceRun) -> TraceDetails:
         unmet = run.state if run.broken_state is None else run.broken_state
@@ -223,11 +225,9 @@ class Judge:
         return next((result for result in measures if result is not None), None)
 
     def _breaking_atoms(self, values: Sequence[float], state: int) -> tuple[int, ...]:
-        """Return the indices of the atoms that decide which edge leaves ``state`` at a sample.
+        """Return the indices of the atoms that break the spec at a sample, or the reasons for them.
 
-        ``values`` are the values of all atoms at the sample. They make the guard of exactly one edge
-        true. The result has the atoms of this guard's most robust prime implicant, or the reasons for them.
+        ``values`` are the values of all atoms at the sample, and ``state`` is the state before it.
         """
-        (guard,) = (edge.guard for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
-        prime = max(guard.primes, key=lambda prime: prime_robustness(prime, values))
-        return deciding_atoms(self._fspa, [atom for atom, _ in prime], values)
+        (edge,) = (edge for edge in self._fspa.edges_from(state) if holds(edge.guard, values))
+        return deciding_atoms(self._fspa, [atom for atom, _ in cause_of(edge, values).prime], values)

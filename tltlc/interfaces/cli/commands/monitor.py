@@ -6,10 +6,10 @@ import csv
 import io
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import click
 
@@ -23,9 +23,15 @@ from tltlc.io.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, input_error, 
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.interfaces.cli.failing_step import ClausePlace, FailingStep
+    from tltlc.interfaces.cli.inputs import Input
+    from tltlc.monitor.monitor import Monitor
     from tltlc.monitor.run import RunStep, TraceOutcome
     from tltlc.monitor.trace_rows import Stream
     from tltlc.resolve.spec import Signal
+
+
+Output = Literal["json", "csv", "table"]
 
 
 @click.command(
@@ -40,6 +46,13 @@ Examples:
 @click.argument("spec", metavar="SPEC[:NAME]")
 @click.argument("traces", metavar="TRACE...", nargs=-1, required=True)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document.")
+@click.option(
+    "--table/--csv",
+    "as_table",
+    default=None,
+    help="Print the steps as a table with three digits (default on a terminal), or as CSV with all digits (default in"
+    " files and pipes).",
+)
 @click.option("--summary", is_flag=True, help="Print a line for each trace and a summary, even for a single trace.")
 @click.option(
     "--episodes",
@@ -57,6 +70,7 @@ def command(
     spec: str,
     traces: tuple[str, ...],
     as_json: bool,
+    as_table: bool | None,
     summary: bool,
     episodes: bool,
     workers: int | None,
@@ -66,8 +80,9 @@ def command(
     """Judge recorded traces by a spec. A TRACE is CSV with a header of signal names, JSON lines, Parquet, or a tape.
 
     For one file, the output has one row per step (state, verdict, progress, reward, value of each atom) and the verdict
-    of the whole trace. For several files or a folder, it has one line per trace, and a summary that says which clauses
-    the other traces break or leave undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are
+    of the whole trace. If the trace fails, it says at which step, which clause it breaks there, and which atoms decide
+    it. For several files or a folder, the output has one line per trace, and a summary that says which clauses the
+    other traces break or leave undone. In a folder, files that end in .csv, .jsonl, .tape.jsonl.gz or .parquet are
     traces; a tape beside a trace with the same name is the same play, and left out. The exit status is 0 if all traces
     are accepted, and 1 otherwise. A spec over infinite traces accepts a trace that ends in a goal state.
     """
@@ -80,7 +95,9 @@ def command(
             message = f"`{trace}` is a spec, not a trace: `tltlc monitor` takes one spec"
             raise click.UsageError(message, click.get_current_context())
     if len(traces) == 1 and not (summary or episodes) and (traces[0] == STDIN or not is_dir(traces[0])):
-        return _judge_steps(spec, traces[0], settings, format, as_json=as_json)
+        as_table = sys.stdout.isatty() if as_table is None else as_table
+        output: Output = "json" if as_json else "table" if as_table else "csv"
+        return _judge_steps(spec, traces[0], settings, format, output)
     if STDIN in traces:
         raise click.UsageError("a summary needs traces in files, not standard input", click.get_current_context())
     from tltlc.interfaces.cli.judged_traces import JudgeOptions, judge_traces
@@ -88,8 +105,9 @@ def command(
     return judge_traces(spec, traces, JudgeOptions(workers, episodes, as_json), settings, format)
 
 
-def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, *, as_json: bool) -> int:  # noqa: A002
+def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, output: Output) -> int:  # noqa: A002
     """Judge one trace, and print a row for each step while reading it; return the exit status."""
+    from tltlc.interfaces.cli.failing_step import FailingStep
     from tltlc.monitor import Monitor
     from tltlc.monitor.long_steps import LongSteps, shortest_time
     from tltlc.monitor.run import outcome, run
@@ -110,12 +128,23 @@ def _judge_steps(spec: str, trace: str, settings: CompileSettings, format: str, 
                 input_kind(trace),
                 clock_varies=fspa.clock_varies,
             )
-            rows = run(monitor, steps.watched(samples))
-            show = _show_json if as_json else _show_csv
-            result = outcome(show(fspa, _with_notices(rows, monitor.notices, report)))
-        (_end_json if as_json else _end_csv)(result)
+            failing = FailingStep(monitor, _clause_places(spec_input))
+            rows = run(monitor, failing.watched(steps.watched(samples)))
+            show = {"json": _show_json, "csv": _show_csv, "table": _show_table}[output]
+            result = outcome(show(fspa, failing.noted(_with_notices(rows, monitor.notices, report))))
+        (_end_json if output == "json" else _end_text)(result, monitor, failing)
         report.add(steps.warnings())
     return report.status or (exits.CLEAN if result and result.accepted else exits.FINDINGS)
+
+
+def _clause_places(spec_input: Input) -> tuple[ClausePlace, ...]:
+    """Return the places of the clauses in the source; none if the spec is an artefact."""
+    from tltlc.interfaces.cli.failing_step import ClausePlace
+
+    name = spec_input.only_automaton().name
+    specs = spec_input.program.specs if spec_input.program else ()
+    parts = next((spec.parts for spec in specs if spec.name == name), ())
+    return tuple(ClausePlace(part.source.name, part.source.position(part.span.start)[0]) for part in parts)
 
 
 @contextmanager
@@ -193,9 +222,41 @@ def _show_csv(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
         yield row
 
 
-def _end_csv(result: TraceOutcome) -> None:
-    accepted = "accepted" if result.accepted else "not accepted"
-    print(f"{accepted}: {result.verdict} after {result.steps} step{'' if result.steps == 1 else 's'}")
+def _show_table(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
+    from shutil import get_terminal_size
+
+    from tltlc.interfaces.cli.step_table import StepTable
+
+    table = StepTable(fspa, get_terminal_size().columns)
+    _print_lines(table.head())
+    for row in rows:
+        _print_lines(table.rows(row))
+        yield row
+    if table.left_out:
+        atoms = "1 more atom does" if table.left_out == 1 else f"{table.left_out} more atoms do"
+        print(f"{atoms} not fit beside these: `--csv` shows all")
+
+
+def _print_lines(lines: Iterable[str]) -> None:
+    from tltlc.diagnostics.formats.text import replace_unprintable
+
+    for line in lines:
+        print(replace_unprintable(line), flush=True)
+
+
+def _end_text(result: TraceOutcome, monitor: Monitor, failing: FailingStep) -> None:
+    """Print the verdict of the trace; if it is not accepted, also why, and what remains."""
+    from tltlc.automaton.text import label_text
+    from tltlc.monitor.failure_words import failure_words
+
+    if monitor.failure is not None:
+        _print_lines(failing.details())
+        _print_lines([f"not accepted: {failure_words(monitor.fspa, monitor.failure, result.steps)}"])
+        return
+    if not result.accepted:
+        _print_lines([f"what remains: {label_text(monitor.fspa, monitor.state)}"])
+    steps = f"{result.steps} step{'' if result.steps == 1 else 's'}"
+    print(f"{'accepted' if result.accepted else 'not accepted'}: {result.verdict} after {steps}")
 
 
 def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
@@ -209,12 +270,16 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
                 "step": row.number,
                 "state": step.state,
                 "label": step.label,
+                "label_english": step.label_english,
                 "verdict": step.verdict,
                 "accepting": step.accepting,
                 "done": step.done,
                 "progress": step.progress,
                 "reward": step.reward,
                 "atoms": dict(zip(names, row.values, strict=True)),
+                "failed_clause": step.failed_clause,
+                "failed_atom": step.failed_atom,
+                "failed_step": step.failed_step,
             }
             sys.stdout.write(between + json.dumps(row_values))
             sys.stdout.flush()
@@ -226,12 +291,13 @@ def _show_json(fspa: Fspa, rows: Iterator[RunStep]) -> Iterator[RunStep]:
         raise
 
 
-def _end_json(result: TraceOutcome) -> None:
+def _end_json(result: TraceOutcome, _: Monitor, failing: FailingStep) -> None:
     end = {
         "accepted": result.accepted,
         "verdict": result.verdict,
         "steps": result.steps,
         "progress": result.progress,
         "reward": result.total_reward,
+        "failure": failing.document(),
     }
     print("\n], " + json.dumps(end)[1:])

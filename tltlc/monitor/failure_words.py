@@ -1,0 +1,60 @@
+"""Say in words why a trace fails: at which step, by which atoms, against which clause."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.memory_phrases import spoken
+from tltlc.automaton.text import label_text
+from tltlc.logic import formula as f
+from tltlc.logic.text.printer import words_text
+from tltlc.monitor.failure import Cause, Failure
+
+
+def failure_words(fspa: Fspa, failed: Failure, steps: int | None = None) -> str:
+    """Return a phrase such as "violated at step 3 of 5: `at(boss)` without `has(sword)`, clause 2".
+
+    ``steps`` is the number of steps of the trace; if it is None, the phrase says nothing of it. Clauses are
+    counted from 1.
+    """
+    place = f"violated at step {failed.step}" + (f" of {steps}" if steps is not None else "")
+    if failed.cause is None:
+        return f"{place}: no trace can meet the spec"
+    words = cause_words(fspa, failed.cause)
+    if failed.cause.clause is not None:
+        return f"{place}: {words}, clause {failed.cause.clause + 1}"
+    return f"{place}: {words}" + (", against several clauses together" if len(fspa.clauses) > 1 else "")
+
+
+def cause_words(fspa: Fspa, cause: Cause) -> str:
+    """Return what is true at the step that breaks a clause: "`at(boss)` without `has(sword)`"."""
+    true = [atom_words(fspa, atom) for atom, polarity in cause.prime if polarity]
+    false: list[str] = []
+    for atom, polarity in cause.prime:
+        if not polarity:
+            opposite = fspa.atoms[atom].opposite
+            if opposite is None:
+                false.append(atom_words(fspa, atom))
+            else:
+                true.append(opposite)
+    if not false:
+        return _listed(true, "and") if true else "this step comes too late"
+    if not true:
+        return f"{_listed(false, 'and')} {'does' if len(false) == 1 else 'do'} not hold"
+    return f"{_listed(true, 'and')} without {_listed(false, 'or')}"
+
+
+def atom_words(fspa: Fspa, atom: int) -> str:
+    """Return an atom in words: its name, or for one that remembers the trace, "answers later than 5 s after alarm"."""
+    return words_text(spoken(f.atom(fspa.atoms[atom].name), fspa))
+
+
+def unmet_words(fspa: Fspa, failed: Failure) -> str:
+    """Return what remained to be satisfied before the step that failed, in words."""
+    return label_text(fspa, failed.state)
+
+
+def _listed(names: Sequence[str], conjunction: str) -> str:
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} {conjunction} {quoted[-1]}"
