@@ -108,7 +108,7 @@ def test_the_first_of_two_broken_clauses_is_named() -> None:
 def test_clauses_that_fail_only_together_are_not_named() -> None:
     (fspa,) = compile_text("signal a: bool  signal b: bool\nspec s { reach a  keep b implies always not a }")
     step = Monitor(fspa).step({"a": False, "b": True})
-    assert (step.failed_clause, step.failed_atom, step.failed_step) == (None, "a", 1)
+    assert (step.failed_clause, step.failed_atom, step.failed_step) == (None, "b", 1)
 
 
 def test_a_spec_of_one_clause_needs_no_conditions_of_its_own() -> None:
