@@ -1,0 +1,116 @@
+"""Lines of the documentation are at most 100 columns long, except where they cannot be broken."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS, ROOT
+
+COLUMNS = 100
+PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"])
+NOT_YET_WRAPPED = {
+    "CHANGELOG.md",
+    "README.md",
+    "docs/adr/0007-share-the-initial-state.md",
+    "docs/adr/0016-policy-files.md",
+    "docs/adr/0020-sharpen-the-policy-with-the-pass-rate.md",
+    "docs/adr/0023-monitors-are-printed-from-one-program.md",
+    "docs/adr/0025-the-playground-is-the-compiler.md",
+    "docs/adr/0036-the-stealth-game-is-one-game.md",
+    "docs/adr/0038-recorded-traces-are-cases-of-a-suite.md",
+    "docs/adr/0039-scale-observations-by-bounds-or-by-what-was-seen.md",
+    "docs/adr/0041-a-scene-may-stand-for-a-level.md",
+    "docs/adr/0045-timers-where-bounds-would-be-many-states.md",
+    "docs/adr/0046-each-sample-brings-its-length.md",
+    "docs/artefact.md",
+    "docs/episode-log.md",
+    "docs/games.md",
+    "docs/guides/batch.md",
+    "docs/guides/builds.md",
+    "docs/guides/changes.md",
+    "docs/guides/editors.md",
+    "docs/guides/explaining.md",
+    "docs/guides/formatting.md",
+    "docs/guides/frame-times.md",
+    "docs/guides/godot.md",
+    "docs/guides/gymnasium.md",
+    "docs/guides/hoa.md",
+    "docs/guides/index.md",
+    "docs/guides/infinite.md",
+    "docs/guides/linting.md",
+    "docs/guides/love.md",
+    "docs/guides/many.md",
+    "docs/guides/mining.md",
+    "docs/guides/phrases.md",
+    "docs/guides/playground.md",
+    "docs/guides/project.md",
+    "docs/guides/recorded-play.md",
+    "docs/guides/rsl-rl.md",
+    "docs/guides/rust.md",
+    "docs/guides/stable-baselines3.md",
+    "docs/guides/stealth.md",
+    "docs/guides/unity.md",
+    "docs/guides/unreal.md",
+    "docs/guides/vector.md",
+    "docs/guides/web.md",
+    "docs/language.md",
+    "docs/levels.md",
+    "docs/policy-file.md",
+    "docs/regression.md",
+    "docs/semantics.md",
+    "docs/tapes.md",
+    "docs/traces.md",
+    "docs/training.md",
+    "docs/tutorial.md",
+    "docs/wire.md",
+}
+"""Pages that still have longer lines. The list only shrinks: never add a page."""
+
+_NOT_PROSE = re.compile(r"^ *```.*?^ *```$|<!--.*?-->|^(?:\||    |\[?!\[).*$", re.DOTALL | re.MULTILINE)
+_LINK_TARGET = re.compile(r"\]\([^)\s]*\)")
+
+
+def name(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
+
+
+def long_lines(text: str) -> list[str]:
+    """Return the lines of prose that are too long. Code, tables, images and HTML comments are not
+    prose, and the targets of links do not count."""
+    prose = _LINK_TARGET.sub("]", _NOT_PROSE.sub("", text))
+    return [line for line in prose.splitlines() if len(line) > COLUMNS]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_lines_of_prose_are_at_most_100_columns_long(page: Path) -> None:
+    too_long = long_lines(page.read_text(encoding="utf-8"))
+    if name(page) in NOT_YET_WRAPPED:
+        assert too_long, f"{name(page)} is wrapped now: take it off the list"
+    else:
+        assert not too_long, f"{name(page)} has {len(too_long)} long lines, the first is:\n{too_long[0]}"
+
+
+def test_the_list_of_pages_to_wrap_names_pages() -> None:
+    assert {name(page) for page in PAGES} >= NOT_YET_WRAPPED
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [
+        ("word " * 20 + "\n", 0),
+        ("word " * 20 + "word\n", 1),
+        ("- " + "word " * 20 + "\n", 1),
+        ("| " + "word " * 30 + "|\n", 0),
+        ("```text\n" + "word " * 30 + "\n```\n", 0),
+        ("    " + "word " * 30 + "\n", 0),
+        ("![" + "word " * 30 + "](picture.svg)\n", 0),
+        ("<!-- " + "word " * 30 + "-->\n", 0),
+        ("word " * 10 + "[a](" + "long/" * 30 + "page.md)\n", 0),
+        ("word " * 20 + "[a](page.md)\n", 1),
+    ],
+)
+def test_only_prose_that_can_be_broken_is_too_long(text: str, number: int) -> None:
+    assert len(long_lines(text)) == number
