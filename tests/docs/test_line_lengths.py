@@ -61,7 +61,6 @@ NOT_YET_WRAPPED = {
     "docs/policy-file.md",
     "docs/regression.md",
     "docs/semantics.md",
-    "docs/traces.md",
     "docs/training.md",
     "docs/tutorial.md",
     "docs/wire.md",
