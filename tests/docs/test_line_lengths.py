@@ -57,7 +57,6 @@ NOT_YET_WRAPPED = {
     "docs/guides/web.md",
     "docs/language.md",
     "docs/levels.md",
-    "docs/policy-file.md",
     "docs/regression.md",
     "docs/semantics.md",
     "docs/training.md",
