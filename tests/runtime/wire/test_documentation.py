@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.docs.blocks import ROOT
+import pytest
+
+from tests.docs.blocks import ROOT, blocks
+from tests.interfaces.cli.conftest import Outcome, tltlc
 from tltl_runtime.gymnasium_games.outline_reader import read_outline
 from tltl_runtime.wire import answers, requests
 from tltl_runtime.wire.answers import StateReader
@@ -17,6 +22,8 @@ from tltl_runtime.wire.outline import outline_from
 from tltl_runtime.wire.spaces import space_from
 from tltl_runtime.wire.wire_game import START_S, STEP_S
 from tltlc.api.fileio import limits
+
+__all__ = ["tltlc"]
 
 PAGE = (ROOT / "docs" / "wire.md").read_text(encoding="utf-8")
 
@@ -79,3 +86,20 @@ def test_each_client_has_a_row() -> None:
     assert f"`{folder.relative_to(ROOT).as_posix()}/`" in PAGE
     for path in folder.glob("*[Cc]lient*.*"):
         assert f"| `{path.name}` |" in PAGE
+
+
+def test_the_game_of_the_page_is_checked_as_shown(
+    tltlc: Callable[..., Outcome],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    page_blocks = blocks(ROOT / "docs" / "wire.md")
+    for block in page_blocks:
+        if name := re.match(r"(?:#|//) (counter\.\S+)\n", block.text):
+            (tmp_path / name[1]).write_text(block.text)
+    shutil.copy(tltl_client.__file__, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    checked = tltlc("check", "--game", "counter.game.toml")
+    (shown,) = (block.text for block in page_blocks if block.text.startswith("$ tltlc check --game counter"))
+    steady = re.sub(r"[\d,]+ steps a second", "8,000 steps a second", checked.out + checked.err)
+    assert f"$ tltlc check --game counter.game.toml\n{steady}" == shown
