@@ -55,7 +55,6 @@ NOT_YET_WRAPPED = {
     "docs/guides/unreal.md",
     "docs/guides/vector.md",
     "docs/guides/web.md",
-    "docs/language.md",
     "docs/regression.md",
     "docs/semantics.md",
     "docs/training.md",
