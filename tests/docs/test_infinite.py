@@ -1,4 +1,4 @@
-"""The examples over infinite traces on the page on semantics."""
+"""The programs on the page on semantics, and its examples over infinite traces."""
 
 from __future__ import annotations
 
@@ -65,8 +65,11 @@ def test_progress_is_the_share_of_the_limit_that_was_survived() -> None:
     assert after(compile_spec("a W b", "semantics infinite"), B).progress == 1.0
 
 
-def test_automata_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("imported", ["tltlc.monitor", "tltlc.automaton.compare"])
+def test_the_programs_on_the_page_print_the_shown_output(imported: str, capsys: pytest.CaptureFixture[str]) -> None:
     block_pairs = pairwise(blocks(DOCS / "semantics.md"))
-    ((program, printed),) = ((block, after) for block, after in block_pairs if block.kind == "python")
+    ((program, printed),) = (
+        (block, after) for block, after in block_pairs if block.kind == "python" and f"from {imported} " in block.text
+    )
     exec(program.text, {})
     assert capsys.readouterr().out == printed.text

@@ -74,7 +74,7 @@ def test_the_index_lists_every_decision() -> None:
         ("Truth decides", "progress_and_reward.py", "whose guard is true"),
         ("The paper evaluates the formula as it is written", "guards.py", "from the guard's formula"),
         ("r is capped at 0", "progress_and_reward.py", "is at most 0"),
-        ("Where S is 0", "tables.py", "The paper divides"),
+        ("If S is 0", "tables.py", "The paper divides"),
         ("A trap has none", "progress_and_reward.py", "a trap has the progress 0"),
         ("Judging at the limit", "progress_and_reward.py", "judged at its limit"),
         ("notices the end one step later", "progress_and_reward.py", "not one step later"),
@@ -83,7 +83,7 @@ def test_the_index_lists_every_decision() -> None:
     ],
 )
 def test_a_deviation_from_the_paper_is_marked_on_the_page_and_in_the_code(claim: str, file: str, remark: str) -> None:
-    page = (DOCS / "semantics.md").read_text(encoding="utf-8")
+    page = " ".join((DOCS / "semantics.md").read_text(encoding="utf-8").split())
     assert re.search(rf"▲[^▲]*{re.escape(claim)}", page)
     code = (ROOT / "tltlc" / "monitor" / file).read_text(encoding="utf-8")
     assert re.search(rf"▲[^▲\n]*{re.escape(remark)}", code)

@@ -40,7 +40,7 @@ def statements(part: str) -> Iterator[str]:
         rows = paragraph.splitlines()
         if rows and rows[0].startswith("|"):
             yield from rows[2:]
-        elif paragraph.strip() and not paragraph.endswith(":"):
+        elif paragraph.strip() and not paragraph.startswith("#") and not paragraph.endswith(":"):
             yield paragraph
 
 
