@@ -26,7 +26,6 @@ NOT_YET_WRAPPED = {
     "docs/adr/0045-timers-where-bounds-would-be-many-states.md",
     "docs/adr/0046-each-sample-brings-its-length.md",
     "docs/artefact.md",
-    "docs/games.md",
     "docs/guides/batch.md",
     "docs/guides/builds.md",
     "docs/guides/changes.md",
